@@ -1,0 +1,24 @@
+import sbt.*
+
+/** Every version in one place. */
+object Dependencies {
+  private val pekkoVersion = "1.2.1"
+
+  /** Pekko refuses mixed versions at start, so every module is listed at one version. */
+  private def pekkoModules(names: String*) = names.map(m => "org.apache.pekko" %% s"pekko-$m" % pekkoVersion)
+
+  val pekkoStream   = pekkoModules("actor", "stream")
+  val pekkoTyped    = pekkoModules("actor-typed")
+  val pekko         = pekkoStream ++ pekkoTyped ++ pekkoModules("slf4j")
+  val streamTestkit = "org.apache.pekko"      %% "pekko-stream-testkit" % pekkoVersion % Test
+  val upickle       = "com.lihaoyi"           %% "upickle"              % "4.4.3"
+  val msgpackOracle = "org.msgpack"            % "msgpack-core"         % "0.9.11"     % Test
+  val duckdb        = "org.duckdb"             % "duckdb_jdbc"          % "2.0.0.1"
+  val mainargs      = "com.lihaoyi"           %% "mainargs"             % "0.7.8"
+  val pureconfig    = "com.github.pureconfig" %% "pureconfig-core"      % "0.17.8"
+  val logback       = "ch.qos.logback"         % "logback-classic"      % "1.5.18"
+  val progressbar   = "me.tongfei"             % "progressbar"          % "0.10.2"
+  val scalatags     = "com.lihaoyi"           %% "scalatags"            % "0.13.1"
+  val munit =
+    Seq("org.scalameta" %% "munit" % "1.3.0" % Test, "org.scalameta" %% "munit-scalacheck" % "1.3.0" % Test)
+}
