@@ -1,0 +1,85 @@
+package skein.policy
+
+import skein.units.*
+
+enum Role:
+  case Pursuer, Evader
+
+/** One vehicle of a scenario and how it behaves.
+  *
+  * @param speed
+  *   of the velocity it commands
+  * @param startPositionNed
+  *   m, in the world frame; it also holds this altitude
+  * @param startHeading
+  *   the heading its policy starts from
+  */
+final case class Agent(
+    name: String,
+    role: Role,
+    speed: MetresPerSecond,
+    startPositionNed: Vector3,
+    startHeading: Radians,
+    policy: Policy
+):
+  /** The velocity to command for a heading, m/s, horizontal, world NED. */
+  def velocityNed(headingRad: Double): Vector3 =
+    Vector3(speed.value * math.cos(headingRad), speed.value * math.sin(headingRad), 0)
+
+/** Who takes part. Every agent plays against the nearest one of the other role. */
+final case class Scenario(agents: Vector[Agent]):
+  private val opponents: Vector[Vector[Int]] =
+    agents.map(agent => agents.indices.filter(agents(_).role != agent.role).toVector)
+
+  require(
+    agents.map(_.name).distinct.size == agents.size,
+    "every vehicle of a scenario needs a name of its own"
+  )
+  for (agent, i) <- agents.zipWithIndex do
+    require(opponents(i).nonEmpty, s"vehicle ${agent.name} has no opponent: a scenario needs both roles")
+
+  /** Index of the agent that agent `self` plays against: the nearest of the other role, the first of equals.
+    *
+    * @param positionNed
+    *   position of an agent by its index
+    */
+  def opponentOf(self: Int, positionNed: Int => Vector3): Int =
+    opponents(self).minBy(other => positionNed(self).horizontalDistance(positionNed(other)))
+
+object Scenario:
+
+  /** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart at z = −20 m.
+    *
+    * @param asPublished
+    *   the pursuer turns a fixed angle per decision, as the published code does
+    */
+  def duel(asPublished: Boolean = false): Scenario =
+    val pursuer = if asPublished then PaperPursuer.asPublished else PaperPursuer()
+    Scenario(
+      Vector(
+        // The evader's initial heading is cos(0.5) in the published code, where 0.5 may have been meant.
+        Agent(
+          "Evader",
+          Role.Evader,
+          MetresPerSecond(5),
+          Vector3(21, 0, -20),
+          Radians(math.cos(0.5)),
+          PaperEvader()
+        ),
+        Agent("Pursuer", Role.Pursuer, MetresPerSecond(10), Vector3(0, 0, -20), Radians(0), pursuer)
+      )
+    )
+
+  /** `pairs` duels side by side, 60 m apart: for teams of any size. The vehicles of several are numbered from 1. */
+  def duels(pairs: Int, asPublished: Boolean = false): Scenario =
+    if pairs == 1 then duel(asPublished)
+    else
+      val agents =
+        for
+          pair  <- 0 until pairs
+          agent <- duel(asPublished).agents
+        yield agent.copy(
+          name = s"${agent.name}${pair + 1}",
+          startPositionNed = agent.startPositionNed + Vector3(0, 60.0 * pair, 0)
+        )
+      Scenario(agents.toVector)

@@ -1,0 +1,28 @@
+package skein.rollout
+
+import skein.signal.LatencyDistribution
+import skein.units.*
+
+/** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits choose one.
+  *
+  * @param delaysS
+  *   ascending, s: half of the round trip's quantile in the middle of each 1024th
+  */
+final class DelayTable private (val delaysS: Array[Float]):
+  /** The delay that these random bits choose, s. */
+  def delayS(bits: Int): Float = delaysS(bits >>> DelayTable.Drop)
+
+  def maxS: Float = delaysS.last
+
+object DelayTable:
+  val Size = 1024
+
+  /** Bits of a random number that are not used. */
+  val Drop: Int = 32 - Integer.numberOfTrailingZeros(Size)
+
+  def of(roundTrip: LatencyDistribution): DelayTable =
+    DelayTable(Array.tabulate(Size)(i => (roundTrip.quantile((i + 0.5) / Size).toSeconds / 2).toFloat))
+
+  val none: DelayTable   = of(LatencyDistribution.Constant(Span.Zero))
+  val direct: DelayTable = of(LatencyDistribution.Direct)
+  val vpn: DelayTable    = of(LatencyDistribution.Vpn)

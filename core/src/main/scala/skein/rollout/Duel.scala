@@ -1,0 +1,59 @@
+package skein.rollout
+
+import skein.policy.{Policy, Role, Scenario}
+
+/** A pursuer and an evader in one plane, as a rollout flies them.
+  *
+  * @param policy
+  *   see [[skein.policy.Policy]]; must be a pure function
+  */
+final case class Duelist(
+    speed: Double,
+    startX: Double,
+    startY: Double,
+    altitudeDownM: Double,
+    startHeadingRad: Double,
+    policy: Policy
+)
+
+/** @param durationS
+  *   of an episode
+  */
+final case class Duel(pursuer: Duelist, evader: Duelist, durationS: Double = 60.0)
+
+object Duel:
+  /** The duel of a scenario with one pursuer and one evader. */
+  def of(scenario: Scenario, durationS: Double = 60.0): Duel =
+    require(scenario.agents.size == 2, s"a duel has two agents, this scenario ${scenario.agents.size}")
+    def the(role: Role) =
+      val agent = scenario.agents.find(_.role == role).get
+      Duelist(
+        agent.speed.value,
+        agent.startPositionNed.x,
+        agent.startPositionNed.y,
+        agent.startPositionNed.z,
+        agent.startHeading.value,
+        agent.policy
+      )
+    Duel(the(Role.Pursuer), the(Role.Evader), durationS)
+
+  val paper: Duel = of(Scenario.duel())
+
+/** What an episode came to. Distances are horizontal, taken once a period.
+  *
+  * @param captureS
+  *   when the distance first was at most the capture radius; infinite if never
+  * @param decisions
+  *   of both agents
+  * @param skipped
+  *   pictures on which an agent did not decide because a newer one came first
+  */
+final case class Outcome(
+    minDistanceM: Double,
+    minDistanceAtS: Double,
+    meanDistanceM: Double,
+    meanLast10sM: Double,
+    captureS: Double,
+    decisions: Int,
+    skipped: Int
+)

@@ -1,0 +1,24 @@
+package skein.signal
+
+/** Why a text is not a latency profile. `message` says what was expected, what came and where. */
+enum LatencyError(val message: String):
+
+  /** The text has the form of no profile. */
+  case UnknownProfile(text: String)
+      extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyText.forms}")
+
+  /** A profile's name is right and what follows it is not. */
+  case Malformed(text: String, expected: String, came: String)
+      extends LatencyError(s"latency profile \"$text\": expected $expected, got \"$came\"")
+
+  /** The file of samples cannot be read. */
+  case Unreadable(path: String, reason: String)
+      extends LatencyError(s"cannot read latency samples: $path: $reason")
+
+  /** A line of the file of samples is no round trip. Lines count from 1. */
+  case BadSample(path: String, line: Int, came: String)
+      extends LatencyError(s"$path:$line: expected a round trip in ms, zero or more, got \"$came\"")
+
+  /** The file of samples holds none. */
+  case NoSamples(path: String)
+      extends LatencyError(s"$path: expected at least one round trip in ms, one a line; the file has none")

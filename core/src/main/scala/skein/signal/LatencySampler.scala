@@ -1,0 +1,42 @@
+package skein.signal
+
+import skein.units.*
+
+/** Draws the delays of one direction of one connection. Holds mutable state: one per direction and connection.
+  *
+  * @param linkSeed
+  *   decides when the link is busy: equal for all connections and directions of one link, so that they agree
+  * @param lineSeed
+  *   decides the delays: different for each
+  */
+final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Long):
+  private val random = SplitMix64(lineSeed)
+
+  private val roundTrip: Span => LatencyDistribution = profile match
+    case LatencyProfile.Steady(_, distribution)  => _ => distribution
+    case alternating: LatencyProfile.Alternating => Stretches(alternating, linkSeed).at
+
+  /** The next message's delay: half of a sampled round trip.
+    *
+    * @param sinceStart
+    *   time since the link began; never smaller than at the call before
+    */
+  def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(random.nextDouble()) / 2
+
+/** Which of the two distributions holds when. */
+private final class Stretches(profile: LatencyProfile.Alternating, seed: Long):
+  private val random    = SplitMix64(seed)
+  private val busyShare =
+    profile.busyLasts.toSeconds / (profile.busyLasts.toSeconds + profile.quietLasts.toSeconds)
+  private var busy  = random.nextDouble() < busyShare
+  private var until = length()
+
+  private def length(): Span =
+    val mean = if busy then profile.busyLasts else profile.quietLasts
+    Span.ofSeconds(random.nextExponential(mean.toSeconds))
+
+  def at(sinceStart: Span): LatencyDistribution =
+    while sinceStart >= until do
+      busy = !busy
+      until = until + length()
+    if busy then profile.busy else profile.quiet

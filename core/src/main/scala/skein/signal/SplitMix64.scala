@@ -1,0 +1,38 @@
+package skein.signal
+
+/** A small seeded source of random numbers with its own state; the same seed gives the same sequence everywhere and
+  * for ever, which a recording's replay relies on. Not for secrets, and not for several threads.
+  *
+  * Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the constants of
+  * Vigna's public-domain `splitmix64.c`; held to its published first outputs by `SplitMix64Suite`.
+  */
+final class SplitMix64(seed: Long):
+  import SplitMix64.*
+
+  private var state = seed
+
+  /** Uniform over all 2^64^ values. */
+  def nextLong(): Long =
+    state += Gamma
+    mix(state)
+
+  /** Uniform in [0, 1), in steps of 2^−53^. */
+  def nextDouble(): Double = (nextLong() >>> 11) * Step
+
+  /** Uniform in 0 until `bound`, which is positive. */
+  def nextInt(bound: Int): Int = (nextDouble() * bound).toInt
+
+  /** Exponentially distributed with this mean: the time to the next event of a Poisson process. */
+  def nextExponential(mean: Double): Double = -mean * math.log1p(-nextDouble())
+
+object SplitMix64:
+  private val Step  = 1.0 / (1L << 53)
+  private val Gamma = 0x9e3779b97f4a7c15L
+
+  private def mix(z0: Long): Long =
+    val z1 = (z0 ^ (z0 >>> 30)) * 0xbf58476d1ce4e5b9L
+    val z2 = (z1 ^ (z1 >>> 27)) * 0x94d049bb133111ebL
+    z2 ^ (z2 >>> 31)
+
+  /** The seed of the `index`-th of many independent sequences that belong to one seed. */
+  def seedOf(seed: Long, index: Long): Long = mix(mix(seed + Gamma) ^ mix(index * Gamma + 1))

@@ -1,0 +1,178 @@
+package skein.vehicle
+
+/** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that are zero
+  * there (all derivatives, all integrals but the vertical velocity's) have no field here.
+  *
+  * @param rateP
+  *   torque command per rad/s
+  * @param maxRate
+  *   rad/s
+  * @param angleP
+  *   share of `maxRate` per rad
+  * @param maxTilt
+  *   rad; limit of roll and pitch
+  * @param velocityP
+  *   share of `maxTilt` per m/s
+  * @param verticalP
+  *   out of −1 … 1 per m/s, −1 being full and +1 no throttle
+  * @param verticalI
+  *   the same per m/s and second
+  * @param verticalDiscount
+  *   factor on the integral term at every update
+  * @param minThrottle
+  *   what a velocity controller leaves at least, so that a falling vehicle can still tilt
+  * @param positionP
+  *   share of `maxVelocity` per m
+  * @param maxVelocity
+  *   m/s
+  * @param minAnglingThrottle
+  *   below it all rotors get the throttle alone
+  */
+final case class ControllerGains(
+    rateP: Double = 0.25,
+    maxRate: Double = 2.5,
+    angleP: Double = 2.5,
+    maxTilt: Double = math.Pi / 5.5,
+    velocityP: Double = 0.2,
+    verticalP: Double = 2.0,
+    verticalI: Double = 2.0,
+    verticalDiscount: Double = 0.9999,
+    minThrottle: Double = 0.3,
+    positionP: Double = 0.25,
+    maxVelocity: Double = 6.0,
+    minAnglingThrottle: Double = 0.05
+)
+
+/** AirSim's default flight controller: a cascade per axis, position → velocity → angle → rate → torque command, and
+  * the mixer that turns the four commands into rotor controls. It sees the true state.
+  *
+  * '''The quirk that shapes every flight.''' In velocity mode roll and pitch rotate the ''whole'' goal triple into the
+  * body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so a vehicle tilted
+  * by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the more the higher it flies.
+  *
+  * @param stepS
+  *   time between updates, s
+  */
+final class FlightController(val gains: ControllerGains, stepS: Double):
+  import gains.*
+
+  /** Sets the rotor controls of `state` for its next step. */
+  def update(state: QuadrotorState, setpoint: Setpoint): Unit =
+    if setpoint.horizontal eq HorizontalMode.Rotors then passThrough(state, setpoint)
+    else control(state, setpoint)
+
+  private def passThrough(state: QuadrotorState, setpoint: Setpoint): Unit =
+    state.verticalMode = setpoint.vertical
+    state.control0 = clip(setpoint.first)
+    state.control1 = clip(setpoint.second)
+    state.control2 = clip(setpoint.third)
+    state.control3 = clip(setpoint.yawGoal)
+
+  private inline def clip(control: Double): Double = math.max(0.0, math.min(control, 1.0))
+
+  private def control(state: QuadrotorState, setpoint: Setpoint): Unit =
+    import state.{qw, qx, qy, qz}
+
+    // Rows of the rotation from body to world; transposed they turn world into body.
+    val r00 = 1 - 2 * (qy * qy + qz * qz)
+    val r10 = 2 * (qx * qy + qw * qz)
+    val r20 = 2 * (qx * qz - qw * qy)
+    val r01 = 2 * (qx * qy - qw * qz)
+    val r11 = 1 - 2 * (qx * qx + qz * qz)
+    val r21 = 2 * (qy * qz + qw * qx)
+    val r02 = 2 * (qx * qz + qw * qy)
+    val r12 = 2 * (qy * qz - qw * qx)
+    val r22 = 1 - 2 * (qx * qx + qy * qy)
+
+    var rollRate  = setpoint.first
+    var pitchRate = setpoint.second
+    if setpoint.horizontal ne HorizontalMode.Rates then
+      var roll  = setpoint.first
+      var pitch = setpoint.second
+      if setpoint.horizontal ne HorizontalMode.Angles then
+        var frontGoal = 0.0
+        var rightGoal = 0.0
+        if setpoint.horizontal eq HorizontalMode.Velocity then
+          frontGoal = r00 * setpoint.first + r10 * setpoint.second + r20 * setpoint.third
+          rightGoal = r01 * setpoint.first + r11 * setpoint.second + r21 * setpoint.third
+        else
+          frontGoal = r00 * velocityTowards(setpoint.first, state.x)
+          rightGoal = r11 * velocityTowards(setpoint.second, state.y)
+        val front = r00 * state.vx + r10 * state.vy + r20 * state.vz
+        val right = r01 * state.vx + r11 * state.vy + r21 * state.vz
+        roll = unit(velocityP * (rightGoal - right)) * maxTilt
+        pitch = -unit(velocityP * (frontGoal - front)) * maxTilt
+      rollRate = rateTowards(clamp(roll, maxTilt), math.atan2(r21, r22))
+      pitchRate = rateTowards(clamp(pitch, maxTilt), -math.asin(unit(r20)))
+    val yawRate =
+      if setpoint.yaw eq YawMode.Rate then setpoint.yawGoal
+      else rateTowards(setpoint.yawGoal, math.atan2(r10, r00))
+
+    val rollCommand  = torque(rollRate, state.wx)
+    val pitchCommand = torque(pitchRate, state.wy)
+    val yawCommand   = torque(yawRate, state.wz)
+    val throttle     =
+      if setpoint.vertical eq VerticalMode.Throttle then setpoint.third
+      else
+        val downGoal =
+          if setpoint.vertical eq VerticalMode.Position then r22 * velocityTowards(setpoint.third, state.z)
+          else if setpoint.horizontal eq HorizontalMode.Velocity then
+            r02 * setpoint.first + r12 * setpoint.second + r22 * setpoint.third
+          else r22 * setpoint.third
+        verticalThrottle(state, setpoint, downGoal - (r02 * state.vx + r12 * state.vy + r22 * state.vz))
+    state.verticalMode = setpoint.vertical
+    mix(state, rollCommand, pitchCommand, yawCommand, throttle)
+
+  /** The integral term of a vehicle that hovers at this throttle, and its lasting velocity error, m/s: the discount
+    * takes from the integral at each update what that error adds.
+    */
+  private[vehicle] def hoverIntegral(throttle: Double): (Double, Double) =
+    val out              = 1 - 2 * throttle
+    val integralPerError = stepS * verticalI / (1 - verticalDiscount)
+    val error            = out / (verticalP + integralPerError)
+    (error * integralPerError, error)
+
+  private def verticalThrottle(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
+    // A controller just created does not integrate: its clock has not advanced yet.
+    if state.verticalMode eq setpoint.vertical then
+      state.verticalIntegral = unit(state.verticalIntegral * verticalDiscount + stepS * error * verticalI)
+    else state.verticalIntegral = 0.0
+    math.max((1 - unit(verticalP * error + state.verticalIntegral)) / 2, minThrottle)
+
+  private def velocityTowards(goal: Double, position: Double): Double =
+    unit(positionP * (goal - position)) * maxVelocity
+
+  private def rateTowards(goal: Double, angle: Double): Double =
+    unit(angleP * shorterWay(goal - angle)) * maxRate
+
+  private def torque(rateGoal: Double, rate: Double): Double =
+    unit(rateP * (clamp(rateGoal, maxRate) - rate))
+
+  private def mix(
+      state: QuadrotorState,
+      roll: Double,
+      pitch: Double,
+      yaw: Double,
+      throttle: Double
+  ): Unit =
+    if throttle < minAnglingThrottle then
+      val each = throttle.max(0.0)
+      state.control0 = each; state.control1 = each; state.control2 = each; state.control3 = each
+    else
+      val c0    = throttle - roll + pitch + yaw
+      val c1    = throttle + roll - pitch + yaw
+      val c2    = throttle + roll + pitch - yaw
+      val c3    = throttle - roll - pitch - yaw
+      val raise = math.max(0.0, -math.min(math.min(c0, c1), math.min(c2, c3)))
+      val scale = 1 / math.max(1.0, math.max(math.max(c0, c1), math.max(c2, c3)) + raise)
+      state.control0 = (c0 + raise) * scale
+      state.control1 = (c1 + raise) * scale
+      state.control2 = (c2 + raise) * scale
+      state.control3 = (c3 + raise) * scale
+
+  private inline def unit(value: Double): Double = math.max(-1.0, math.min(value, 1.0))
+
+  private inline def clamp(value: Double, limit: Double): Double = math.max(-limit, math.min(value, limit))
+
+  private inline def shorterWay(angle: Double): Double =
+    if math.abs(angle) <= math.Pi then angle else math.IEEEremainder(angle, 2 * math.Pi)

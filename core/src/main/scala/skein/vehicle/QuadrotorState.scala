@@ -1,0 +1,87 @@
+package skein.vehicle
+
+import skein.signal.Kinematics
+import skein.units.{Quaternion, Vector3}
+
+/** Everything that changes while a quadrotor flies: kinematics, rotors and the memory of its flight controller.
+  * Mutable and flat, so that a step allocates nothing; [[copyFrom]] makes it equal to another. Create one with
+  * [[Quadrotor.hovering]] or [[Quadrotor.landed]].
+  *
+  * World frame NED, body frame FRD, metres, seconds, radians.
+  */
+final class QuadrotorState:
+  /** Position (north, east, down), m. */
+  var x, y, z = 0.0
+
+  /** Velocity (north, east, down), m/s. */
+  var vx, vy, vz = 0.0
+
+  /** Acceleration (north, east, down), m/s², gravity included. */
+  var ax, ay, az = 0.0
+
+  /** Orientation, body to world, a unit quaternion. */
+  var qw         = 1.0
+  var qx, qy, qz = 0.0
+
+  /** Angular velocity (front, right, down), rad/s. */
+  var wx, wy, wz = 0.0
+
+  /** Angular acceleration (front, right, down), rad/s². */
+  var wxDot, wyDot, wzDot = 0.0
+
+  /** Controls of the rotors, 0 to 1, that the controller has set last. */
+  var control0, control1, control2, control3 = 0.0
+
+  /** The same after the rotors' lag. */
+  var lagged0, lagged1, lagged2, lagged3 = 0.0
+
+  /** Thrust over maximal thrust at sea-level density, as it will act in the next step. */
+  var thrust0, thrust1, thrust2, thrust3 = 0.0
+
+  /** Standing on the ground, until thrust exceeds weight. */
+  var grounded = false
+
+  /** Integral term of the vertical velocity controller, −1 to 1. */
+  private[vehicle] var verticalIntegral = 0.0
+
+  /** The vertical mode of the step before, whose change creates the vertical controllers anew; null before the first.
+    * The other axes have no memory, for their integral gains are zero.
+    */
+  private[vehicle] var verticalMode: VerticalMode | Null = null
+
+  def copyFrom(other: QuadrotorState): Unit =
+    x = other.x; y = other.y; z = other.z
+    vx = other.vx; vy = other.vy; vz = other.vz
+    ax = other.ax; ay = other.ay; az = other.az
+    qw = other.qw; qx = other.qx; qy = other.qy; qz = other.qz
+    wx = other.wx; wy = other.wy; wz = other.wz
+    wxDot = other.wxDot; wyDot = other.wyDot; wzDot = other.wzDot
+    control0 = other.control0; control1 = other.control1
+    control2 = other.control2; control3 = other.control3
+    lagged0 = other.lagged0; lagged1 = other.lagged1; lagged2 = other.lagged2; lagged3 = other.lagged3
+    thrust0 = other.thrust0; thrust1 = other.thrust1; thrust2 = other.thrust2; thrust3 = other.thrust3
+    grounded = other.grounded
+    verticalIntegral = other.verticalIntegral
+    verticalMode = other.verticalMode
+
+  def positionNed: Vector3            = Vector3(x, y, z)
+  def velocityNed: Vector3            = Vector3(vx, vy, vz)
+  def accelerationNed: Vector3        = Vector3(ax, ay, az)
+  def orientation: Quaternion         = Quaternion(qw, qx, qy, qz)
+  def angularVelocityFrd: Vector3     = Vector3(wx, wy, wz)
+  def angularAccelerationFrd: Vector3 = Vector3(wxDot, wyDot, wzDot)
+
+  def kinematics: Kinematics = Kinematics(positionNed, velocityNed, orientation, angularVelocityFrd)
+
+  /** Angle between the rotors' thrust and straight up, rad. */
+  def tiltRad: Double = math.acos((1 - 2 * (qx * qx + qy * qy)).max(-1.0).min(1.0))
+
+  /** Rad from north towards east, −π to π. */
+  def yawRad: Double = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
+
+  /** Places the vehicle elsewhere, at this yaw and level, its motion and controller untouched (as AirSim's
+    * `simSetVehiclePose` does).
+    */
+  def place(positionNed: Vector3, orientation: Quaternion): Unit =
+    x = positionNed.x; y = positionNed.y; z = positionNed.z
+    qw = orientation.w; qx = orientation.x; qy = orientation.y; qz = orientation.z

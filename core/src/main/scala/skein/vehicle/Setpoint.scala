@@ -1,0 +1,136 @@
+package skein.vehicle
+
+import skein.units.Vector3
+
+/** What roll and pitch are wanted for; each case names the two numbers it needs. */
+enum HorizontalMode:
+  /** None: the four goals are the controls of the four rotors, 0 to 1. */
+  case Rotors
+
+  /** Roll rate and pitch rate, rad/s. */
+  case Rates
+
+  /** Roll and pitch, rad. */
+  case Angles
+
+  /** Velocity north and east, m/s. */
+  case Velocity
+
+  /** Position north and east, m. */
+  case Position
+
+/** What thrust is wanted for. */
+enum VerticalMode:
+  /** Throttle of all rotors, 0 to 1. */
+  case Throttle
+
+  /** Velocity down, m/s. */
+  case Velocity
+
+  /** Position down (z of NED: negative above the origin), m. */
+  case Position
+
+/** What yaw is wanted for. */
+enum YawMode:
+  /** Yaw rate, rad/s. */
+  case Rate
+
+  /** Yaw, rad from north towards east, reached the shorter way. */
+  case Angle
+
+/** What the flight controller is to reach: per axis a mode and its goal, as AirSim's SimpleFlight keeps them. The
+  * constructors in the companion bear the names of AirSim's commands.
+  *
+  * @param first
+  *   the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
+  * @param second
+  *   pitch or east
+  * @param third
+  *   the goal of `vertical`
+  * @param yawGoal
+  *   the goal of `yaw`
+  */
+final case class Setpoint(
+    horizontal: HorizontalMode,
+    first: Double,
+    second: Double,
+    vertical: VerticalMode,
+    third: Double,
+    yaw: YawMode = YawMode.Rate,
+    yawGoal: Double = 0.0
+):
+  /** The same with this yaw, rad from north. */
+  def withYaw(yawRad: Double): Setpoint = copy(yaw = YawMode.Angle, yawGoal = yawRad)
+
+  /** The same with this yaw rate, rad/s. */
+  def withYawRate(yawRateRadps: Double): Setpoint = copy(yaw = YawMode.Rate, yawGoal = yawRateRadps)
+
+object Setpoint:
+
+  /** Motors off. */
+  val Disarmed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0)
+
+  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet. */
+  val Armed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0.1)
+
+  /** `moveByVelocity`: north, east, down, m/s. */
+  def velocity(northMps: Double, eastMps: Double, downMps: Double): Setpoint =
+    Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Velocity, downMps)
+
+  /** `moveByVelocityZ`: velocity north and east, m/s, at altitude `downM` (NED). Slower to respond than [[velocity]],
+    * the more the higher it flies; [[FlightController]] says why.
+    */
+  def velocityZ(northMps: Double, eastMps: Double, downM: Double): Setpoint =
+    Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Position, downM)
+
+  /** Position hold: AirSim's `hover` at the place given, and what an unrenewed goal turns into. The vehicle settles
+    * 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the yaw turns away from north: each axis
+    * takes only its own coordinate's error into the body frame, so at ±90° it brakes but does not return.
+    */
+  def hold(positionNed: Vector3): Setpoint =
+    Setpoint(
+      HorizontalMode.Position,
+      positionNed.x,
+      positionNed.y,
+      VerticalMode.Position,
+      positionNed.z
+    )
+
+  /** `moveByRollPitchYawZ`: angles in rad, altitude `downM` (NED). */
+  def anglesZ(rollRad: Double, pitchRad: Double, yawRad: Double, downM: Double): Setpoint =
+    Setpoint(HorizontalMode.Angles, rollRad, pitchRad, VerticalMode.Position, downM).withYaw(yawRad)
+
+  /** `moveByRollPitchYawThrottle`: angles in rad, throttle 0 to 1. */
+  def anglesThrottle(rollRad: Double, pitchRad: Double, yawRad: Double, throttle: Double): Setpoint =
+    Setpoint(HorizontalMode.Angles, rollRad, pitchRad, VerticalMode.Throttle, throttle).withYaw(yawRad)
+
+  /** `moveByAngleRatesZ`: rates in rad/s, altitude `downM` (NED). */
+  def ratesZ(rollRadps: Double, pitchRadps: Double, yawRadps: Double, downM: Double): Setpoint =
+    Setpoint(HorizontalMode.Rates, rollRadps, pitchRadps, VerticalMode.Position, downM).withYawRate(yawRadps)
+
+  /** `moveByAngleRatesThrottle`: rates in rad/s, throttle 0 to 1. */
+  def ratesThrottle(
+      rollRadps: Double,
+      pitchRadps: Double,
+      yawRadps: Double,
+      throttle: Double
+  ): Setpoint =
+    Setpoint(
+      HorizontalMode.Rates,
+      rollRadps,
+      pitchRadps,
+      VerticalMode.Throttle,
+      throttle
+    ).withYawRate(yawRadps)
+
+  /** `moveByMotorPWMs`: the rotors' controls, 0 to 1, in AirSim's order; the flight controller stands aside. */
+  def rotors(frontRight: Double, rearLeft: Double, frontLeft: Double, rearRight: Double): Setpoint =
+    Setpoint(
+      HorizontalMode.Rotors,
+      frontRight,
+      rearLeft,
+      VerticalMode.Throttle,
+      frontLeft,
+      YawMode.Rate,
+      rearRight
+    )

@@ -1,0 +1,82 @@
+package skein.vehicle
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Follows a velocity setpoint with a first-order lag, horizontally; the altitude stays. The velocity v tends towards
+  * gain · setpoint with time constant lag: v(t) = g·u + (v₀ − g·u)·e^(−t/τ), exact for any span. Setpoints that are no
+  * velocities are taken as "stand still".
+  *
+  * @param lagS
+  *   τ
+  * @param gain
+  *   g, reached over commanded speed
+  */
+final case class LagModel(lagS: Double, gain: Double) extends VehicleModel[Kinematics]:
+  require(lagS > 0, s"the lag must be positive, came $lagS s")
+
+  def start(seen: Kinematics): Kinematics = seen
+
+  def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics =
+    val goal =
+      if setpoint.horizontal == HorizontalMode.Velocity then
+        Vector3(gain * setpoint.first, gain * setpoint.second, state.velocityNed.z)
+      else Vector3(0, 0, state.velocityNed.z)
+    val left   = math.exp(-span.toSeconds / lagS)
+    val excess = state.velocityNed - goal
+    state.copy(
+      positionNed = state.positionNed + goal * span.toSeconds + excess * (lagS * (1 - left)),
+      velocityNed = goal + excess * left
+    )
+
+  def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
+
+  def kinematics(state: Kinematics): Kinematics = state
+
+/** Goes on as it was seen, for vehicles whose commands are unknown. */
+object ConstantVelocity extends VehicleModel[Kinematics]:
+  def start(seen: Kinematics): Kinematics = seen
+
+  def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics =
+    state.copy(positionNed = state.positionNed + state.velocityNed * span.toSeconds)
+
+  def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
+
+  def kinematics(state: Kinematics): Kinematics = state
+
+/** Goes on at the same speed and turns on as between the last two sights, for vehicles whose commands are unknown. */
+object ConstantTurn extends VehicleModel[ConstantTurn.Turning]:
+
+  /** @param turnRateRadps
+    *   of the horizontal velocity, from north towards east
+    * @param seen
+    *   the last sight
+    */
+  final case class Turning(now: Kinematics, turnRateRadps: Double, seen: Kinematics)
+
+  def start(seen: Kinematics): Turning = Turning(seen, 0, seen)
+
+  /** Integrates the circle exactly. */
+  def advanced(state: Turning, setpoint: Setpoint, span: Span): Turning =
+    val velocity = state.now.velocityNed
+    val t        = span.toSeconds
+    val angle    = state.turnRateRadps * t
+    // sin a / a and (1 − cos a) / a, by their series where a is too small to divide by.
+    val along  = if math.abs(angle) < 1e-6 then 1.0 else math.sin(angle) / angle
+    val across = if math.abs(angle) < 1e-6 then angle / 2 else (1 - math.cos(angle)) / angle
+    val moved  = Vector3(
+      (velocity.x * along - velocity.y * across) * t,
+      (velocity.x * across + velocity.y * along) * t,
+      velocity.z * t
+    )
+    val (cos, sin) = (math.cos(angle), math.sin(angle))
+    val turned = Vector3(velocity.x * cos - velocity.y * sin, velocity.x * sin + velocity.y * cos, velocity.z)
+    state.copy(now = state.now.copy(positionNed = state.now.positionNed + moved, velocityNed = turned))
+
+  def corrected(state: Turning, seen: Kinematics, sinceSeen: Span): Turning =
+    val (before, after) = (state.seen.velocityNed, seen.velocityNed)
+    val turned          =
+      math.atan2(before.x * after.y - before.y * after.x, before.x * after.x + before.y * after.y)
+    Turning(seen, if sinceSeen > Span.Zero then turned / sinceSeen.toSeconds else state.turnRateRadps, seen)
+
+  def kinematics(state: Turning): Kinematics = state.now

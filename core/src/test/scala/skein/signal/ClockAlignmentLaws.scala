@@ -1,0 +1,85 @@
+package skein.signal
+
+import org.scalacheck.Gen
+import org.scalacheck.Prop.forAll
+import skein.units.*
+
+class ClockAlignmentLaws extends munit.ScalaCheckSuite:
+
+  private val trueOffset = Span.ofSeconds(12345.678)
+
+  private val legs =
+    Gen.choose(1, 50).flatMap(n => Gen.listOfN(n, Gen.zip(Gen.choose(8.0, 100.0), Gen.choose(8.0, 100.0))))
+
+  private def reading(at: Int, legsMs: (Double, Double)) =
+    val validAt = Instant.ofNanos(100_000_000L * at)
+    val sampled = validAt + trueOffset
+    Stamped((), validAt, sampled - Span.ofMillis(legsMs._1), sampled + Span.ofMillis(legsMs._2))
+
+  private def aligned(legs: List[(Double, Double)]) =
+    val readings = legs.zipWithIndex.map((leg, at) => reading(at, leg))
+    readings.tail.foldLeft(ClockAlignment.of(readings.head))(_.updated(_))
+
+  property("the true offset lies within the stated uncertainty, whatever the asymmetry of the legs"):
+    forAll(legs): legs =>
+      val alignment = aligned(legs)
+      math.abs((alignment.offset - trueOffset).toNanos) <= alignment.uncertainty.toNanos + 1
+
+  property("more readings never widen the bounds by more than the clocks may have drifted"):
+    forAll(legs): legs =>
+      val drifted       = Span.ofMillis((legs.size * 100 + 200) * ClockAlignment.MaxDrift) * 2
+      val (first, last) = (aligned(legs.take(1)), aligned(legs))
+      last.upper - last.lower <= first.upper - first.lower + drifted
+
+  test("readings after the simulator stood still start the estimate afresh"):
+    val before  = reading(0, (10, 10))
+    val after   = reading(1, (10, 10)).copy(validAt = before.validAt + Span.ofMillis(1))
+    val aligned = ClockAlignment.of(before).updated(after)
+    assertEquals(
+      (aligned.lower, aligned.upper),
+      (ClockAlignment.of(after).lower, ClockAlignment.of(after).upper)
+    )
+    assertEquals((aligned.restarts, aligned.standsStill), (1, false))
+
+  test("a simulator that stands still is recognised at the next reading, and so is that it runs again"):
+    val legs    = (10.0, 10.0)
+    val before  = reading(0, legs)
+    val paused  = (1 to 3).map(at => reading(at, legs).copy(validAt = before.validAt))
+    val resumed = (4 to 5).map(at => reading(at, legs)).map(seen =>
+      seen.copy(validAt = seen.validAt - Span.ofMillis(300))
+    )
+    val states = (paused ++ resumed).scanLeft(ClockAlignment.of(before))(_.updated(_))
+    assertEquals(states.map(_.standsStill), Seq(false, true, true, true, false, false))
+    assertEquals(states.last.restarts, 1)
+    assertEquals(states.last.offset, trueOffset + Span.ofMillis(300))
+
+  for (link, boundMs) <- Seq(LatencyProfile.direct -> 2.0, LatencyProfile.vpn -> 5.0) do
+    test(
+      s"over ${link.name} the estimate is within $boundMs ms after 5 s at 20 readings a second, and stays so"
+    ):
+      for seed <- 1L to 100L do
+        val (there, back) = (LatencySampler(link, seed, 2 * seed), LatencySampler(link, seed, 2 * seed + 1))
+        def seen(at: Int) =
+          val since   = Span.ofMillis(50.0 * at)
+          val sentAt  = Instant.Epoch + trueOffset + since
+          val sampled = sentAt + there.oneWay(since)
+          Stamped((), sampled - trueOffset, sentAt, sampled + back.oneWay(since))
+        val states = (1 to 1200).map(seen).scanLeft(ClockAlignment.of(seen(0)))(_.updated(_))
+        for aligned <- states.drop(100) do
+          val offMs = (aligned.offset - trueOffset).toMillis
+          assert(math.abs(offMs) < boundMs, s"seed $seed: off by $offMs ms")
+          assertEquals(aligned.restarts, 0, s"seed $seed")
+
+  test(
+    "clocks that run at rates 50 parts in a million apart stay aligned over ten minutes, also without a network"
+  ):
+    for legMs <- Seq(0.01, 9.0) do
+      val start  = reading(0, (legMs, legMs))
+      val states = (1 to 12000).map: at =>
+        val passed = Span.ofMillis(50.0 * at)
+        val drift  = Span.ofMillis(50.0 * at * 50e-6)
+        Stamped((), start.validAt + passed, start.sentAt + passed + drift, start.receivedAt + passed + drift)
+      .scanLeft(ClockAlignment.of(start))(_.updated(_))
+      assertEquals(states.last.restarts, 0)
+      val trueNow = trueOffset + Span.ofMillis(600_000 * 50e-6)
+      assertEqualsDouble((states.last.offset - trueNow).toMillis, 0, 0.5)

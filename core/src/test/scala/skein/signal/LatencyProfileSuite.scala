@@ -1,0 +1,86 @@
+package skein.signal
+
+import skein.units.*
+
+class LatencyProfileSuite extends munit.FunSuite:
+  import LatencyDistribution.*
+  import LatencyProfile.Steady
+
+  private val files = Map(
+    "samples.txt" -> "# ms\n30\n\n10.5\n",
+    "words.txt"   -> "30\nten\n",
+    "empty.txt"   -> "# nothing\n"
+  )
+
+  private def parse(text: String): Either[LatencyError, LatencyProfile] =
+    LatencyProfile.parse(text, path => files.get(path).toRight("no such file"))
+
+  private def messageOf(text: String): String = parse(text).fold(_.message, p => fail(s"unexpected $p"))
+
+  test("the named profiles are found by their names"):
+    for profile <-
+        List(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
+    do
+      assertEquals(parse(profile.name), Right(profile))
+
+  test("the parametric forms are read, in any unit"):
+    assertEquals(parse("constant:200ms"), Right(Steady("constant:200ms", Constant(Span.ofMillis(200)))))
+    assertEquals(
+      parse("constant:0.2s").map(_.asInstanceOf[Steady].roundTrip),
+      Right(Constant(Span.ofMillis(200)))
+    )
+    assertEquals(
+      parse("uniform:500us..40ms"),
+      Right(Steady("uniform:500us..40ms", Uniform(Span.ofMillis(0.5), Span.ofMillis(40))))
+    )
+    assertEquals(
+      parse("lognormal:36ms,0.3"),
+      Right(Steady("lognormal:36ms,0.3", LogNormal(Span.ofMillis(36), 0.3)))
+    )
+
+  test("a file of samples becomes their distribution"):
+    assertEquals(
+      parse("file:samples.txt"),
+      Right(Steady("file:samples.txt", Quantiles(Vector(0, 1), Vector(10.5, 30))))
+    )
+
+  test("an unknown name is answered with the forms there are"):
+    assertEquals(
+      messageOf("dsl"),
+      "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
+        "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips)"
+    )
+
+  test("a mistake in a form is answered with what was expected there"):
+    assertEquals(
+      messageOf("constant:200"),
+      "latency profile \"constant:200\": expected a time such as 200ms, got \"200\""
+    )
+    assertEquals(
+      messageOf("uniform:40ms..10ms"),
+      "latency profile \"uniform:40ms..10ms\": expected the smaller time first, got \"40ms..10ms\""
+    )
+    assertEquals(
+      messageOf("uniform:40ms"),
+      "latency profile \"uniform:40ms\": expected two times such as 10ms..40ms, got \"40ms\""
+    )
+    assertEquals(
+      messageOf("lognormal:36ms"),
+      "latency profile \"lognormal:36ms\": expected the median and the standard deviation of the logarithm " +
+        "such as 36ms,0.3, got \"36ms\""
+    )
+    assertEquals(
+      messageOf("lognormal:36ms,-1"),
+      "latency profile \"lognormal:36ms,-1\": expected a standard deviation of the logarithm from 0 to 3, got \"-1\""
+    )
+
+  test("a mistake in a file is answered with the file and the line"):
+    assertEquals(
+      messageOf("file:words.txt"),
+      "words.txt:2: expected a round trip in ms, zero or more, got \"ten\""
+    )
+    assertEquals(messageOf("file:missing.txt"), "cannot read latency samples: missing.txt: no such file")
+    assertEquals(
+      messageOf("file:empty.txt"),
+      "empty.txt: expected at least one round trip in ms, one a line; the file has none"
+    )
