@@ -1,0 +1,31 @@
+package skein.vtime.agent;
+
+import java.lang.instrument.Instrumentation;
+import java.util.ArrayList;
+import java.util.List;
+
+/**
+ * Started by {@code -javaagent:vtime-agent.jar[=package,package…]}: rewrites classes of Pekko, of
+ * {@code scala.concurrent} and of the named packages as they are loaded.
+ */
+public final class Agent {
+  private static volatile String failure;
+
+  private Agent() {}
+
+  public static void premain(String packages, Instrumentation instrumentation) {
+    var prefixes = new ArrayList<>(List.of("org/apache/pekko/", "scala/concurrent/"));
+    if (packages != null)
+      for (var name : packages.split(",")) if (!name.isBlank()) prefixes.add(name.strip().replace('.', '/') + "/");
+    instrumentation.addTransformer(new Rewriter(List.copyOf(prefixes)));
+  }
+
+  /** The first class that could not be rewritten and why, or null. */
+  public static String failure() {
+    return failure;
+  }
+
+  static void failed(String className, Throwable cause) {
+    if (failure == null) failure = className + ": " + cause;
+  }
+}

@@ -1,0 +1,237 @@
+package skein.vtime.agent;
+
+import static java.lang.constant.ConstantDescs.*;
+
+import java.lang.classfile.ClassFile;
+import java.lang.classfile.ClassHierarchyResolver;
+import java.lang.classfile.ClassModel;
+import java.lang.classfile.ClassTransform;
+import java.lang.classfile.CodeBuilder;
+import java.lang.classfile.CodeElement;
+import java.lang.classfile.CodeTransform;
+import java.lang.classfile.MethodModel;
+import java.lang.classfile.Opcode;
+import java.lang.classfile.constantpool.MemberRefEntry;
+import java.lang.classfile.instruction.InvokeDynamicInstruction;
+import java.lang.classfile.instruction.InvokeInstruction;
+import java.lang.constant.ClassDesc;
+import java.lang.constant.ConstantDesc;
+import java.lang.constant.DirectMethodHandleDesc;
+import java.lang.constant.DirectMethodHandleDesc.Kind;
+import java.lang.constant.DynamicCallSiteDesc;
+import java.lang.constant.MethodHandleDesc;
+import java.lang.constant.MethodTypeDesc;
+import java.lang.instrument.ClassFileTransformer;
+import java.security.ProtectionDomain;
+import java.util.HashMap;
+import java.util.List;
+import java.util.Map;
+import java.util.Set;
+
+/** Leads the calls listed here, inside the given packages, to {@link Redirect}. */
+final class Rewriter implements ClassFileTransformer {
+  private static final ClassDesc REDIRECT = Redirect.class.describeConstable().orElseThrow();
+  private static final ClassDesc RANDOM = ClassDesc.of("java.util.concurrent.ThreadLocalRandom");
+  private static final ClassDesc DURATION = ClassDesc.of("java.time.Duration");
+
+  /** A method as a call site names it: {@code owner.name descriptor}. */
+  private static final Map<String, Target> CALLS = new HashMap<>();
+
+  /** Handing a task to an execution context stays as it is, but the environment is asked first. */
+  private static final Set<String> SUBMISSIONS =
+      Set.of(
+          "scala/concurrent/ExecutionContext.execute(Ljava/lang/Runnable;)V",
+          "scala/concurrent/ExecutionContextExecutor.execute(Ljava/lang/Runnable;)V",
+          "java/util/concurrent/Executor.execute(Ljava/lang/Runnable;)V");
+
+  /** Pekko numbers these actors per JVM, so each name is replaced by one numbered per environment. */
+  private static final String SUPERVISOR_NAME =
+      "org/apache/pekko/stream/impl/StreamSupervisor$.nextName()Ljava/lang/String;";
+
+  /** A shared kill switch tells its streams in the order of these objects' hash codes, which are their identities'. */
+  private static final String KILL_SWITCH_LISTENER = "org/apache/pekko/stream/TerminationSignal$Listener";
+
+  private record Target(String name, MethodTypeDesc type) {}
+
+  static {
+    redirectStatic("java.lang.System", "nanoTime", "nanoTime", MethodTypeDesc.of(CD_long));
+    redirectStatic("java.lang.System", "currentTimeMillis", "currentTimeMillis", MethodTypeDesc.of(CD_long));
+    var instant = ClassDesc.of("java.time.Instant");
+    redirectStatic("java.time.Instant", "now", "instantNow", MethodTypeDesc.of(instant));
+    var localDateTime = ClassDesc.of("java.time.LocalDateTime");
+    redirectStatic("java.time.LocalDateTime", "now", "localDateTimeNow", MethodTypeDesc.of(localDateTime));
+    redirectStatic("java.lang.Math", "random", "mathRandom", MethodTypeDesc.of(CD_double));
+    redirectStatic("java.util.UUID", "randomUUID", "randomUuid", MethodTypeDesc.of(ClassDesc.of("java.util.UUID")));
+    redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, CD_long));
+    redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, DURATION));
+    redirectDraw("nextInt", MethodTypeDesc.of(CD_int));
+    redirectDraw("nextInt", MethodTypeDesc.of(CD_int, CD_int));
+    redirectDraw("nextInt", MethodTypeDesc.of(CD_int, CD_int, CD_int));
+    redirectDraw("nextLong", MethodTypeDesc.of(CD_long));
+    redirectDraw("nextLong", MethodTypeDesc.of(CD_long, CD_long));
+    redirectDraw("nextLong", MethodTypeDesc.of(CD_long, CD_long, CD_long));
+    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double));
+    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double, CD_double));
+    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double, CD_double, CD_double));
+    redirectDraw("nextGaussian", MethodTypeDesc.of(CD_double));
+    redirectDraw("nextBoolean", MethodTypeDesc.of(CD_boolean));
+    redirectDraw("nextBytes", MethodTypeDesc.of(CD_void, CD_byte.arrayType()));
+  }
+
+  private static void redirectStatic(String owner, String name, String target, MethodTypeDesc type) {
+    CALLS.put(owner.replace('.', '/') + "." + name + type.descriptorString(), new Target(target, type));
+  }
+
+  /** {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it. */
+  private static void redirectDraw(String name, MethodTypeDesc type) {
+    var call = "java/util/concurrent/ThreadLocalRandom." + name + type.descriptorString();
+    CALLS.put(call, new Target(name, type.insertParameterTypes(0, RANDOM)));
+  }
+
+  private static final ClassDesc SCHEDULER = ClassDesc.of("org.apache.pekko.actor.Scheduler");
+  private static final ClassDesc SYSTEM = ClassDesc.of("org.apache.pekko.actor.ActorSystemImpl");
+
+  /** Where every message to an actor passes, on the sender's thread. */
+  private static final Set<String> CELLS =
+      Set.of("org/apache/pekko/actor/ActorCell", "org/apache/pekko/actor/UnstartedCell");
+  private static final Set<String> DELIVERIES =
+      Set.of(
+          "sendMessage(Lorg/apache/pekko/dispatch/Envelope;)V",
+          "sendSystemMessage(Lorg/apache/pekko/dispatch/sysmsg/SystemMessage;)V");
+
+  private final List<String> packages;
+
+  /** @param packages internal names such as {@code org/apache/pekko/}; classes below them are rewritten. */
+  Rewriter(List<String> packages) {
+    this.packages = packages;
+  }
+
+  @Override
+  public byte[] transform(
+      ClassLoader loader, String name, Class<?> redefined, ProtectionDomain domain, byte[] bytes) {
+    if (name == null || packages.stream().noneMatch(name::startsWith)) return null;
+    try {
+      var classFile = ClassFile.of(
+          ClassFile.ClassHierarchyResolverOption.of(
+              ClassHierarchyResolver.ofResourceParsing(loader).orElse(ClassHierarchyResolver.defaultResolver())));
+      var model = classFile.parse(bytes);
+      var isCell = CELLS.contains(name);
+      var isListener = KILL_SWITCH_LISTENER.equals(name);
+      if (!isCell && !isListener && !concerns(model)) return null;
+      var transform = ClassTransform.transformingMethodBodies(Rewriter::rewrite);
+      if (isCell) transform = transform.andThen(guarded(model));
+      if (isListener) transform = transform.andThen(hashed(model));
+      return classFile.transformClass(model, transform);
+    } catch (Throwable failure) {
+      // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong clock.
+      Agent.failed(name, failure);
+      return null;
+    }
+  }
+
+  /** Gives a class a hash code that is asked of {@link Redirect#hashCodeOf} once and then kept. */
+  private static ClassTransform hashed(ClassModel model) {
+    var name = model.thisClass().asSymbol();
+    var type = MethodTypeDesc.of(CD_int);
+    return ClassTransform.endHandler(
+        builder ->
+            builder
+                .withField("virtualHashCode", CD_int, ClassFile.ACC_PRIVATE)
+                .withMethodBody(
+                    "hashCode",
+                    type,
+                    ClassFile.ACC_PUBLIC,
+                    code -> {
+                      var known = code.newLabel();
+                      code.aload(0).getfield(name, "virtualHashCode", CD_int).ifne(known);
+                      code.aload(0).aload(0);
+                      code.invokestatic(REDIRECT, "hashCodeOf", MethodTypeDesc.of(CD_int, CD_Object));
+                      code.putfield(name, "virtualHashCode", CD_int);
+                      code.labelBinding(known).aload(0).getfield(name, "virtualHashCode", CD_int).ireturn();
+                    }));
+  }
+
+  /** Has each delivery to an actor first show the system's scheduler to {@link Redirect#delivered}. */
+  private static ClassTransform guarded(ClassModel cell) {
+    var name = cell.thisClass().asSymbol();
+    if (cell.methods().stream().filter(Rewriter::isDelivery).count() != DELIVERIES.size())
+      throw new IllegalStateException("expected the methods " + DELIVERIES);
+    return ClassTransform.transformingMethodBodies(
+        Rewriter::isDelivery,
+        new CodeTransform() {
+          @Override
+          public void atStart(CodeBuilder code) {
+            code.aload(0)
+                .invokevirtual(name, "systemImpl", MethodTypeDesc.of(SYSTEM))
+                .invokevirtual(SYSTEM, "scheduler", MethodTypeDesc.of(SCHEDULER))
+                .invokestatic(REDIRECT, "delivered", MethodTypeDesc.of(CD_void, CD_Object));
+          }
+
+          @Override
+          public void accept(CodeBuilder code, CodeElement element) {
+            code.with(element);
+          }
+        });
+  }
+
+  private static boolean isDelivery(MethodModel method) {
+    return DELIVERIES.contains(method.methodName().stringValue() + method.methodType().stringValue());
+  }
+
+  private static boolean concerns(ClassModel model) {
+    for (var entry : model.constantPool())
+      if (entry instanceof MemberRefEntry member && concerns(key(member))) return true;
+    return false;
+  }
+
+  private static boolean concerns(String key) {
+    return CALLS.containsKey(key) || SUBMISSIONS.contains(key) || SUPERVISOR_NAME.equals(key);
+  }
+
+  private static String key(MemberRefEntry member) {
+    return member.owner().asInternalName() + "." + member.name().stringValue() + member.type().stringValue();
+  }
+
+  private static void rewrite(CodeBuilder code, CodeElement element) {
+    switch (element) {
+      case InvokeInstruction call -> rewriteCall(code, call);
+      case InvokeDynamicInstruction call -> rewriteReferences(code, call);
+      default -> code.with(element);
+    }
+  }
+
+  /** A method reference such as {@code System::nanoTime} is an argument of the call that makes its lambda. */
+  private static void rewriteReferences(CodeBuilder code, InvokeDynamicInstruction call) {
+    var arguments = call.bootstrapArgs().stream().map(Rewriter::rewriteReference).toList();
+    if (arguments.equals(call.bootstrapArgs())) {
+      code.with(call);
+    } else {
+      var name = call.name().stringValue();
+      var rewritten = arguments.toArray(ConstantDesc[]::new);
+      code.invokedynamic(DynamicCallSiteDesc.of(call.bootstrapMethod(), name, call.typeSymbol(), rewritten));
+    }
+  }
+
+  private static ConstantDesc rewriteReference(ConstantDesc argument) {
+    if (!(argument instanceof DirectMethodHandleDesc handle)) return argument;
+    var owner = handle.owner().descriptorString();
+    var target = CALLS.get(owner.substring(1, owner.length() - 1) + "." + handle.methodName() + handle.lookupDescriptor());
+    return target == null ? argument : MethodHandleDesc.ofMethod(Kind.STATIC, REDIRECT, target.name(), target.type());
+  }
+
+  private static void rewriteCall(CodeBuilder code, InvokeInstruction call) {
+    var key = key(call.method());
+    var target = CALLS.get(key);
+    if (target != null && call.opcode() != Opcode.INVOKESPECIAL) {
+      code.invokestatic(REDIRECT, target.name(), target.type());
+    } else {
+      if (SUBMISSIONS.contains(key)) {
+        // Stack: context, task. The context is copied below the task's copy and handed over, the rest is dropped.
+        code.dup2().pop().invokestatic(REDIRECT, "submitted", MethodTypeDesc.of(CD_void, CD_Object));
+      }
+      code.with(call);
+      if (SUPERVISOR_NAME.equals(key))
+        code.invokestatic(REDIRECT, "supervisorName", MethodTypeDesc.of(CD_String, CD_String));
+    }
+  }
+}

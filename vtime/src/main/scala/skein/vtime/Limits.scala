@@ -1,0 +1,22 @@
+package skein.vtime
+
+import scala.concurrent.duration.*
+
+/** How far a run may go.
+  *
+  * @param duration
+  *   of virtual time
+  * @param tasksPerInstant
+  *   tasks that may run without time advancing
+  * @param standstill
+  *   real time for which the loop's thread may wait in one task
+  */
+final case class Limits(
+    duration: FiniteDuration = 1.day,
+    tasksPerInstant: Long = 1_000_000,
+    standstill: FiniteDuration = 10.seconds
+):
+  require(
+    duration > Duration.Zero && tasksPerInstant > 0 && standstill > 1.milli,
+    s"limits must be positive: $this"
+  )

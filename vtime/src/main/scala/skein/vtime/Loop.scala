@@ -1,0 +1,147 @@
+package skein.vtime
+
+import java.util.ArrayDeque
+import java.util.SplittableRandom
+import java.util.random.RandomGenerator
+import scala.concurrent.duration.*
+import scala.concurrent.{BlockContext, CanAwait}
+import skein.vtime.agent.{Environment, Redirect}
+
+/** The run-to-completion loop: one thread, a first-in-first-out queue of tasks, and timers. Time advances to the next
+  * timer only when the queue is empty.
+  *
+  * Made, run and left on the thread that starts it. All other threads may only read [[nanoTime]].
+  */
+private final class Loop(seed: Long, limits: Limits) extends Environment with BlockContext:
+  val thread                                                 = Thread.currentThread
+  private val queue                                          = ArrayDeque[Runnable]()
+  private val timers                                         = TimerQueue()
+  private var now                                            = Loop.epochNanos
+  private var tasks, fired, instants, tasksThisTime          = 0L
+  private var supervisors                                    = 0
+  private var booting                                        = true
+  private var sampled                                        = Map.empty[String, Int]
+  @volatile private var failure: VirtualTimeException | Null = null
+
+  val random: RandomGenerator = SplittableRandom(seed)
+
+  def nanoTime(): Long        = now
+  def elapsed: FiniteDuration = (now - Loop.epochNanos).nanos
+  def counts: Counts          = Counts(tasks, fired, instants)
+
+  def post(task: Runnable): Unit =
+    requireOwnThread(s"posted ${TaskName.of(task)}")
+    queue.add(task): Unit
+
+  def schedule(delay: FiniteDuration, task: Runnable): Timer =
+    requireOwnThread(s"set a timer of $delay for ${TaskName.of(task)}")
+    val nanos = delay.toNanos.max(0)
+    timers.add(if now > Long.MaxValue - nanos then Long.MaxValue else now + nanos, task)
+
+  def cancel(timer: Timer): Unit =
+    requireOwnThread(s"cancelled a timer for ${TaskName.of(timer.task)}")
+    timers.cancel(timer)
+
+  /** Empties the timers; their tasks in the order in which they would have run. */
+  def removeTimers(): Seq[Runnable] = timers.removeAll().map(_.task)
+
+  /** Records the problem, which ends the run however the exception is treated by its catchers. */
+  def fail(problem: Problem, culprit: Throwable = Loop.Culprit()): VirtualTimeException =
+    val error = VirtualTimeException(problem, culprit)
+    if failure == null then failure = error
+    error
+
+  inline def requireOwnThread(inline action: String): Unit =
+    if Thread.currentThread ne thread then
+      throw fail(Problem.ForeignThread(Thread.currentThread.getName, action))
+
+  def supervisorName(): String =
+    supervisors += 1
+    s"StreamSupervisor-$supervisors"
+
+  def blocked(call: String): VirtualTimeException = fail(Problem.Blocked(call))
+
+  /** The global context and those made by `ExecutionContext.fromExecutor` share a prefix of their class names. */
+  def submitted(executionContext: Object): Unit =
+    if executionContext.getClass.getName.startsWith("scala.concurrent.impl.ExecutionContextImpl") then
+      throw fail(Problem.LeftTheLoop(executionContext.toString))
+
+  /** `Await` and `blocking`. Pekko awaits its own actors while a system starts: then the queue is run first. */
+  def blockOn[A](thunk: => A)(using CanAwait): A =
+    if !booting then throw blocked("Await or blocking")
+    while !queue.isEmpty do
+      runNext()
+      checkFailure()
+    thunk
+
+  /** Makes this loop the calling thread's for the duration of `body`. */
+  def governing[A](body: => A): A =
+    Redirect.setEnvironment(this)
+    val watchdog = Watchdog(this, limits.standstill)
+    try BlockContext.withBlockContext(this)(body)
+    catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
+    finally
+      watchdog.stop()
+      Redirect.setEnvironment(null)
+
+  /** How many tasks have begun; may be read, late, by other threads. */
+  def begun: Long = tasks
+
+  /** From here on, blocking is an error. */
+  def booted(): Unit = booting = false
+
+  /** Runs tasks and advances time until `done`. `actors` describes who is there, for a report. */
+  def runUntil(done: () => Boolean)(actors: => String): Unit =
+    checkFailure()
+    while !done() do
+      if queue.isEmpty then advance(actors) else runNext()
+      checkFailure()
+
+  private def checkFailure(): Unit =
+    val interrupted = Thread.interrupted()
+    val error       = failure
+    if error != null then throw error // the watchdog interrupts, too
+    if interrupted then throw InterruptedException("interrupted in virtual time")
+
+  private def runNext(): Unit =
+    val task = queue.poll()
+    tasks += 1
+    tasksThisTime += 1
+    if tasksThisTime > limits.tasksPerInstant then sample(task)
+    task.run()
+
+  private def advance(actors: => String): Unit =
+    timers.head match
+      case None        => throw VirtualTimeException(Problem.Deadlock(elapsed, actors))
+      case Some(timer) =>
+        if timer.dueNanos - Loop.epochNanos > limits.duration.toNanos then
+          throw VirtualTimeException(Problem.Overrun(limits.duration, actors))
+        if timer.dueNanos > now then
+          now = timer.dueNanos
+          instants += 1
+          tasksThisTime = 0
+          sampled = Map.empty
+        timers.removeHead()
+        fired += 1
+        queue.add(timer.task): Unit
+
+  /** Past the limit, notes what runs a while longer, and then reports it. */
+  private def sample(task: Runnable): Unit =
+    sampled = sampled.updatedWith(TaskName.of(task))(times => Some(times.getOrElse(0) + 1))
+    if tasksThisTime >= limits.tasksPerInstant + Loop.sampleSize then
+      val running = sampled.toSeq.sortBy((name, times) => (-times, name)).take(10)
+      throw VirtualTimeException(Problem.Livelock(elapsed, tasksThisTime, running))
+
+private object Loop:
+  /** 2000-01-01T00:00:00Z, so that equal seeds give equal stamps. */
+  val epochNanos: Long = 946_684_800_000_000_000L
+
+  private val sampleSize = 1000
+
+  /** Shows where the culprit stood. */
+  final class Culprit extends RuntimeException(s"on thread '${Thread.currentThread.getName}'")
+
+  /** The loop of the calling thread. */
+  def current: Loop = Redirect.environment() match
+    case loop: Loop => loop
+    case _ => throw IllegalStateException("no loop on this thread: start the system by VirtualTime.run")

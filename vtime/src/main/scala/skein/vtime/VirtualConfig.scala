@@ -1,0 +1,39 @@
+package skein.vtime
+
+import com.typesafe.config.{Config, ConfigFactory, ConfigObject, ConfigUtil}
+import scala.jdk.CollectionConverters.*
+
+/** Any configuration, changed so that its actor system lives on the loop. */
+private object VirtualConfig:
+
+  val socketsDispatcher = "skein.vtime.sockets"
+
+  /** Every dispatcher in `config` runs on the loop; one that needs threads, and sockets, are refused. */
+  def apply(config: Config): Config =
+    val overrides = dispatchers(config.root, Nil).map: (path, kind) =>
+      if kind == "PinnedDispatcher" then s"${ConfigUtil.joinPath((path :+ "type").asJava)} = $refused"
+      else s"${ConfigUtil.joinPath((path :+ "executor").asJava)} = $loopExecutor"
+    ConfigFactory.parseString((overrides :+ fixed).mkString("\n")).withFallback(config).resolve()
+
+  private val refused      = s"\"${classOf[RefusedDispatcher].getName}\""
+  private val loopExecutor = s"\"${classOf[LoopExecutorConfigurator].getName}\""
+
+  private val fixed = s"""
+    pekko.scheduler.implementation = "${classOf[LoopScheduler].getName}"
+    pekko.jvm-shutdown-hooks = off
+    pekko.jvm-exit-on-fatal-error = off
+    pekko.coordinated-shutdown { run-by-jvm-shutdown-hook = off, exit-jvm = off, log-info = off }
+    $socketsDispatcher { type = $refused }
+    pekko.io.tcp.management-dispatcher = "$socketsDispatcher"
+    pekko.io.udp.management-dispatcher = "$socketsDispatcher"
+    pekko.io.udp-connected.management-dispatcher = "$socketsDispatcher"
+    pekko.io.dns.dispatcher = "$socketsDispatcher"
+    """
+
+  /** Path and `type` of each dispatcher. */
+  private def dispatchers(at: ConfigObject, path: Seq[String]): Seq[(Seq[String], String)] =
+    val here = Option(at.get("type")).map(_.unwrapped).collect:
+      case kind @ ("Dispatcher" | "PinnedDispatcher") => (path, kind.toString)
+    here.toSeq ++ at.asScala.toSeq.sortBy(_._1).flatMap:
+      case (key, child: ConfigObject) => dispatchers(child, path :+ key)
+      case _                          => Nil
