@@ -1,0 +1,181 @@
+package skein.airsim.simulator
+
+import scala.collection.mutable.ArrayBuffer
+import skein.units.*
+import upack.{Bool, Msg}
+
+/** A call as it came: `token` names it in its answer. */
+final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
+
+/** What a call is answered: its result, or the text of its error. */
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg])
+
+/** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
+  * ends. A pure function of what it is told; equal calls at equal times give equal answers.
+  *
+  * Its own clock is the world's. While it runs, that advances with the time it is told, `speed` times as fast; while it
+  * is paused, only as far as calls continue it. A call of `simContinueForTime` is answered as soon as physics has been
+  * computed, which is far sooner than the time it advances by; AirSim takes that time on the wall clock.
+  *
+  * @param startedAt
+  *   when it starts, by the clock that all later times are told of, and the simulator's clock at that moment
+  */
+final class Simulation(val settings: SimulatorSettings, startedAt: Instant):
+  import Simulation.*
+
+  val world: World = World(settings.world, startedAt)
+
+  private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
+  private val answers    = ArrayBuffer.empty[SimulatorAnswer]
+  private val continuing = ArrayBuffer.empty[Long]
+  private val speed      = settings.speed * settings.world.clockSpeed
+  private var until      = startedAt
+  private var paused     = false
+  private var lag        = Span.Zero
+
+  // The simulator's clock showed `anchored` at `anchoredAt`.
+  private var anchoredAt = startedAt
+  private var anchored   = startedAt
+
+  /** Takes a call in at `at`, no earlier than any time told before. */
+  def receive(call: SimulatorCall, at: Instant): Unit =
+    advance(at)
+    workers.offer(call)
+    settle(at)
+
+  /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while time stands
+    * still, or else skipped, and counted by [[behind]].
+    */
+  def advance(at: Instant): Unit =
+    var handover = workers.nextHandover
+    while handover.exists(_ <= at) do
+      handover.foreach: due =>
+        runTo(due)
+        handOver(due, due)
+      handover = workers.nextHandover
+    runTo(at)
+    settle(at)
+
+  /** When to call [[advance]] at the latest. None: not before the next call. */
+  def nextWake(at: Instant): Option[Instant] =
+    if continuing.nonEmpty then Some(at)
+    else
+      val end  = if paused then None else world.nextEndAt.map(wallTime)
+      val keep = Option.unless(paused)(at + KeepUp)
+      (workers.nextHandover ++ end ++ keep).minOption.map(_.max(at))
+
+  /** The answers since this was asked before. */
+  def takeAnswers(): Seq[SimulatorAnswer] =
+    val all = answers.toSeq
+    answers.clear()
+    all
+
+  def isPaused: Boolean = paused && continuing.isEmpty
+
+  /** Simulated time that was skipped because it was too much to compute at once: the simulator's clock is that much
+    * behind.
+    */
+  def behind: Span = lag
+
+  private[simulator] def setPaused(on: Boolean): Unit =
+    paused = on
+    if !on then finishStep()
+
+  /** Runs the world as far as the time says, or as far as it was told to continue. */
+  private def runTo(at: Instant): Unit =
+    if continuing.nonEmpty then
+      world.advanceTo(until.min(world.now + longestRun))
+      if world.now >= until then finishStep()
+    else if !paused then
+      val target = anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed))
+      val able   = world.now + longestRun
+      if target <= able then world.advanceTo(target)
+      else
+        lag = lag + target.since(able)
+        world.advanceTo(able)
+        anchor(at)
+    if paused || continuing.nonEmpty then anchor(at)
+
+  private def anchor(at: Instant): Unit =
+    anchoredAt = at
+    anchored = world.now
+
+  private def finishStep(): Unit =
+    continuing.foreach(token => answers += SimulatorAnswer(token, Right(upack.Null)))
+    continuing.clear()
+
+  /** Answers what has ended and runs what has become possible, until nothing is left to do. */
+  private def settle(at: Instant): Unit =
+    var again = true
+    while again do
+      for World.Ended(vehicle, token, result) <- world.takeEnded() do
+        answers += SimulatorAnswer(token, Right(Bool(result)))
+        workers.release(vehicle, at)
+      handOver(at, at)
+      val job = workers.take()
+      job.foreach(run(_, at))
+      again = job.nonEmpty || world.hasEnded
+
+  /** Starts the moves whose lock arrives by `due`. */
+  private def handOver(due: Instant, at: Instant): Unit =
+    var next = workers.handOver(due)
+    while next.nonEmpty do
+      next.foreach((vehicle, waiting) => start(vehicle, waiting, at))
+      next = workers.handOver(due)
+
+  private def run(call: SimulatorCall, at: Instant): Unit =
+    def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
+    methods.get(call.method) match
+      case None => fail(Rpclib.unknown(call.method, call.params.size))
+      case Some(method) if method.arity != call.params.size =>
+        fail(Rpclib.arity(call.method, passed = call.params.size, wanted = method.arity))
+      case Some(method) =>
+        method(this, call.params) match
+          case Outcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
+          case Outcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
+          case Outcome.Steps(span)           => continueFor(span, call.token, at)
+          case Outcome.Flies(vehicle, order) =>
+            val flight = Waiting(call, order)
+            if workers.acquire(vehicle, flight) then start(vehicle, flight, at) else world.cancelMove(vehicle)
+
+  private def start(vehicle: Int, flight: Waiting, at: Instant): Unit =
+    flight.order(world.vehicles(vehicle)) match
+      case Right(move) => world.startMove(vehicle, flight.call.token, move)
+      case Left(text)  =>
+        val call = flight.call
+        answers += SimulatorAnswer(call.token, Left(Rpclib.threw(call.method, call.params.size, text)))
+        workers.release(vehicle, at)
+
+  /** Physics takes far longer than a lock's way to its next holder, so that the moves that wait for one have it first. */
+  private def continueFor(span: Span, token: Long, at: Instant): Unit =
+    workers.lastHandover.foreach(handOver(_, at))
+    until = if continuing.isEmpty then world.now + span else until.max(world.now + span)
+    paused = true
+    continuing += token
+    runTo(at)
+
+  /** When, told as time, the simulator's clock shows `simulated`. */
+  private def wallTime(simulated: Instant): Instant =
+    val ahead = simulated.since(anchored).toNanos
+    anchoredAt + Span.ofNanos(if speed == 1.0 then ahead else scaled(ahead, 1 / speed) + 1)
+
+  private def scaled(nanos: Long, factor: Double): Long =
+    if factor == 1.0 then nanos else (nanos * factor).toLong
+
+  private def longestRun: Span = world.step * (LongestRunSteps / world.vehicles.size).max(1).toLong
+
+object Simulation:
+
+  /** A running simulator is looked after at least this often, so that a call never finds much to compute. */
+  private val KeepUp = Span.ofMillis(50)
+
+  /** Steps of one vehicle that one call may compute: some 30 ms. */
+  private val LongestRunSteps = 200_000
+
+  final private case class Waiting(call: SimulatorCall, order: Move.Order)
+
+  private val methods: Map[String, Method] =
+    (SimulatorMethods.all ++ VehicleMethods.all ++ MoveMethods.all).map(method => method.name -> method).toMap
+
+  /** The functions it has. */
+  val methodNames: Set[String] = methods.keySet

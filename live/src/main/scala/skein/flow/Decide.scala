@@ -1,0 +1,77 @@
+package skein.flow
+
+import org.apache.pekko.NotUsed
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.Flow
+import scala.concurrent.Future
+import scala.util.{Failure, Success, Try}
+import skein.units.Span
+
+/** Runs policies. */
+object Decide:
+
+  /** Runs a policy that has a memory. `policy(memory, observation)` gives the next memory and the decision; it is a
+    * pure function, called once per observation in the order of arrival.
+    *
+    * '''Emits when''' an observation arrives. '''Backpressures when''' downstream backpressures. '''Completes when'''
+    * upstream completes. '''Cancels when''' downstream cancels.
+    */
+  def withMemory[M, O, D](start: M)(policy: (M, O) => (M, D)): Flow[O, D, NotUsed] =
+    Flow[O].statefulMap(() => start)(policy, _ => None)
+
+  /** Runs a policy that takes its time, such as a search or another process, and does not wait for it longer than
+    * `deadline`. One question is under way at a time: while a policy is late, observations are decided otherwise, at
+    * once. A late answer is not used, and the memory that comes with it is not kept.
+    *
+    * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is under way, or
+    * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted. '''Cancels
+    * when''' downstream cancels.
+    */
+  def within[M, O, D](deadline: Span, otherwise: Otherwise[M, O, D], start: M)(
+      policy: (M, O) => Future[(M, D)]
+  )(using system: ActorSystem): Flow[O, Timely[D], NotUsed] =
+    import system.dispatcher
+
+    def answer(working: Future[Any], ask: => Future[(M, D)]): (Future[Any], Future[Either[Miss, (M, D)]]) =
+      if !working.isCompleted then (working, Future.successful(Left(Miss.Busy)))
+      else
+        val asked   = Try(ask).fold(Future.failed, identity)
+        val decided = asked.transform:
+          case Success(decision) => Success(Right(decision))
+          case Failure(cause)    => Success(Left(Miss.Failed(cause)))
+        val late = after(deadline.toDuration, system.scheduler)(Future.successful(Left(Miss.Late)))
+        (asked, Future.firstCompletedOf(Seq(decided, late)))
+
+    Flow[O]
+      .scanAsync(Turn[M, D](start, None, Future.unit, None)): (turn, observation) =>
+        val (working, answered) = answer(turn.working, policy(turn.memory, observation))
+        answered.map(turn.next(working, observation, _, otherwise))
+      .collect(Function.unlift(_.result))
+
+  /** @param working
+    *   completed when the policy may be asked again
+    * @param result
+    *   of this turn; absent before the first
+    */
+  private final case class Turn[M, D](
+      memory: M,
+      last: Option[D],
+      working: Future[Any],
+      result: Option[Timely[D]]
+  ):
+    def next[O](
+        working: Future[Any],
+        observation: O,
+        answer: Either[Miss, (M, D)],
+        otherwise: Otherwise[M, O, D]
+    ): Turn[M, D] = answer match
+      case Right((memory, decision)) => Turn(memory, Some(decision), working, Some(Timely.Decided(decision)))
+      case Left(miss)                =>
+        val (kept, instead) = otherwise match
+          case Otherwise.Hold()      => (memory, None)
+          case Otherwise.Repeat()    => (memory, last)
+          case Otherwise.Ask(policy) =>
+            val (memory, decision) = policy(this.memory, observation)
+            (memory, Some(decision))
+        Turn(kept, instead.orElse(last), working, Some(Timely.Missed(miss, instead)))

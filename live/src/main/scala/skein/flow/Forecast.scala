@@ -1,0 +1,75 @@
+package skein.flow
+
+import skein.signal.{ClockAlignment, Kinematics, OneWayDelays, Stamped}
+import skein.units.*
+import skein.vehicle.VehicleModel
+
+/** What was heard of vehicles and what was sent to them, ready to be carried forward. Immutable and pure: evidence
+  * goes in as it comes, in any order; estimates come out for any moment.
+  *
+  * @param models
+  *   one per vehicle: the vehicle's own where its commands are known, else [[skein.vehicle.ConstantVelocity]] or
+  *   [[skein.vehicle.ConstantTurn]]
+  * @param delays
+  *   absent before the first reading
+  */
+final case class Forecast private (
+    models: Vector[VehicleModel[?]],
+    tracks: Vector[Option[Track[?]]],
+    alignment: Option[ClockAlignment],
+    delays: Option[OneWayDelays]
+):
+  def withEvidence(evidence: Evidence): Forecast = evidence match
+    case Evidence.Seen(vehicle, reading)                  => seen(vehicle, reading)
+    case Evidence.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
+    case Evidence.Replaced(vehicle, sequence, answeredAt) =>
+      updated(vehicle)(_.replaced(sequence, answeredAt))
+    case Evidence.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
+
+  /** Where the vehicles will be when a command acts that is sent now, under the commands that are on their way; absent
+    * until every vehicle was seen. A vehicle of which a newer reading is held than that moment is where it was read.
+    *
+    * @param now
+    *   on the controller's clock
+    */
+  def whenActing(now: Instant): Option[Vector[Estimate]] =
+    for delays <- delays if tracks.forall(_.isDefined)
+    yield tracks.flatten.map(_.estimateAt(delays.expectedArrival(now), delays, now))
+
+  private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
+    val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))
+    // While the simulator's clock stood still, delays to it meant nothing.
+    val goesOn  = alignment.exists(before => before.restarts == aligned.restarts && !before.standsStill)
+    val current = delays.filter(_ => goesOn).fold(OneWayDelays.of(reading))(_.updated(reading))
+    val track   = tracks(vehicle).fold(firstSeen(vehicle, reading))(_.seen(reading, current))
+    copy(
+      tracks = tracks.updated(vehicle, Some(track)),
+      alignment = Some(aligned),
+      delays = Some(current)
+    )
+
+  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): Track[?] = models(vehicle) match
+    case model: VehicleModel[s] => Track(model, reading)
+
+  private def updated(vehicle: Int)(change: Track[?] => Track[?]): Forecast =
+    copy(tracks = tracks.updated(vehicle, tracks(vehicle).map(change)))
+
+object Forecast:
+  def apply(models: Vector[VehicleModel[?]]): Forecast =
+    new Forecast(models, models.map(_ => None), None, None)
+
+/** What a forecast is made from; vehicles are counted from 0. */
+enum Evidence:
+  def vehicle: Int
+
+  case Seen(vehicle: Int, reading: Stamped[Kinematics])
+
+  case Sent(vehicle: Int, command: Commanded)
+
+  /** The vehicle answered that a command was replaced, as AirSim does when the next one arrives: a receipt for that
+    * next one.
+    */
+  case Replaced(vehicle: Int, sequence: Long, answeredAt: Instant)
+
+  /** The call of a command failed. */
+  case Failed(vehicle: Int, sequence: Long)

@@ -1,0 +1,16 @@
+package skein.flow
+
+import org.apache.pekko.NotUsed
+import org.apache.pekko.stream.scaladsl.Flow
+
+/** Shows what flows by. */
+object Tap:
+
+  /** Gives every element to `take`, which must not block, and passes it on. Unlike `wireTap` it never drops.
+    *
+    * '''Emits when''' an element arrives. '''Backpressures when''' downstream backpressures. '''Completes when'''
+    * upstream completes. '''Cancels when''' downstream cancels.
+    */
+  def apply[A](take: A => Unit): Flow[A, A, NotUsed] = Flow[A].map: element =>
+    take(element)
+    element

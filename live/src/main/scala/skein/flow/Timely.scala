@@ -1,0 +1,31 @@
+package skein.flow
+
+/** What to do when a policy has not decided in time. */
+enum Otherwise[M, -O, +D]:
+  /** Command nothing: the vehicle goes on under its last command. */
+  case Hold[M]() extends Otherwise[M, Any, Nothing]
+
+  /** Decide as the last time; before the first decision, as [[Hold]]. */
+  case Repeat[M]() extends Otherwise[M, Any, Nothing]
+
+  /** Ask another policy, which answers at once and shares the memory. */
+  case Ask[M, O, D](policy: (M, O) => (M, D)) extends Otherwise[M, O, D]
+
+/** How a decision came about. */
+enum Timely[+D]:
+  /** The policy decided in time. */
+  case Decided(decision: D)
+
+  /** The policy did not, for this reason; so this is decided instead, or nothing. */
+  case Missed(reason: Miss, instead: Option[D])
+
+/** Why a policy gave no decision. */
+enum Miss:
+  /** It did not answer within the deadline. */
+  case Late
+
+  /** It was not asked, for it still works on an earlier observation. */
+  case Busy
+
+  /** It failed. */
+  case Failed(cause: Throwable)

@@ -1,0 +1,173 @@
+package skein.flow
+
+import skein.signal.{Kinematics, OneWayDelays, Stamped}
+import skein.units.*
+import skein.vehicle.{Setpoint, VehicleModel}
+
+/** One command sent to a vehicle.
+  *
+  * @param answeredAt
+  *   when it was known to have arrived, on the controller's clock
+  */
+final case class Commanded(
+    sequence: Long,
+    setpoint: Setpoint,
+    sentAt: Instant,
+    answeredAt: Option[Instant] = None
+)
+
+/** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except where
+  * they come from the simulator: `validAt` and everything named after it.
+  *
+  * @param state
+  *   the model's, at the newest reading
+  * @param sights
+  *   the newest readings, the newest last
+  * @param before
+  *   in effect before the first of `commands`
+  * @param commands
+  *   in the order of their sending: the one in effect at the newest reading, and all later ones
+  */
+final case class Track[S] private (
+    model: VehicleModel[S],
+    state: S,
+    sights: Vector[Stamped[Kinematics]],
+    before: Setpoint,
+    commands: Vector[Commanded]
+):
+  def newest: Stamped[Kinematics] = sights.last
+
+  /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading that is not
+    * newer than the newest changes nothing.
+    */
+  def seen(reading: Stamped[Kinematics], delays: OneWayDelays): Track[S] =
+    if reading.validAt <= newest.validAt then this
+    else
+      val flown          = advancedTo(reading.validAt, delays, reading.receivedAt)
+      val (past, needed) = commands.splitAt(inEffect(reading.validAt, delays, reading.receivedAt))
+      copy(
+        state = model.corrected(flown, reading.value, reading.validAt.since(newest.validAt)),
+        sights = (sights :+ reading).takeRight(Track.SightLimit),
+        before = past.lastOption.fold(before)(_.setpoint),
+        commands = needed
+      )
+
+  def sent(command: Commanded): Track[S] =
+    copy(commands = (commands :+ command).takeRight(Track.CommandLimit))
+
+  /** The vehicle answered that a command was replaced: so the one after it has arrived. */
+  def replaced(sequence: Long, answeredAt: Instant): Track[S] =
+    commands.indexWhere(_.sequence > sequence) match
+      case -1        => this
+      case successor => copy(commands =
+          commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt)))
+        )
+
+  /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is taken for
+    * lost.
+    */
+  def failed(sequence: Long): Track[S] =
+    copy(commands =
+      commands.take(1) ++ commands.drop(1).filterNot(command =>
+        command.sequence == sequence && command.answeredAt.isEmpty
+      )
+    )
+
+  /** The estimate at an instant on the simulator's clock; not before the newest reading. */
+  def estimateAt(validAt: Instant, delays: OneWayDelays, now: Instant): Estimate =
+    val at = validAt.max(newest.validAt)
+    Estimate(model.kinematics(advancedTo(at, delays, now)), at, newest.validAt)
+
+  /** Where the vehicle was at an instant on the simulator's clock, by the cubic through the two readings around it;
+    * absent where there are none, or none close enough together.
+    */
+  def positionNedAt(validAt: Instant): Option[Vector3] =
+    sights
+      .zip(sights.drop(1))
+      .find((before, after) =>
+        before.validAt <= validAt && validAt <= after.validAt &&
+          after.validAt.since(before.validAt) <= Track.MaxGap
+      )
+      .map(Track.between(_, _, validAt))
+
+  private def advancedTo(validAt: Instant, delays: OneWayDelays, now: Instant): S =
+    val (last, setpoint, at) = effects(delays, now)
+      .takeWhile((_, actsAt) => actsAt < validAt)
+      .foldLeft((state, before, newest.validAt)):
+        case ((state, setpoint, at), (command, actsAt)) =>
+          val until = actsAt.max(at)
+          (model.advanced(state, setpoint, until.since(at)), command.setpoint, until)
+    model.advanced(last, setpoint, validAt.since(at))
+
+  /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one sent earlier.
+    */
+  private def effects(delays: OneWayDelays, now: Instant): Vector[(Commanded, Instant)] =
+    val acting = commands.filterNot(isPresumedLost(_, delays, now))
+    val times  = acting
+      .map(command =>
+        command.answeredAt.fold(delays.expectedArrival(command.sentAt))(delays.arrivalGiven(
+          command.sentAt,
+          _
+        ))
+      )
+    if acting.isEmpty then Vector.empty
+    else acting.zip(times.drop(1).scanLeft(times.head)(_.max(_)))
+
+  /** A command is taken for lost when its arrival should have been heard of long ago. The oldest held one never is: the
+    * vehicle flies under something.
+    */
+  private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
+    command.answeredAt.isEmpty && command != commands.head &&
+      now.since(command.sentAt) > delays.roundTrip * 2 + Track.Grace
+
+  /** Index of the command in effect; 0 if there is none. */
+  private def inEffect(validAt: Instant, delays: OneWayDelays, now: Instant): Int =
+    effects(delays, now).takeWhile((_, actsAt) => actsAt <= validAt).lastOption.fold(0)((command, _) =>
+      commands.indexOf(command)
+    )
+
+object Track:
+  /** Readings remembered, to hold predictions against. */
+  val SightLimit = 8
+
+  /** Commands remembered: at most these can be on their way. */
+  val CommandLimit = 64
+
+  /** On top of two round trips, before a command is presumed lost. */
+  val Grace: Span = Span.ofMillis(500)
+
+  /** Between two readings, for a position between them to be interpolated: the cubic's error grows with its fourth
+    * power, to about 5 mm here.
+    */
+  val MaxGap: Span = Span.ofMillis(300)
+
+  /** The track of a vehicle seen for the first time; until it is commanded it holds its place. */
+  def apply[S](model: VehicleModel[S], first: Stamped[Kinematics]): Track[S] =
+    new Track(
+      model,
+      model.start(first.value),
+      Vector(first),
+      Setpoint.hold(first.value.positionNed),
+      Vector.empty
+    )
+
+  /** Cubic Hermite interpolation of positions and velocities. */
+  private def between(before: Stamped[Kinematics], after: Stamped[Kinematics], validAt: Instant): Vector3 =
+    val length = after.validAt.since(before.validAt).toSeconds
+    val u      = validAt.since(before.validAt).toSeconds / length
+    before.value.positionNed * ((1 + 2 * u) * (1 - u) * (1 - u)) +
+      before.value.velocityNed * (u * (1 - u) * (1 - u) * length) +
+      after.value.positionNed * (u * u * (3 - 2 * u)) +
+      after.value.velocityNed * (u * u * (u - 1) * length)
+
+/** Where a vehicle is taken to be.
+  *
+  * @param predictedFor
+  *   the simulator's time at which this is expected to be true
+  * @param readAt
+  *   the simulator's time of the reading that it was carried forward from
+  */
+final case class Estimate(kinematics: Kinematics, predictedFor: Instant, readAt: Instant):
+
+  /** How far the reading was carried. */
+  def age: Span = predictedFor.since(readAt)

@@ -1,0 +1,82 @@
+package skein.link
+
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAdder}
+import org.apache.pekko.NotUsed
+import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
+import org.apache.pekko.util.ByteString
+import skein.signal.{LatencyProfile, LatencySampler, SplitMix64}
+import skein.units.*
+
+/** A link between clients and a server that behaves as a profile says, whatever bytes cross it. Its faults'
+  * times count from `start`.
+  *
+  * The same seed, clock and order of connections give the same delays and faults.
+  */
+final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, start: Instant):
+
+  /** Starts now. */
+  def this(profile: LinkProfile, seed: Long, clock: Clock) = this(profile, seed, clock, clock.now())
+
+  private val stateSeed   = SplitMix64.seedOf(seed, 0)
+  private val faultSeed   = SplitMix64.seedOf(seed, 1)
+  private val attemptSeed = SplitMix64.seedOf(seed, 2)
+  private val lineSeed    = SplitMix64.seedOf(seed, 3)
+  private val cutSeed     = SplitMix64.seedOf(seed, 4)
+
+  private val attempts, connections        = AtomicLong()
+  private val disconnects                  = LongAdder()
+  private val bytesToServer, bytesToClient = LongAdder()
+  private val bytesLost, stalls            = LongAdder()
+
+  def counts: LinkCounts = LinkCounts(
+    connections.get,
+    bytesToServer.sum,
+    bytesToClient.sum,
+    bytesLost.sum,
+    stalls.sum,
+    disconnects.sum
+  )
+
+  /** A new connection over this link; its first side is the client's, its second the server's. To be materialised
+    * once.
+    *
+    * @param broken
+    *   the error that both sides get when the link breaks the connection
+    */
+  def connection(broken: TransportError): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
+    val index        = 2 * connections.getAndIncrement()
+    val whole        = AtomicBoolean(true)
+    def countBreak() = if whole.getAndSet(false) then disconnects.increment()
+    def line(latency: LatencyProfile, index: Long, delivered: LongAdder) =
+      val counters = LineCounters(delivered, bytesLost, () => countBreak())
+      val open     = delivery(latency, SplitMix64.seedOf(lineSeed, index))
+      val delayed  =
+        Flow.fromGraph(DelayLine(open, () => sinceStart, profile.maxBytesInFlight, broken, counters))
+      if profile.cutsSegments then delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index))) else delayed
+    BidiFlow.fromFlows(
+      line(profile.toServer, index, bytesToServer),
+      line(profile.toClient, index + 1, bytesToClient)
+    )
+
+  /** How long it takes until a client that connects now is heard of at the server's side, and from then until the
+    * client has the answer. None if one of the two is lost.
+    */
+  def handshake(): Option[(toServer: Span, toClient: Span)] =
+    val index     = 2 * attempts.getAndIncrement()
+    val now       = sinceStart
+    val asking    = delivery(profile.toServer, SplitMix64.seedOf(attemptSeed, index))(now)
+    val answering = delivery(profile.toClient, SplitMix64.seedOf(attemptSeed, index + 1))(now)
+    for
+      heard    <- asking.due(now, 0)
+      answered <- answering.due(heard, 0)
+    yield (toServer = heard - now, toClient = answered - heard)
+
+  private def sinceStart: Span = clock.now().since(start)
+
+  private def delivery(latency: LatencyProfile, seed: Long)(opened: Span): Delivery = Delivery(
+    LatencySampler(latency, stateSeed, seed),
+    profile.faults.stalls(faultSeed),
+    profile.faults.breakOf(opened, faultSeed),
+    profile.bytesPerSecond,
+    stalls
+  )

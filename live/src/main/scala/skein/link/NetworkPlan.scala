@@ -1,0 +1,40 @@
+package skein.link
+
+/** Which links a fault concerns. */
+enum Where:
+  case Everywhere
+
+  /** All links to and from a host. With [[Fault.Silence]]: the host is lost. */
+  case Host(name: String)
+
+  case Link(client: String, server: String)
+
+final case class NetworkFault(where: Where, timed: TimedFault)
+
+/** What lies between the hosts of a [[MemoryNetwork]].
+  *
+  * @param link
+  *   between any two hosts for which `links` says nothing
+  * @param links
+  *   by client's and server's host
+  * @param faults
+  *   besides those that the links' own profiles name
+  */
+final case class NetworkPlan(
+    link: LinkProfile = LinkProfile.none,
+    links: Map[(String, String), LinkProfile] = Map.empty,
+    faults: Seq[NetworkFault] = Nil
+):
+
+  /** The link from a client's host to a server's, with all faults that concern it. A host reaches itself without delay
+    * or fault.
+    */
+  private[link] def between(client: String, server: String): LinkProfile =
+    if client == server then LinkProfile.none
+    else
+      val own       = links.getOrElse((client, server), link)
+      val concerned = faults.collect:
+        case NetworkFault(Where.Everywhere, timed)                                     => timed
+        case NetworkFault(Where.Host(name), timed) if name == client || name == server => timed
+        case NetworkFault(Where.Link(`client`, `server`), timed)                       => timed
+      own.copy(faults = own.faults.copy(schedule = own.faults.schedule ++ concerned))

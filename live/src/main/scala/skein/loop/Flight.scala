@@ -1,0 +1,99 @@
+package skein.loop
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
+import org.apache.pekko.stream.scaladsl.RunnableGraph
+import scala.concurrent.{Future, Promise}
+import scala.util.{Failure, Success}
+import skein.link.Clock
+import skein.record.{EventKind, Recorder}
+import skein.units.*
+
+/** The control loops, by name. */
+enum LoopKind(val label: String):
+  case Paused     extends LoopKind("paused")
+  case Sequential extends LoopKind("sequential")
+  case Futures    extends LoopKind("futures")
+  case Stream     extends LoopKind("stream")
+  case Predictive extends LoopKind("predictive")
+
+object LoopKind:
+  def parse(label: String): Either[String, LoopKind] =
+    values
+      .find(_.label == label)
+      .toRight(s"no loop '$label': expected one of ${values.map(_.label).mkString(", ")}")
+
+/** How a flight ended. */
+enum Outcome:
+  /** It flew its whole time. */
+  case Completed
+
+  /** Somebody stopped it. */
+  case Stopped
+
+  /** It could not go on; the vehicles were told to hover. */
+  case Failed(reason: String)
+
+/** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when `outcome`
+  * completes.
+  */
+final class Flight private (stopping: Promise[Outcome], val outcome: Future[Outcome]):
+
+  /** Ends the flight now. */
+  def stop(): Unit =
+    val _ = stopping.trySuccess(Outcome.Stopped)
+
+object Flight:
+
+  /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the flight. */
+  def start(
+      kind: LoopKind,
+      team: Team,
+      stepper: Stepper,
+      duration: Span,
+      clock: Clock,
+      recorder: Recorder
+  )(using
+      system: ActorSystem
+  ): Flight =
+    import system.dispatcher
+    val switch   = KillSwitches.shared("flight")
+    val stopping = Promise[Outcome]()
+    val graph    = loop(kind, team, stepper, duration, clock, switch, () => stopping.isCompleted)
+    val running  = graph.run()
+
+    recorder.failure.foreach(error => stopping.trySuccess(Outcome.Failed(error.message)))
+    val timer = Option.when(kind != LoopKind.Paused):
+      system.scheduler.scheduleOnce(duration.toDuration)(stopping.trySuccess(Outcome.Completed): Unit)
+    stopping.future.foreach(_ => switch.shutdown())
+
+    val outcome = running.transformWith: ended =>
+      timer.foreach(_.cancel())
+      ended match
+        case Success(_) =>
+          stopping.trySuccess(Outcome.Completed)
+          stopping.future
+        case Failure(error) =>
+          stopping.trySuccess(Outcome.Failed(error.getMessage))
+          team.note(EventKind.Aborted, None, error.getMessage)
+          team.hoverAll().transformWith(_ => stopping.future)
+    Flight(stopping, outcome)
+
+  private def loop(
+      kind: LoopKind,
+      team: Team,
+      stepper: Stepper,
+      duration: Span,
+      clock: Clock,
+      switch: SharedKillSwitch,
+      stopped: () => Boolean
+  )(using system: ActorSystem): RunnableGraph[Future[Done]] =
+    import system.dispatcher
+    kind match
+      case LoopKind.Paused =>
+        PausedLoop(team, stepper, duration.toNanos / team.settings.period.toNanos, clock, stopped)
+      case LoopKind.Sequential => SequentialLoop(team, switch)
+      case LoopKind.Futures    => FuturesLoop(team, switch)
+      case LoopKind.Stream     => StreamLoop(team, switch)
+      case LoopKind.Predictive => PredictiveLoop(team, switch)

@@ -1,0 +1,129 @@
+package skein.loop
+
+import skein.policy.{Policy, Role, Scenario}
+import skein.flow.{Estimate, Evidence, Forecast}
+import skein.record.{Decision, Observations, Predicted, Reading, TrueAge}
+import skein.signal.{ClockAlignment, Kinematics}
+import skein.units.*
+
+/** A command that was sent to a vehicle, as the other vehicles' policies see it. */
+final case class Move(vehicle: Int, decision: Long, headingRad: Double, sentAt: Instant)
+
+/** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
+  * two clocks relate.
+  *
+  * @param forecast
+  *   present where the loop predicts
+  * @param estimates
+  *   of every vehicle when a command decided upon this picture will act; absent where none are made
+  */
+final case class Picture(
+    readings: Vector[Option[Reading]],
+    moves: Vector[Option[Move]],
+    alignment: Option[ClockAlignment],
+    forecast: Option[Forecast] = None,
+    estimates: Option[Vector[Estimate]] = None
+):
+  def withReading(vehicle: Int, reading: Reading): Picture =
+    copy(
+      readings = readings.updated(vehicle, Some(reading)),
+      alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
+    ).withEvidence(Evidence.Seen(vehicle, reading.state))
+
+  def withMove(move: Move): Picture = copy(moves = moves.updated(move.vehicle, Some(move)))
+
+  def withEvidence(evidence: Evidence): Picture = copy(forecast = forecast.map(_.withEvidence(evidence)))
+
+  /** Where a vehicle is taken to be: as estimated, or else as read. */
+  def kinematics(vehicle: Int): Kinematics =
+    estimates.fold(readings(vehicle).get.state.value)(_(vehicle).kinematics)
+
+  /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
+  def isNews(vehicle: Int, reading: Reading): Boolean =
+    readings(vehicle).forall(held => reading.state.isNewerThan(held.state))
+
+  /** Whether every vehicle was seen at least once; only then can be decided. */
+  def isComplete: Boolean = readings.forall(_.isDefined)
+
+object Picture:
+  def empty(vehicles: Int): Picture = Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None)
+
+/** What one vehicle's decisions depend on apart from the picture. */
+final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long)
+
+/** Decisions for one vehicle of a scenario: the pure core of every loop.
+  *
+  * @param policy
+  *   the agent's own, or one in its place
+  */
+final class Decider(scenario: Scenario, self: Int, policy: Policy):
+  private val agent = scenario.agents(self)
+
+  def this(scenario: Scenario, self: Int) = this(scenario, self, scenario.agents(self).policy)
+
+  val start: Memory = Memory(agent.startHeading.value, None, 0)
+
+  /** Decides from a complete picture.
+    *
+    * @param now
+    *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
+    */
+  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
+    val other           = scenario.opponentOf(self, picture.kinematics(_).positionNed)
+    val own             = picture.readings(self).get
+    val opponent        = picture.readings(other).get
+    val opponentHeading = picture.moves(other).fold(scenario.agents(other).startHeading.value)(_.headingRad)
+    val elapsed         = memory.decidedAt.fold(Span.Zero)(now.since)
+    val (here, there)   = (picture.kinematics(self), picture.kinematics(other))
+    val toOpponent      = there.positionNed - here.positionNed
+    val closing         = there.velocityNed - here.velocityNed
+    val heading         = policy.heading(
+      toOpponent.x,
+      toOpponent.y,
+      closing.x,
+      closing.y,
+      memory.headingRad,
+      opponentHeading,
+      elapsed.toSeconds
+    )
+    val (toEvader, pursuerHeading) = agent.role match
+      case Role.Pursuer => (toOpponent, memory.headingRad)
+      case Role.Evader  => (toOpponent * -1, opponentHeading)
+    val (cos, sin) = (math.cos(pursuerHeading), math.sin(pursuerHeading))
+    val decision   = Decision(
+      sequence = memory.decisions,
+      vehicle = agent.name,
+      decidedAt = now,
+      own = own,
+      opponent = opponent,
+      relativeX = Metres(toEvader.x * cos + toEvader.y * sin),
+      relativeY = Metres(-toEvader.x * sin + toEvader.y * cos),
+      headingBefore = Radians(memory.headingRad),
+      opponentHeading = Radians(opponentHeading),
+      heading = Radians(heading),
+      elapsed = elapsed,
+      observations = Observations(
+        ownAge = own.state.ageByArrival(now),
+        opponentAge = opponent.state.ageByArrival(now),
+        sinceOwnMove = picture.moves(self).map(move => now.since(move.sentAt)),
+        sinceOpponentMove = picture.moves(other).map(move => now.since(move.sentAt))
+      ),
+      trueAge = picture.alignment.map(alignment =>
+        TrueAge(
+          own = now.since(alignment.toController(own.state.validAt)),
+          opponent = now.since(alignment.toController(opponent.state.validAt)),
+          clockOffset = alignment.offset,
+          uncertainty = alignment.uncertainty
+        )
+      ),
+      predicted = picture.estimates.map(estimates =>
+        Predicted(
+          estimates(self).predictedFor,
+          here.positionNed,
+          here.velocityNed,
+          there.positionNed,
+          there.velocityNed
+        )
+      )
+    )
+    (Memory(heading, Some(now), memory.decisions + 1), decision)

@@ -1,0 +1,152 @@
+package skein.loop
+
+import skein.policy.Scenario
+import skein.record.*
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.units.*
+
+/** Decides again what a recorded flight decided, live or virtual, with the pure core of every loop: no stream, no
+  * clock.
+  *
+  * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and moves the
+  * controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its predictions and whom
+  * they are of. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
+  * against and the heading chosen. The memory from decision to decision is the replay's own.
+  */
+final class Replay(scenario: Scenario, recording: Recording):
+  import Replay.*
+
+  private val paused   = recording.flight.loop == LoopKind.Paused.label
+  private val indexOf  = scenario.agents.map(_.name).zipWithIndex.toMap
+  private val readings =
+    if paused then recording.readings.map(PausedLoop.timeless) else recording.readings
+  private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
+  private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
+  private val moves      = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
+
+  /** The first decision that comes out differently. */
+  def firstDifference: Option[Difference] =
+    val start = scenario.agents.indices.map(Decider(scenario, _).start).toVector
+    recording.decisions.iterator
+      .scanLeft((start, Option.empty[Difference])): (state, recorded) =>
+        val (memories, _) = state
+        again(memories, recorded) match
+          case Left(difference)          => (memories, Some(difference))
+          case Right((memory, decision)) =>
+            (memories.updated(indexOf(recorded.vehicle), memory), Difference.between(recorded, decision))
+      .collectFirst { case (_, Some(difference)) => difference }
+
+  private def again(memories: Vector[Memory], recorded: Decision): Either[Difference, (Memory, Decision)] =
+    for
+      self     <- vehicle(recorded, "vehicle", recorded.vehicle)
+      other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
+      own      <- reading(recorded, "ownSequence", recorded.own)
+      opponent <- reading(recorded, "opponentSequence", recorded.opponent)
+      ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
+      itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
+    yield
+      val empty = Picture.empty(scenario.agents.size)
+      val known = empty.copy(
+        readings = empty.readings.updated(self, Some(own)).updated(other, Some(opponent)),
+        moves = empty.moves.updated(self, ownMove).updated(other, itsMove),
+        alignment = recorded.trueAge.map(alignment)
+      )
+      val decider = Decider(scenario, self)
+      val decided = pictures(known, recorded).map(decider.decide(memories(self), _, recorded.decidedAt))
+      decided.find(_._2.opponent.vehicle == recorded.opponent.vehicle).getOrElse(decided.head)
+
+  /** The picture with what was known of the vehicles that the decision was not made from. It was drawn at some moment
+    * after the readings used had come, so there is one for each reading that came since.
+    */
+  private def pictures(known: Picture, recorded: Decision): Vector[Picture] =
+    val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
+    val others   = scenario.agents.indices.filter(known.readings(_).isEmpty).toVector
+    val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))
+    for
+      moment <- (earliest +: moments).distinct
+      picture = others.foldLeft(known): (picture, other) =>
+        picture.copy(readings = picture.readings.updated(other, heard(other).newestAt(moment)))
+      if picture.isComplete
+    yield picture.copy(estimates = recorded.predicted.map(estimates(picture, recorded, _)))
+
+  private def estimates(picture: Picture, recorded: Decision, predicted: Predicted) =
+    picture.readings.flatten.map: reading =>
+      val read      = reading.state.value
+      val estimated =
+        if reading.vehicle == recorded.vehicle then
+          moved(read, predicted.ownPositionNed, predicted.ownVelocityNed)
+        else if reading.vehicle == recorded.opponent.vehicle then
+          moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed)
+        else moved(read, OutOfSight, read.velocityNed)
+      skein.flow.Estimate(estimated, predicted.actsAt, reading.state.validAt)
+
+  private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
+    read.copy(positionNed = positionNed, velocityNed = velocityNed)
+
+  /** Bounds whose middle and half width are the estimate recorded. */
+  private def alignment(age: TrueAge): ClockAlignment =
+    val (least, most) = (age.clockOffset - age.uncertainty, age.clockOffset + age.uncertainty)
+    ClockAlignment.of(Stamped((), Instant.Epoch, Instant.Epoch + least, Instant.Epoch + most))
+
+  private def vehicle(of: Decision, column: String, name: String): Either[Difference, Int] =
+    indexOf.get(name).toRight(Difference(where(of), column, name, "no vehicle of the scenario"))
+
+  private def reading(of: Decision, column: String, used: Reading): Either[Difference, Reading] =
+    bySequence.get((used.vehicle, used.sequence)) match
+      case Some(read) if read == used => Right(read)
+      case Some(read)                 =>
+        Left(Difference(where(of), column, used.toString, s"another in the table of readings: $read"))
+      case None =>
+        Left(Difference(where(of), column, used.sequence.toString, "missing in the table of readings"))
+
+  private def move(
+      of: Decision,
+      column: String,
+      vehicle: Int,
+      since: Option[Span]
+  ): Either[Difference, Option[Move]] =
+    since match
+      case None       => Right(None)
+      case Some(span) =>
+        moves
+          .get((vehicle, (of.decidedAt - span).toNanos))
+          .map(Some(_))
+          .toRight(Difference(where(of), column, span.toMillis.toString, "no command was sent then"))
+
+  /** While the simulator stands still, moves are sent at the moment of their decision, on its clock. */
+  private def sentMoves: Vector[Move] =
+    val decided = recording.decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+    for
+      command  <- recording.commands
+      sequence <- command.decision
+      decision <- decided.get((command.vehicle, sequence))
+      vehicle  <- indexOf.get(command.vehicle)
+    yield Move(
+      vehicle,
+      sequence,
+      decision.heading.value,
+      if paused then decision.decidedAt else command.sentAt
+    )
+
+  private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"
+
+object Replay:
+  /** What was predicted of vehicles that a decision was not made against is not recorded. */
+  private val OutOfSight = Vector3(Double.PositiveInfinity, 0, 0)
+
+  /** What was heard of one vehicle, ready to be asked for any moment. */
+  private final class Heard(readings: Vector[Reading]):
+    private val byArrival = readings.sortBy(_.state.receivedAt)
+    private val arrivals  = byArrival.map(_.state.receivedAt)
+    private val newest    = byArrival.drop(1).scanLeft(byArrival.headOption): (newest, reading) =>
+      newest.filter(_.state.validAt >= reading.state.validAt).orElse(Some(reading))
+
+    /** The newest reading that had come by then. */
+    def newestAt(moment: Instant): Option[Reading] = newest.take(arrivedBy(moment)).lastOption.flatten
+
+    /** When readings came, after one moment and up to another. */
+    def between(after: Instant, until: Instant): Vector[Instant] =
+      arrivals.slice(arrivedBy(after), arrivedBy(until))
+
+    private def arrivedBy(moment: Instant): Int =
+      arrivals.search(moment + Span.ofNanos(1)).insertionPoint

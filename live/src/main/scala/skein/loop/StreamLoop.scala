@@ -1,0 +1,63 @@
+package skein.loop
+
+import org.apache.pekko.Done
+import org.apache.pekko.stream.*
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+import skein.flow.*
+import skein.record.{Decision, EventKind, Reading}
+
+/** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the latest
+  * are joined, each vehicle decides at its own pace on the newest picture and is commanded; what was commanded is fed
+  * back. Nothing waits for anything else.
+  */
+object StreamLoop:
+
+  def apply(team: Team, stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
+    RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => done =>
+      import GraphDSL.Implicits.*
+      val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size))
+      val percepts = builder.add(MergePreferred[Percept](1, eagerComplete = true))
+      val everyone = builder.add(Broadcast[Sight](team.vehicles.size))
+      val moves    = builder.add(Merge[Move](team.vehicles.size))
+      val fed      = builder.add(Broadcast[Move](2))
+
+      for vehicle <- team.vehicles do
+        locations(team, vehicle, stop) ~> readings.in(vehicle)
+        everyone ~> pacedDecisions(team, vehicle) ~> team.command(vehicle) ~> moves.in(vehicle)
+
+      readings ~> joinLatest(team) ~> percepts.in(0)
+      percepts ~> team.picture ~> everyone
+      moves ~> fed ~> team.feedBack ~> percepts.preferred
+      fed ~> done
+      ClosedShape
+    })
+
+  private[loop] def locations(team: Team, vehicle: Int, stop: SharedKillSwitch): Source[(Int, Reading), ?] =
+    val settings = team.settings
+    val offset   = settings.spread * vehicle.toLong / team.vehicles.size.toLong
+    Sense
+      .every(settings.period, offset, settings.window, settings.early)(() => team.read(vehicle))(
+        onSkip = _.foreach(reading =>
+          team.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
+        ),
+        onMissed = ticks => team.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
+      )
+      .via(stop.flow)
+      .map((vehicle, _))
+
+  private[loop] def joinLatest(team: Team): Flow[(Int, Reading), Percept, ?] =
+    val everyone = team.vehicles.toSet
+    Flow
+      .fromGraph(
+        JoinLatest[Int, Reading](everyone, team.settings.patience)(
+          isNewer = (arrived, held) => arrived.state.isNewerThan(held.state),
+          onStale = (vehicle, reading) =>
+            team.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+        )
+      )
+      .map(Percept.Seen(_, everyone))
+
+  private def pacedDecisions(team: Team, vehicle: Int): Flow[Sight, Decision, ?] =
+    if team.settings.decideThenPace then team.decide(vehicle).via(team.pace(vehicle))
+    else Flow[Sight].via(team.pace(vehicle)).via(team.decide(vehicle))

@@ -1,0 +1,293 @@
+package skein.loop
+
+import org.apache.pekko.NotUsed
+import org.apache.pekko.actor.{ActorSystem, Cancellable}
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success, Try}
+import skein.flow.*
+import skein.link.Clock
+import skein.policy.{Policy, Scenario}
+import skein.record.*
+import skein.rpc.RpcError
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
+final class Team(
+    val scenario: Scenario,
+    crafts: Vector[Craft],
+    clock: Clock,
+    recorder: Recorder,
+    val settings: LoopSettings
+)(using ExecutionContext):
+  require(crafts.size == scenario.agents.size, "one craft per agent")
+
+  val vehicles: Range            = crafts.indices
+  private val deciders           = vehicles.map(Decider(scenario, _))
+  private val asked: Array[Long] = Array.fill(crafts.size)(0L)
+
+  /** Asks a vehicle where it is; the answer, or the error, is recorded. To be called from one stage per vehicle. */
+  def read(vehicle: Int): Future[Either[RpcError, Reading]] =
+    val sequence = asked(vehicle)
+    asked(vehicle) += 1
+    crafts(vehicle)
+      .read()
+      .map:
+        case Right(state) =>
+          val reading = Reading(sequence, name(vehicle), state)
+          recorder.offer(reading)
+          Right(reading)
+        case Left(error) =>
+          note(Team.kindOf(error), Some(vehicle), s"reading $sequence: ${error.message}")
+          Left(error)
+
+  /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
+  def readAll(): Future[Either[RpcError, Map[Int, Reading]]] =
+    vehicles.foldLeft(Future.successful[Either[RpcError, Map[Int, Reading]]](Right(Map.empty))):
+      (soFar, vehicle) =>
+        soFar.flatMap:
+          case Right(readings) => read(vehicle).map(_.map(reading => readings.updated(vehicle, reading)))
+          case error           => Future.successful(error)
+
+  /** Joins percepts to pictures; emits those on which somebody shall decide. */
+  def picture: Flow[Percept, Sight, NotUsed] = pictureFrom(Picture.empty(crafts.size))
+
+  /** The same, with all that a forecast needs. */
+  def pictureWithForecast: Flow[Percept, Sight, NotUsed] =
+    pictureFrom(
+      Picture.empty(crafts.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+    )
+
+  private def pictureFrom(start: Picture): Flow[Percept, Sight, NotUsed] =
+    Flow[Percept]
+      .statefulMap(() => start)(
+        (picture, percept) =>
+          percept match
+            case Percept.Seen(readings, deciders) =>
+              val seen =
+                readings.foldLeft(picture)((picture, reading) => picture.withReading(reading._1, reading._2))
+              (seen, Option.when(seen.isComplete)(Sight(seen, deciders)))
+            case Percept.Read(vehicle, reading) if picture.isNews(vehicle, reading) =>
+              (picture.withReading(vehicle, reading), None)
+            case Percept.Read(vehicle, reading) =>
+              note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+              (picture, None)
+            case Percept.Moved(move) =>
+              val command = Commanded(move.decision, setpoint(move), move.sentAt)
+              (picture.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
+            case Percept.Due(deciders) => (picture, Option.when(picture.isComplete)(Sight(picture, deciders)))
+            case Percept.Heard(evidence) => (picture.withEvidence(evidence), None)
+        ,
+        _ => None
+      )
+      .collect { case Some(sight) => sight }
+
+  /** Once a period, in the middle between two questions, everybody is due to decide. */
+  def due: Source[Percept, Cancellable] =
+    Source.tick((settings.period / 2).toDuration, settings.period.toDuration, Percept.Due(vehicles.toSet))
+
+  /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
+    * predictions turned out.
+    */
+  def predict(vehicle: Int): Flow[Sight, Sight, NotUsed] =
+    Flow[Sight]
+      .collect(Function.unlift(sight =>
+        sight.picture.forecast.filter(_ => sight.deciders(vehicle)).map((sight, _))
+      ))
+      .via(Predict.whenActing(clock)(verified => recorder.offer(prediction(vehicle, verified))))
+      .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
+
+  /** Decides for one vehicle on the sights that are meant for it, and records the decision. */
+  def decide(vehicle: Int): Flow[Sight, Decision, NotUsed] =
+    Flow[Sight]
+      // Not `filter`: it fetches one element ahead, which would grow old in it.
+      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
+        decideAt(vehicle, memory, seen._1, seen._2))
+      .via(Tap(recorder.offer))
+
+  /** Decides by a policy that takes its time. A deadline missed is recorded.
+    *
+    * @param instead
+    *   decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last decision); without it nothing
+    *   is sent then, and the vehicle flies on under its last move for as long as that lasts
+    * @param policy
+    *   from memory, picture and the time of asking
+    */
+  def decideWithin(
+      vehicle: Int,
+      deadline: Span,
+      instead: Option[Policy]
+  )(
+      policy: (Memory, (Picture, Instant)) => Future[(Memory, Decision)]
+  )(using ActorSystem): Flow[Sight, Decision, NotUsed] =
+    val otherwise = instead.fold(Otherwise.Hold()): fallback =>
+      val decider = Decider(scenario, vehicle, fallback)
+      Otherwise.Ask((memory: Memory, seen: (Picture, Instant)) => decider.decide(memory, seen._1, seen._2))
+    Flow[Sight]
+      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .via(Decide.within(deadline, otherwise, start(vehicle))(policy))
+      .map:
+        case Timely.Decided(decision)     => Some(decision)
+        case Timely.Missed(miss, instead) =>
+          note(EventKind.DeadlineMissed, Some(vehicle), miss.toString)
+          instead
+      .collect { case Some(decision) => decision }
+      .via(Tap(recorder.offer))
+
+  def start(vehicle: Int): Memory = deciders(vehicle).start
+
+  /** The pure decision, for loops that keep their own time. */
+  def decideAt(vehicle: Int, memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
+    deciders(vehicle).decide(memory, picture, now)
+
+  /** Paces one vehicle: the newest element, at least an interval after the last. */
+  def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
+    Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
+      note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
+    ))
+
+  /** Keeps the newest decision for a vehicle that cannot be commanded yet. */
+  def newest(vehicle: Int): Flow[Decision, Decision, NotUsed] =
+    Newest(decision =>
+      note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
+    )
+
+  /** Commands one vehicle, records what is sent and answered, and emits the moves sent. */
+  def command(vehicle: Int): Flow[Decision, Move, NotUsed] =
+    steer(vehicle).collect { case Percept.Moved(move) => move }
+
+  /** The same, and emits also what the answers tell. */
+  def steer(vehicle: Int): Flow[Decision, Percept, NotUsed] =
+    Flow
+      .fromGraph(
+        Steer[Decision, Either[RpcError, Boolean]](
+          settings.minCommandInterval,
+          clock,
+          settings.movesInFlight
+        )(
+          move(vehicle, _),
+          () => crafts(vehicle).hover(),
+          Team.isCertain,
+          decision =>
+            note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} not sent before the end")
+        )
+      )
+      .map:
+        case Steered.Sent(decision, at) =>
+          sent(vehicle, decision, at)
+          Some(Percept.Moved(Move(vehicle, decision.sequence, decision.heading.value, at)))
+        case Steered.Ended(decision, at, result) =>
+          ended(vehicle, decision, at, result)
+          result match
+            case Success(Right(false)) =>
+              Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
+            case Success(Right(true))          => None
+            case Success(Left(_)) | Failure(_) =>
+              Some(Percept.Heard(Evidence.Failed(vehicle, decision.sequence)))
+      .collect { case Some(percept) => percept }
+
+  /** Carries the newest move of each vehicle back into the picture. */
+  def feedBack: Flow[Move, Percept, NotUsed] =
+    Flow[Move].map(move => (move.vehicle, move)).via(FeedBack.newest).map((_, move) => Percept.Moved(move))
+
+  /** Carries percepts back into the picture, the newest of each vehicle and kind. */
+  def feedBackAll: Flow[Percept, Percept, NotUsed] =
+    Flow[Percept]
+      .map:
+        case percept @ Percept.Moved(move)     => ((percept.ordinal, move.vehicle), percept)
+        case percept @ Percept.Heard(evidence) => ((percept.ordinal, evidence.vehicle), percept)
+        case percept                           => ((percept.ordinal, -1), percept)
+      .via(FeedBack.newest)
+      .map(_._2)
+
+  /** Sends what was decided; the answer comes when the move ends. */
+  def move(vehicle: Int, decision: Decision): Future[Either[RpcError, Boolean]] =
+    val agent = scenario.agents(vehicle)
+    crafts(vehicle).move(agent.velocityNed(decision.heading.value), altitude(vehicle), settings.moveDuration)
+
+  def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
+    val velocity = scenario.agents(vehicle).velocityNed(decision.heading.value)
+    recorder.offer(
+      Command(
+        decision.sequence,
+        name(vehicle),
+        Some(decision.sequence),
+        MetresPerSecond(velocity.x),
+        MetresPerSecond(velocity.y),
+        altitude(vehicle),
+        at
+      )
+    )
+
+  def ended(vehicle: Int, decision: Decision, at: Instant, result: Try[Either[RpcError, Boolean]]): Unit =
+    val outcome = result match
+      case Success(Right(true))  => "done"
+      case Success(Right(false)) => "superseded"
+      case Success(Left(error))  =>
+        note(Team.kindOf(error), Some(vehicle), s"command ${decision.sequence}: ${error.message}")
+        error.message
+      case Failure(error) => error.toString
+    recorder.offer(Acknowledgement(name(vehicle), decision.sequence, at, outcome))
+
+  def hoverAll(): Future[Seq[Either[RpcError, Boolean]]] = Future.sequence(crafts.map(_.hover()))
+
+  def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
+    recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
+
+  def record(row: Record): Unit = recorder.offer(row)
+
+  private def name(vehicle: Int): String = scenario.agents(vehicle).name
+
+  private def setpoint(move: Move): Setpoint =
+    val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad)
+    Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
+
+  private def prediction(decider: Int, verified: Verified): Prediction = Prediction(
+    decider = name(decider),
+    vehicle = name(verified.vehicle),
+    madeAt = verified.madeAt,
+    predictedFor = verified.estimate.predictedFor,
+    age = verified.estimate.age,
+    positionNed = verified.estimate.kinematics.positionNed,
+    error = verified.error
+  )
+
+  private def altitude(vehicle: Int): Metres = Metres(scenario.agents(vehicle).startPositionNed.z)
+
+object Team:
+
+  /** Whether a call's result says that the call neither runs nor is on its way. */
+  private def isCertain(result: Either[RpcError, Boolean]): Boolean = result match
+    case Right(_)                                                                 => true
+    case Left(RpcError.ConnectionLost(_, mayHaveRun, _))                          => !mayHaveRun
+    case Left(_: (RpcError.Refused | RpcError.Overloaded | RpcError.Unreachable)) => true
+    case Left(_: (RpcError.Timeout | RpcError.Malformed | RpcError.Cancelled))    => false
+
+  private def kindOf(error: RpcError): EventKind = error match
+    case _: RpcError.Timeout                                 => EventKind.TimedOut
+    case _: (RpcError.ConnectionLost | RpcError.Unreachable) => EventKind.Disconnected
+    case _: RpcError.Overloaded                              => EventKind.Overloaded
+    case _: (RpcError.Refused | RpcError.Malformed)          => EventKind.Refused
+    case _: RpcError.Cancelled                               => EventKind.Cancelled
+
+/** What enters the picture. */
+enum Percept:
+  /** Readings by vehicle, and the vehicles to decide upon them. */
+  case Seen(readings: Map[Int, Reading], deciders: Set[Int])
+
+  /** A reading that nobody decides upon at once. */
+  case Read(vehicle: Int, reading: Reading)
+
+  /** The vehicles to decide upon what is known. */
+  case Due(deciders: Set[Int])
+
+  /** A command that was sent. */
+  case Moved(move: Move)
+
+  /** What a forecast is told of besides. */
+  case Heard(evidence: Evidence)
+
+/** A picture and the vehicles to decide upon it. */
+final case class Sight(picture: Picture, deciders: Set[Int])

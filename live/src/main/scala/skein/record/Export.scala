@@ -1,0 +1,36 @@
+package skein.record
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import java.sql.Connection
+import scala.util.Using
+
+/** Gives recordings to other programs. */
+object Export:
+
+  /** Writes each table as `TABLE.parquet` into the folder, which is made if need be; files of these names are
+    * replaced. Rows keep the order in which they were recorded. Blocks.
+    *
+    * @return
+    *   the files written
+    */
+  def parquet(recording: Path, directory: Path): Either[RecordError, Vector[Path]] =
+    for
+      _     <- createDirectory(directory)
+      files <- RecordingReader.withRecording(recording): connection =>
+        RecordingFile.attempt(RecordError.ExportFailed(directory, _)):
+          Table.all.map(table => write(table, directory.resolve(table.name + ".parquet"), connection))
+    yield files
+
+  private def createDirectory(directory: Path): Either[RecordError, Unit] =
+    try
+      val _ = Files.createDirectories(directory)
+      Right(())
+    catch case failed: IOException => Left(RecordError.ExportFailed(directory, failed.toString))
+
+  private def write(table: Table[?], file: Path, connection: Connection): Path =
+    val quoted = "'" + file.toString.replace("'", "''") + "'"
+    Using.resource(connection.createStatement()): statement =>
+      val _ =
+        statement.execute(s"COPY (SELECT * FROM ${table.name} ORDER BY row) TO $quoted (FORMAT parquet)")
+    file

@@ -1,0 +1,38 @@
+package skein.record
+
+import java.nio.file.Path
+
+/** Why a recording could not be written or read. */
+enum RecordError(val message: String):
+
+  /** There is a file at this path; recordings are never overwritten. */
+  case AlreadyExists(file: Path)
+      extends RecordError(s"$file exists already; recordings are never overwritten")
+
+  /** The file could not be made, for example for want of the folder or of permission. */
+  case CannotCreate(file: Path, reason: String) extends RecordError(s"cannot create recording $file: $reason")
+
+  /** The database refused rows, for example because the disk is full. What was committed before stays readable. */
+  case WriteFailed(file: Path, reason: String)
+      extends RecordError(s"cannot write to recording $file: $reason")
+
+  /** More records waited to be written than the queue holds: the disk is slower than the flight. */
+  case QueueFull(capacity: Int)
+      extends RecordError(s"recording cannot keep up: $capacity records wait to be written and no more fit")
+
+  /** There is no file at this path. */
+  case NoSuchFile(file: Path) extends RecordError(s"there is no file $file")
+
+  /** The file is in use, for example by a flight that still writes to it, or may not be read. */
+  case CannotOpen(file: Path, reason: String) extends RecordError(s"cannot open recording $file: $reason")
+
+  /** The file is no recording, or a damaged one. */
+  case NotARecording(file: Path, reason: String) extends RecordError(s"$file is not a recording: $reason")
+
+  /** The recording was written by a version with other tables. */
+  case OtherVersion(file: Path, expected: Int, found: Int)
+      extends RecordError(s"$file has recording format $found; this program reads format $expected")
+
+  /** The folder or a file in it could not be written. */
+  case ExportFailed(directory: Path, reason: String)
+      extends RecordError(s"cannot export to $directory: $reason")

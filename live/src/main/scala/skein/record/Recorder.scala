@@ -1,0 +1,37 @@
+package skein.record
+
+import scala.concurrent.Future
+
+/** Takes down what a flight does. */
+trait Recorder:
+
+  /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]] complete; after
+    * a failure or [[close]], records are ignored.
+    */
+  def offer(record: Record): Unit
+
+  /** Completes when a record could not be kept, and never otherwise. The flight must end then: vehicles hover, and
+    * the reason is shown.
+    */
+  def failure: Future[RecordError]
+
+  /** Writes what is still queued and closes. Completes with the number of rows written, or with the failure. Every
+    * call has the same result.
+    */
+  def close(): Future[Either[RecordError, Written]]
+
+/** What a recording holds once closed: rows by table, tables without rows left out. */
+final case class Written(rows: Map[String, Long]):
+  def total: Long = rows.values.sum
+
+  private[record] def ++(records: Seq[Record]): Written =
+    Written(records.foldLeft(rows)((rows, record) =>
+      rows.updatedWith(Table.of(record).name)(n => Some(n.getOrElse(0L) + 1))
+    ))
+
+private[record] object Written:
+  val nothing: Written = Written(Map.empty)
+
+/** What a recording begins with; on disk before the first record is taken. */
+final case class Heading(flight: Flight, vehicles: Seq[Vehicle], parameters: Seq[Parameter] = Nil):
+  def records: Seq[Record] = flight +: (vehicles ++ parameters)

@@ -1,0 +1,180 @@
+package skein.record
+
+import java.sql.Connection
+import org.duckdb.DuckDBConnection
+import scala.util.Using
+import skein.record.Columns.*
+
+/** A table of a recording: the type of its rows, its name and its columns. */
+private[record] final case class Table[A <: Record](name: String, columns: Columns[A]):
+
+  def create: String =
+    (Column("row", "BIGINT") +: columns.definitions).map(_.sql).mkString(s"CREATE TABLE $name (", ", ", ")")
+
+  /** Appends rows, each with its number, without committing. */
+  def append(rows: Iterable[(Long, A)], connection: DuckDBConnection): Unit =
+    Using.resource(connection.createAppender(name)): appender =>
+      val cells = AppenderRow(appender)
+      for (number, row) <- rows do
+        appender.beginRow().append(number)
+        columns.append(row, cells)
+        appender.endRow()
+
+  /** All rows in the order in which they were recorded. */
+  def read(connection: Connection): Vector[A] = readNumbered(connection).map(_._2)
+
+  /** The same, each with its number. */
+  def readNumbered(connection: Connection): Vector[(Long, A)] =
+    val names = columns.definitions.map(_.name).mkString(", ")
+    Using.resource(connection.createStatement()): statement =>
+      Using.resource(statement.executeQuery(s"SELECT row, $names FROM $name ORDER BY row")): rows =>
+        Vector.unfold(rows): rows =>
+          Option.when(rows.next()):
+            val cells = Cells(rows)
+            ((cells.next(_.getLong(_)), columns.read(cells)), rows)
+
+private[record] object Table:
+  private val readingColumns = product[Reading]((long("sequence"), text("vehicle"), stampedKinematics))
+
+  val flight: Table[Flight] = Table(
+    "flight",
+    product[Flight]:
+      (
+        text("id"),
+        text("loop"),
+        text("link"),
+        long("seed"),
+        spanMs("period"),
+        spanMs("duration"),
+        text("clock"),
+        text("simulator"),
+        text("scenario"),
+        text("version"),
+        instantNs("startedAt")
+      )
+  )
+
+  val parameter: Table[Parameter] = Table("parameter", product[Parameter]((text("name"), text("value"))))
+
+  val vehicle: Table[Vehicle] =
+    Table("vehicle", product[Vehicle]((text("name"), text("role"), speed("speed"), ned("start", "M"))))
+
+  val reading: Table[Reading] = Table("reading", readingColumns)
+
+  val decision: Table[Decision] = Table(
+    "decision",
+    product[Decision]:
+      (
+        long("sequence"),
+        text("vehicle"),
+        instantNs("decidedAt"),
+        prefixed("own", readingColumns),
+        prefixed("opponent", readingColumns),
+        metres("relativeX"),
+        metres("relativeY"),
+        radians("headingBefore"),
+        radians("opponentHeading"),
+        radians("heading"),
+        spanMs("elapsed"),
+        product[Observations]:
+          (
+            spanMs("ownAge"),
+            spanMs("opponentAge"),
+            optional(spanMs("sinceOwnMove")),
+            optional(spanMs("sinceOpponentMove"))
+          )
+        ,
+        optional(
+          product[TrueAge]:
+            (spanMs("ownTrueAge"), spanMs("opponentTrueAge"), spanNs("clockOffset"), spanMs("uncertainty"))
+        ),
+        optional(
+          product[Predicted]:
+            (
+              instantNs("actsAt"),
+              ned("ownPredictedPosition", "M"),
+              ned("ownPredictedVelocity", "Mps"),
+              ned("opponentPredictedPosition", "M"),
+              ned("opponentPredictedVelocity", "Mps")
+            )
+        )
+      )
+  )
+
+  val prediction: Table[Prediction] = Table(
+    "prediction",
+    product[Prediction]:
+      (
+        text("decider"),
+        text("vehicle"),
+        instantNs("madeAt"),
+        instantNs("predictedFor"),
+        spanMs("age"),
+        ned("position", "M"),
+        metres("error")
+      )
+  )
+
+  val command: Table[Command] = Table(
+    "command",
+    product[Command]:
+      (
+        long("sequence"),
+        text("vehicle"),
+        optional(long("decision")),
+        speed("velocityNorth"),
+        speed("velocityEast"),
+        metres("down"),
+        instantNs("sentAt")
+      )
+  )
+
+  val acknowledgement: Table[Acknowledgement] = Table(
+    "acknowledgement",
+    product[Acknowledgement]((text("vehicle"), long("command"), instantNs("endedAt"), text("outcome")))
+  )
+
+  val latency: Table[Latency] =
+    Table("latency", product[Latency]((text("link"), instantNs("sentAt"), spanMs("roundTrip"))))
+
+  val event: Table[Event] = Table(
+    "event",
+    product[Event]((instantNs("at"), eventKind("kind"), optional(text("vehicle")), text("detail")))
+  )
+
+  val truth: Table[Truth] =
+    Table("truth", product[Truth]((text("vehicle"), instantNs("validAt"), ned("position", "M"))))
+
+  val all: Vector[Table[? <: Record]] =
+    Vector(
+      flight,
+      parameter,
+      vehicle,
+      reading,
+      decision,
+      prediction,
+      command,
+      acknowledgement,
+      latency,
+      event,
+      truth
+    )
+
+  /** How a record lies in its table. */
+  def columnsOf(record: Record): Columns[Record] =
+    // The table that `of` gives is that of the record's own type.
+    of(record).columns.asInstanceOf[Columns[Record]]
+
+  /** The table that a record belongs to. */
+  def of(record: Record): Table[? <: Record] = record match
+    case _: Flight          => flight
+    case _: Parameter       => parameter
+    case _: Vehicle         => vehicle
+    case _: Reading         => reading
+    case _: Decision        => decision
+    case _: Prediction      => prediction
+    case _: Command         => command
+    case _: Acknowledgement => acknowledgement
+    case _: Latency         => latency
+    case _: Event           => event
+    case _: Truth           => truth

@@ -1,0 +1,40 @@
+package skein.rpc
+
+import scala.concurrent.Promise
+import skein.units.*
+import upack.Msg
+
+/** A result with the times that age is computed from, on the client's clock.
+  *
+  * @param sentAt
+  *   when the request was handed to the transport (the last time, if it was sent again)
+  * @param receivedAt
+  *   when the reply's last byte had come
+  */
+final case class Answer[+A](value: A, sentAt: Instant, receivedAt: Instant):
+  def map[B](f: A => B): Answer[B] = copy(value = f(value))
+
+  def roundTrip: Span = receivedAt.since(sentAt)
+
+/** One call on its way through a lane. The lane's thread alone changes it. */
+private[rpc] final class Call(
+    val method: String,
+    val params: Seq[Msg],
+    val options: CallOptions,
+    val calledAt: Instant
+):
+  val outcome: Promise[Either[RpcError, Answer[Msg]]] = Promise()
+  val deadline: Instant                               = calledAt + options.timeout
+
+  /** Order of arrival in its lane. */
+  var sequence: Long = -1
+
+  /** The connection it is assigned to, or -1. */
+  var connection: Int = -1
+  var id: Long        = -1
+
+  /** Whether its bytes were handed to the transport of the present connection. */
+  var written: Boolean = false
+  var sends: Int       = 0
+  var sentAt: Instant  = Instant.Epoch
+  var ended: Boolean   = false

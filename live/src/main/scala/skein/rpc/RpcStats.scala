@@ -1,0 +1,75 @@
+package skein.rpc
+
+import java.util.concurrent.atomic.LongAdder
+
+/** What a client has counted since it was made. Every call ends exactly once:
+  * `called = answered + refused + timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
+  *
+  * @param sent
+  *   requests written, those sent again included
+  * @param late
+  *   replies to calls that had timed out
+  * @param unexpected
+  *   replies to no known call
+  * @param ignored
+  *   values that were no replies
+  * @param skipped
+  *   elements that flows passed over
+  */
+final case class RpcStats(
+    called: Long,
+    sent: Long,
+    answered: Long,
+    refused: Long,
+    timedOut: Long,
+    lost: Long,
+    malformed: Long,
+    overloaded: Long,
+    cancelled: Long,
+    unreachable: Long,
+    sentAgain: Long,
+    late: Long,
+    unexpected: Long,
+    ignored: Long,
+    skipped: Long,
+    connected: Long,
+    disconnected: Long
+):
+  /** Calls that have not ended. */
+  def pending: Long =
+    called - answered - refused - timedOut - lost - malformed - overloaded - cancelled - unreachable
+
+/** The running counts behind [[RpcStats]]; written by both lanes, read by anyone. */
+private[rpc] final class RpcCounters:
+  val called, sent, answered, refused, timedOut, lost, malformed, overloaded, cancelled, unreachable,
+      sentAgain, late, unexpected, ignored, skipped, connected, disconnected = LongAdder()
+
+  def failed(error: RpcError): Unit = (error match
+    case _: RpcError.Timeout        => timedOut
+    case _: RpcError.Refused        => refused
+    case _: RpcError.ConnectionLost => lost
+    case _: RpcError.Malformed      => malformed
+    case _: RpcError.Overloaded     => overloaded
+    case _: RpcError.Cancelled      => cancelled
+    case _: RpcError.Unreachable    => unreachable
+  ).increment()
+
+  def snapshot: RpcStats = RpcStats(
+    called.sum,
+    sent.sum,
+    answered.sum,
+    refused.sum,
+    timedOut.sum,
+    lost.sum,
+    malformed.sum,
+    overloaded.sum,
+    cancelled.sum,
+    unreachable.sum,
+    sentAgain.sum,
+    late.sum,
+    unexpected.sum,
+    ignored.sum,
+    skipped.sum,
+    connected.sum,
+    disconnected.sum
+  )

@@ -1,0 +1,129 @@
+package skein.flow
+
+import skein.signal.*
+import skein.units.*
+import skein.vehicle.*
+
+class TrackSuite extends munit.FunSuite:
+
+  /** The simulator's clock minus the controller's. */
+  private val skew   = Span.ofSeconds(1000)
+  private val oneWay = Span.ofMillis(50)
+
+  private def controller(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
+  private def simulator(ms: Double)  = controller(ms) + skew
+
+  private def at(x: Double, vx: Double = 0) =
+    Kinematics(Vector3(x, 0, -20), Vector3(vx, 0, 0), Quaternion.Identity, Vector3.Zero)
+
+  /** Sampled at a time in ms, over a link of 50 ms each way. */
+  private def reading(sampledMs: Double, state: Kinematics) =
+    Stamped(state, simulator(sampledMs), controller(sampledMs) - oneWay, controller(sampledMs) + oneWay)
+
+  private val delays = OneWayDelays.of(reading(0, at(0)))
+
+  /** A vehicle that obeys within a microsecond, so that what it flies under can be read off where it is. */
+  private val obedient = LagModel(lagS = 1e-6, gain = 1)
+
+  private def command(sequence: Long, north: Double, sentMs: Double) =
+    Commanded(sequence, Setpoint.velocityZ(north, 0, -20), controller(sentMs))
+
+  private def northAt(track: Track[?], validMs: Double, nowMs: Double): Double =
+    track.estimateAt(simulator(validMs), delays, controller(nowMs)).kinematics.positionNed.x
+
+  private val commanded = Track(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
+
+  test("each command acts when it is expected to arrive, whatever the clocks show"):
+    assertEqualsDouble(northAt(commanded, 50, 60), 0, 1e-4)
+    assertEqualsDouble(northAt(commanded, 150, 160), 1, 1e-4)
+    assertEqualsDouble(northAt(commanded, 200, 210), 2, 1e-4)
+
+  test(
+    "a receipt tells of the arrival of the next command: half of what its round trip is longer than usual"
+  ):
+    val late = commanded.replaced(sequence = 0, answeredAt = controller(100 + 140))
+    assertEqualsDouble(northAt(late, 170, 250), 1.2, 1e-4)
+    assertEqualsDouble(northAt(late, 200, 250), 1.8, 1e-4)
+
+  test("no command acts before one that was sent earlier"):
+    val crossed = commanded
+      .sent(command(2, -10, 130))
+      .replaced(sequence = 0, answeredAt = controller(100 + 300))
+    assertEqualsDouble(northAt(crossed, 249, 400), 2, 0.02)
+    assertEqualsDouble(northAt(crossed, 350, 400), 1, 0.02)
+
+  test(
+    "a command without receipt is presumed lost after two round trips and grace, and acts again when one comes"
+  ):
+    val overdueMs = 100 + 2 * 100 + Track.Grace.toMillis + 1
+    assertEqualsDouble(northAt(commanded, 300, overdueMs), 2.5, 1e-4)
+    assertEqualsDouble(northAt(commanded.replaced(0, controller(200)), 300, overdueMs), 4, 1e-4)
+
+  test("a failed call's command does not act, unless its receipt has come"):
+    assertEqualsDouble(northAt(commanded.failed(1), 300, 310), 2.5, 1e-4)
+    assertEqualsDouble(northAt(commanded.replaced(0, controller(200)).failed(1), 300, 310), 4, 1e-4)
+
+  test("a reading that is older than the newest, or the same again, changes nothing"):
+    val seen = commanded.seen(reading(100, at(0.5, 10)), delays)
+    assert(seen.seen(reading(50, at(7)), delays) eq seen)
+    assert(seen.seen(reading(100, at(7)), delays) eq seen)
+
+  test("skipped readings do no harm, and commands that have acted are forgotten but for the one in effect"):
+    val sparse =
+      (2 to 30).foldLeft(commanded)((track, n) => track.sent(command(n, 10.0 * (n % 3), 100.0 * n)))
+    val seen = sparse.seen(reading(2500, at(77, 0)), delays)
+    assertEquals(seen.commands.map(_.sequence), (24L to 30L).toVector)
+    assertEqualsDouble(northAt(seen, 2550, 2560), 77, 1e-4)
+    assertEqualsDouble(northAt(seen, 2650, 2660), 78, 1e-4)
+
+  test("what is remembered is bounded"):
+    val busy = (2 to 1000).foldLeft(commanded)((track, n) => track.sent(command(n, 1, n)))
+    assertEquals(busy.commands.size, Track.CommandLimit)
+    val sights = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
+    assertEquals(sights.sights.size, Track.SightLimit)
+
+  test(
+    "a position between two readings is that of the cubic through them, within 5 mm; over a gap there is none"
+  ):
+    def circling(ms: Double) =
+      val angle = ms / 1000
+      Kinematics(
+        Vector3(10 * math.cos(angle), 10 * math.sin(angle), -20),
+        Vector3(-10 * math.sin(angle), 10 * math.cos(angle), 0),
+        Quaternion.Identity,
+        Vector3.Zero
+      )
+    val track = Seq(300.0, 400.0, 1000.0).foldLeft(Track(obedient, reading(0, circling(0))))((track, ms) =>
+      track.seen(reading(ms, circling(ms)), delays)
+    )
+    for ms <- 0 to 400 by 10 do
+      val position = track.positionNedAt(simulator(ms)).get
+      assert((position - circling(ms).positionNed).norm < 5e-3, s"$ms ms: $position")
+    assertEquals(track.positionNedAt(simulator(700)), None)
+    assertEquals(track.positionNedAt(simulator(1100)), None)
+
+  test(
+    "a quadrotor is estimated within 5 mm when its command acts, from readings 50 ms old and commands in flight"
+  ):
+    val quadrotor = Quadrotor.AirSim
+    val model     = QuadrotorModel.AirSim
+    val start     = Vector3(0, 0, -20)
+    val real      = quadrotor.hovering(start)
+    val heading   = (ms: Int) => 0.7 * math.floor(ms / 100.0)
+    val setpoint  =
+      (ms: Int) => Setpoint.velocityZ(10 * math.cos(heading(ms)), 10 * math.sin(heading(ms)), -20)
+    // What flies at 3 n ms was sent 50 ms before; a reading every 99 ms is used 100 ms after it was sampled.
+    val truth = Vector.tabulate(2000): n =>
+      val before = real.kinematics
+      quadrotor.step(real, if 3 * n < 50 then Setpoint.hold(start) else setpoint(3 * n - 50))
+      before
+    var track: Track[?] = Track(model, reading(0, truth(0)))
+    var worst           = 0.0
+    for n <- 33 until 1900 by 33 do
+      val sampledMs = 3 * n
+      for sentMs <- 0 to sampledMs + 49 by 100 if sentMs > sampledMs - 50 do
+        track = track.sent(Commanded(sentMs / 100, setpoint(sentMs), controller(sentMs)))
+      track = track.seen(reading(sampledMs, truth(n)), delays)
+      val estimate = track.estimateAt(simulator(sampledMs + 99), delays, controller(sampledMs + 50))
+      worst = worst.max((estimate.kinematics.positionNed - truth(n + 33).positionNed).norm)
+    assert(worst < 5e-3, s"$worst m")

@@ -1,0 +1,158 @@
+package skein.link
+
+import java.util.concurrent.atomic.LongAdder
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.duration.*
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Try}
+import skein.signal.*
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** In virtual time, where every delay is exact. */
+class DelayLineSuite extends munit.FunSuite:
+  private given ExecutionContext = ExecutionContext.parasitic
+  private val lost               = TransportError.Lost(Address("server", 1), "the link broke")
+  private val quarterSecond      = constant(500)
+
+  private def constant(roundTripMs: Double): LatencyProfile =
+    LatencyProfile.Steady("constant", LatencyDistribution.Constant(Span.ofMillis(roundTripMs)))
+
+  private final class Line(
+      val flow: Flow[ByteString, ByteString, Any],
+      val ms: () => Double,
+      val counts: LineCounters
+  )
+
+  private def over[A](latency: LatencyProfile, faults: Faults = Faults.none, maxBytes: Int = 1_000_000)(
+      body: ActorSystem ?=> Line => Future[A]
+  ): A =
+    VirtualTime.run(1): system =>
+      given ActorSystem      = system
+      val clock              = VirtualClock(system)
+      val start              = clock.now()
+      def sinceStart         = clock.now().since(start)
+      def open(opened: Span) =
+        Delivery(
+          LatencySampler(latency, 1, 2),
+          faults.stalls(3),
+          faults.breakOf(opened, 3),
+          None,
+          LongAdder()
+        )
+      val counts = LineCounters(LongAdder(), LongAdder(), () => ())
+      val line   = Flow.fromGraph(DelayLine(open, () => sinceStart, maxBytes, lost, counts))
+      body(Line(line, () => sinceStart.toMillis, counts))
+    .value
+
+  private def text(bytes: String) = ByteString(bytes)
+
+  private def every(ms: Int, count: Int): Source[ByteString, Any] =
+    Source.tick(0.millis, ms.millis, ()).zipWithIndex.map((_, i) => text(s"$i;")).take(count)
+
+  private def arrivals(source: Source[ByteString, Any], line: Line)(using
+      ActorSystem
+  ): Future[Seq[(String, Double)]] =
+    source.via(line.flow).map(bytes => bytes.utf8String -> line.ms()).runWith(Sink.seq)
+
+  test("bytes come out after exactly the delay, and so does the end"):
+    val (came, ended) = over(quarterSecond): line =>
+      for came <- arrivals(every(100, 3), line) yield (came, line.ms())
+    assertEquals(came, Seq("0;" -> 250.0, "1;" -> 350.0, "2;" -> 450.0))
+    assertEquals(ended, 450.0)
+
+  test("bytes keep their order, and those that are due at once come out as one segment"):
+    val came = over(LatencyProfile.vpn)(line => arrivals(every(1, 500), line))
+    assertEquals(came.map(_._1).mkString, (0 until 500).map(i => s"$i;").mkString)
+    assert(came.sizeIs < 250, came.size)
+    assert(came.map(_._2).sliding(2).forall(pair => pair(0) < pair(1)))
+
+  test("the same seed gives the same times, to the nanosecond"):
+    def once = over(LatencyProfile.vpn)(line => arrivals(every(7, 300), line))
+    assertEquals(once, once)
+
+  test("a sender waits when the line is full"):
+    val sentAt = over(quarterSecond, maxBytes = 6): line =>
+      Source(1 to 6)
+        .map(i => (line.ms(), text(s"$i;;")))
+        .alsoTo(Sink.ignore)
+        .map(_._2)
+        .via(line.flow)
+        .map(bytes => bytes.size -> line.ms())
+        .runWith(Sink.seq)
+    assertEquals(sentAt, Seq(6 -> 250.0, 6 -> 500.0, 6 -> 750.0))
+
+  test("a receiver that does not take its bytes holds them, and loses none"):
+    val came = over(constant(20)): line =>
+      every(10, 50)
+        .via(line.flow)
+        .throttle(1, 200.millis)
+        .runFold("")(_ + _.utf8String)
+    assertEquals(came, (0 until 50).map(i => s"$i;").mkString)
+
+  test("a stall holds bytes and the end back until it is over"):
+    val faults = Faults(List(TimedFault(Span.ofMillis(300), Fault.Stall(Span.ofMillis(1000)))))
+    val came   = over(quarterSecond, faults)(line => arrivals(every(100, 5), line))
+    assertEquals(came, Seq("0;" -> 250.0, "1;2;3;4;" -> 1300.0))
+
+  test("a reset fails both sides at its time, and counts what was under way as lost"):
+    val faults = Faults(List(TimedFault(Span.ofMillis(420), Fault.Reset)))
+    val (sender, senderAt, receiver, receiverAt, bytesLost) = over(quarterSecond, faults): line =>
+      val (sending, receiving) = every(100, 100)
+        .watchTermination()(Keep.right)
+        .viaMat(line.flow)(Keep.left)
+        .toMat(Sink.ignore)(Keep.both)
+        .run()
+      for
+        s <- ended(sending, line)
+        r <- ended(receiving, line)
+      yield (s._1, s._2, r._1, r._2, line.counts.bytesLost.sum)
+    assertEquals(sender, Failure(lost))
+    assertEquals(receiver, Failure(lost))
+    assertEquals((senderAt, receiverAt), (420.0, 420.0))
+    assertEquals(bytesLost, 6L)
+
+  private def ended(done: Future[Done], line: Line): Future[(Try[Done], Double)] =
+    done.transform(result => util.Success((result, line.ms())))
+
+  test("in a silence bytes and the end are lost and nobody is told until it is over"):
+    val faults              = Faults(List(TimedFault(Span.ofMillis(300), Fault.Silence(Span.ofSeconds(9)))))
+    val (came, failure, at) = over(quarterSecond, faults): line =>
+      val came = StringBuilder()
+      ended(every(100, 5).via(line.flow).runForeach(bytes => came ++= bytes.utf8String: Unit), line)
+        .map((result, at) => (came.toString, result, at))
+    assertEquals(came, "0;")
+    assertEquals(failure, Failure(lost))
+    assertEquals(at, 9300.0)
+
+  test("a failure comes out after the delay, behind the bytes before it"):
+    val failure            = RuntimeException("crash")
+    val (came, result, at) = over(quarterSecond): line =>
+      val came   = StringBuilder()
+      val source = every(100, 3).map(bytes => if bytes == text("2;") then throw failure else bytes)
+      ended(source.via(line.flow).runForeach(bytes => came ++= bytes.utf8String: Unit), line)
+        .map((result, at) => (came.toString, result, at))
+    assertEquals(came, "0;1;")
+    assertEquals(result, Failure(failure))
+    assertEquals(at, 450.0)
+
+  test("a sender learns that its receiver failed one delay later"):
+    val crash        = RuntimeException("crash")
+    val (result, at) = over(quarterSecond): line =>
+      val sending = every(100, 100)
+        .watchTermination()(Keep.right)
+        .via(line.flow)
+        .to(Sink.foreach(_ => throw crash))
+        .run()
+      ended(sending, line)
+    assertEquals(result, Failure(crash))
+    assertEquals(at, 500.0)
+
+  test("a receiver that takes no more is not told to the sender, whose bytes are discarded"):
+    val (result, at) = over(quarterSecond): line =>
+      ended(every(100, 20).watchTermination()(Keep.right).via(line.flow).to(Sink.head).run(), line)
+    assertEquals(result, util.Success(Done))
+    assertEquals(at, 1900.0)

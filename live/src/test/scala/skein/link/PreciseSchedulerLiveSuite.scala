@@ -1,0 +1,104 @@
+package skein.link
+
+import java.util.concurrent.atomic.AtomicInteger
+import java.util.concurrent.{CountDownLatch, TimeUnit}
+import org.apache.pekko.actor.{ActorSystem, Scheduler, SchedulerTask}
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, ExecutionContext, Future, Promise}
+import skein.signal.SplitMix64
+
+/** The real clock. */
+class PreciseSchedulerLiveSuite extends munit.FunSuite:
+  private val system             = ActorSystem("precise-scheduler", PreciseScheduler.config)
+  private given ExecutionContext = system.dispatcher
+  private val scheduler          = system.scheduler
+
+  override def afterAll(): Unit = system.terminate(): Unit
+
+  private def after[A](delay: FiniteDuration)(result: => A): Future[A] =
+    val promise = Promise[A]()
+    scheduler.scheduleOnce(delay)(promise.success(result): Unit): Unit
+    promise.future
+
+  test("an actor system takes it from its configuration"):
+    assertEquals(scheduler.getClass, classOf[PreciseScheduler])
+
+  test("tasks start when they are due: never before, half of them within 1 ms even on a busy machine"):
+    val random  = SplitMix64(1)
+    val latesUs = Future.traverse(List.fill(500)(1.millisecond * (1 + random.nextInt(1000)))): delay =>
+      val due = System.nanoTime() + delay.toNanos
+      after(delay)((System.nanoTime() - due) / 1000)
+    latesUs.map: unsorted =>
+      val sorted = unsorted.sorted
+      println(s"late by (us): p50 ${sorted(250)}, p90 ${sorted(450)}, p99 ${sorted(495)}, max ${sorted.last}")
+      assert(sorted.head >= 0, sorted.head)
+      assert(sorted(250) < 1000, sorted(250))
+
+  test("a fixed rate does not drift, a fixed delay waits after each run"):
+    def spanOf(start: Runnable => org.apache.pekko.actor.Cancellable): Future[Long] =
+      val began = System.nanoTime()
+      val runs  = AtomicInteger()
+      val done  = Promise[Long]()
+      val task  = start: () =>
+        val until = System.nanoTime() + 2_000_000
+        while System.nanoTime() < until do Thread.onSpinWait()
+        if runs.incrementAndGet() == 20 then done.trySuccess((System.nanoTime() - began) / 1_000_000): Unit
+      done.future.andThen(_ => task.cancel())
+    for
+      atRate    <- spanOf(scheduler.scheduleAtFixedRate(5.millis, 5.millis)(_))
+      withDelay <- spanOf(scheduler.scheduleWithFixedDelay(5.millis, 5.millis)(_))
+    yield
+      assert(atRate >= 100 && atRate < 138, s"20 runs of 2 ms every 5 ms took $atRate ms")
+      assert(withDelay >= 138 && withDelay < 400, s"20 runs of 2 ms, 5 ms apart, took $withDelay ms")
+
+  test("a cancelled task never runs, is told, and a second cancel is refused"):
+    var told = false
+    val task = scheduler.scheduleOnce(
+      20.millis,
+      new SchedulerTask:
+        def run(): Unit                = fail("ran after cancel")
+        override def cancelled(): Unit = told = true
+    )
+    assert(task.cancel())
+    assert(!task.cancel())
+    assert(task.isCancelled)
+    after(40.millis)(assert(told))
+
+  test("a repeated task stops when cancelled, also by itself"):
+    val runs = AtomicInteger()
+    val self = Promise[org.apache.pekko.actor.Cancellable]()
+    self.success(
+      scheduler.scheduleWithFixedDelay(1.milli, 1.milli): () =>
+        if runs.incrementAndGet() == 3 then self.future.foreach(_.cancel())(using ExecutionContext.parasitic)
+    )
+    after(50.millis)(assertEquals(runs.get, 3))
+
+  test("a repeated task that throws is not run again"):
+    val runs  = AtomicInteger()
+    val quiet = new ExecutionContext:
+      def execute(runnable: Runnable): Unit =
+        summon[ExecutionContext].execute(() =>
+          try runnable.run()
+          catch case _: ArithmeticException => ()
+        )
+      def reportFailure(cause: Throwable): Unit = ()
+    scheduler
+      .scheduleAtFixedRate(1.milli, 1.milli)(() =>
+        throw ArithmeticException(s"run ${runs.incrementAndGet()}")
+      )(using quiet): Unit
+    after(30.millis)(assertEquals(runs.get, 1))
+
+  test("a period of zero is refused"):
+    intercept[IllegalArgumentException](scheduler.scheduleAtFixedRate(1.milli, Duration.Zero)(() => ())): Unit
+
+  test("when it closes, only tasks marked for it run, and new ones are refused"):
+    val closing = ActorSystem("closing", PreciseScheduler.config)
+    val ran     = CountDownLatch(1)
+    val other   = AtomicInteger()
+    closing.scheduler.scheduleOnce(1.hour, (() => ran.countDown()): Scheduler.TaskRunOnClose): Unit
+    closing.scheduler.scheduleOnce(1.hour)(other.incrementAndGet(): Unit): Unit
+    Await.result(closing.terminate(), 10.seconds): Unit
+    assert(ran.await(5, TimeUnit.SECONDS))
+    assertEquals(other.get, 0)
+    intercept[IllegalStateException](closing.scheduler.scheduleOnce(1.milli)(())): Unit
+    intercept[IllegalStateException](closing.scheduler.scheduleOnce(Duration.Zero)(())): Unit

@@ -1,0 +1,49 @@
+package skein.loop
+
+import skein.signal.LatencyProfile
+import skein.vehicle.{ConstantTurn, ConstantVelocity, LagModel}
+
+/** Prints how far loops and models deviate from the paused truth over the links.
+  *
+  * @param seeds
+  *   flights per row
+  */
+@main def predictionFigures(seeds: Int): Unit =
+  val truth = VirtualDuel.truth.distanceM
+  println(f"paused truth $truth%.3f m; $seeds seeds a row")
+  val many  = LoopSettings(movesInFlight = 6)
+  val links = Seq(
+    ("direct", LatencyProfile.direct, LoopSettings()),
+    ("vpn", LatencyProfile.vpn, LoopSettings()),
+    ("vpn-mixed", LatencyProfile.vpnMixed, LoopSettings()),
+    ("constant:400ms", VirtualDuel.constant(400), LoopSettings()),
+    ("constant:400ms, 6 moves in flight", VirtualDuel.constant(400), many),
+    ("vpn, 6 moves in flight", LatencyProfile.vpn, many)
+  )
+  for (name, link, settings) <- links do
+    println(name)
+    report("stream", LoopKind.Stream, link, settings)
+    report("predictive", LoopKind.Predictive, link, settings)
+    for (model, description) <- Seq(
+        (LagModel(2.6, 0.87), "reduced"),
+        (LagModel(2.6 * 1.2, 0.87), "reduced, lag +20 %"),
+        (LagModel(2.6, 0.87 * 1.2), "reduced, gain +20 %"),
+        (ConstantVelocity, "constant velocity"),
+        (ConstantTurn, "constant turn")
+      )
+    do report(s"predictive, $description", LoopKind.Predictive, link, settings.copy(model = _ => model))
+
+  def report(name: String, kind: LoopKind, link: LatencyProfile, settings: LoopSettings): Unit =
+    val duels     = (1 to seeds).map(seed => VirtualDuel.fly(kind, link, seed, settings))
+    val distances = duels.map(_.distanceM)
+    val mean      = distances.sum / seeds
+    val spread    = math.sqrt(distances.map(d => (d - mean) * (d - mean)).sum / (seeds - 1).max(1))
+    val ages      = duels.flatMap(_.recording.predictions.map(_.age.toMillis))
+    val errors    = duels.flatMap(_.predictionErrors(own = true)).sorted
+    val predicted =
+      if errors.isEmpty then ""
+      else
+        f"; prediction age ${ages.sum / ages.size}%.0f ms, own error p50 ${errors(errors.size / 2)}%.4f p95 ${errors(errors.size * 95 / 100)}%.4f m"
+    println(
+      f"  $name%-30s $mean%.3f ± $spread%.3f m (${(mean / truth - 1) * 100}%+.2f %%, ${distances.min}%.2f to ${distances.max}%.2f)$predicted"
+    )

@@ -1,0 +1,22 @@
+package skein.rpc
+
+import org.apache.pekko.actor.ActorSystem
+import skein.link.PreciseScheduler
+
+/** Mutated sequences over loopback sockets; a quick share of what [[Fuzz]] does at length. */
+class FuzzLiveSuite extends munit.FunSuite:
+  private given system: ActorSystem = ActorSystem("rpc-fuzz", PreciseScheduler.config)
+
+  override def afterAll(): Unit =
+    val _ = system.terminate()
+
+  test(
+    "300 mutated sequences: the server closes each connection with its reason and serves others meanwhile"
+  ):
+    val figures = PairFuzz.server(300, seed = 1)
+    assertEquals(figures.healthy, 300L)
+    assert(figures.closedWithReason > 50, s"$figures")
+
+  test("300 mutated answers: each call ends, with a result only if it was sent for that call"):
+    val figures = PairFuzz.client(300, seed = 1)
+    assert(figures.right > 30 && figures.refused > 3 && figures.failed > 50, s"$figures")
