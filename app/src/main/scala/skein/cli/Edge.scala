@@ -1,0 +1,23 @@
+package skein.cli
+
+import scala.concurrent.duration.Duration
+import scala.concurrent.{Await, Future}
+
+/** Where a command's main thread waits for what runs asynchronously. Nothing else in Skein blocks. */
+private[cli] object Edge:
+
+  def await[A](future: Future[A]): A = Await.result(future, Duration.Inf)
+
+  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most `graceMillis`. */
+  def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
+    val main = Thread.currentThread()
+    val hook = Thread(() =>
+      stop()
+      main.join(graceMillis)
+    )
+    Runtime.getRuntime.addShutdownHook(hook)
+    try body
+    finally
+      try
+        val _ = Runtime.getRuntime.removeShutdownHook(hook)
+      catch case _: IllegalStateException => () // The JVM is shutting down: the hook runs.

@@ -1,0 +1,60 @@
+package skein.cli
+
+import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
+import java.nio.file.{Files, Path}
+import mainargs.{Flag, ParserForClass, arg}
+import scala.jdk.CollectionConverters.*
+import skein.experiment.FlySettings
+
+/** What to fly; what is not given stands in the configuration `skein.fly`. */
+final case class FlightOptions(
+    @arg(doc = "paused, sequential, futures, stream or predictive; may be given several times")
+    loop: Seq[String],
+    @arg(doc =
+      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; may be given several times"
+    )
+    link: Seq[String],
+    @arg(doc = "of each flight, for example 60s")
+    duration: Option[String],
+    @arg(doc = "between decisions for one vehicle, for example 100ms")
+    period: Option[String],
+    @arg(doc = "of every random choice")
+    seed: Option[Long],
+    @arg(doc = "duels side by side, two vehicles each")
+    pairs: Option[Int],
+    @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
+    asPublished: Flag,
+    @arg(doc = "a HOCON file with settings of skein.fly")
+    config: Option[String]
+):
+
+  /** Flags before file before defaults. */
+  def settings: Either[String, FlySettings] =
+    for
+      file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
+      settings <- FlySettings.read(flags.withFallback(file).withFallback(ConfigFactory.load()).resolve())
+    yield settings
+
+  private def flags: Config =
+    def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
+    Seq(
+      "loops"        -> strings(loop),
+      "links"        -> strings(link),
+      "duration"     -> duration,
+      "period"       -> period,
+      "seed"         -> seed,
+      "pairs"        -> pairs,
+      "as-published" -> Option.when(asPublished.value)(true)
+    ).foldLeft(ConfigFactory.empty):
+      case (config, (key, Some(value))) =>
+        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
+      case (config, _) => config
+
+object FlightOptions:
+  given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
+
+  private def read(path: String): Either[String, Config] =
+    if !Files.isReadable(Path.of(path)) then Left(s"cannot read the configuration $path")
+    else
+      try Right(ConfigFactory.parseFile(Path.of(path).toFile))
+      catch case mistake: ConfigException => Left(mistake.getMessage)

@@ -1,0 +1,108 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import java.time.LocalDateTime
+import java.time.format.DateTimeFormatter
+import mainargs.{ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.*
+import skein.experiment.*
+import skein.link.{Address, Clock, TcpTransport}
+import skein.loop.Outcome
+import skein.report.{Report, SummaryTables}
+
+/** Options of `./skein fly`. */
+final case class FlyOptions(
+    flights: FlightOptions,
+    @arg(doc =
+      "HOST:PORT of a simulator that runs already, AirSim for example; without it, each flight has a built-in one"
+    )
+    simulator: Option[String],
+    @arg(doc =
+      "real, or virtual: the same flights in virtual time, many times faster, the same for the same seed"
+    )
+    clock: String = "real",
+    @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
+    out: Option[String]
+)
+
+object FlyCommand
+    extends OptionsCommand[FlyOptions](
+      "fly",
+      "flies the paper's experiment and writes a report",
+      ParserForClass[FlyOptions]
+    ):
+
+  protected def execute(options: FlyOptions): Either[String, Unit] =
+    for
+      settings  <- options.flights.settings
+      simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
+      out = options.out.fold(defaultFolder)(Path.of(_))
+      landed <- options.clock match
+        case "real"                         => flyLive(settings, simulator, out)
+        case "virtual" if simulator.isEmpty => flyVirtual(settings, out)
+        case "virtual"                      =>
+          Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
+        case other => Left(s"--clock: expected real or virtual, came '$other'")
+      _ <- report(landed, out)
+    yield ()
+
+  private def defaultFolder: Path =
+    Path.of("flights", LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss")))
+
+  private def flyLive(
+      settings: FlySettings,
+      simulator: Option[Address],
+      out: Path
+  ): Either[String, Vector[Landed]] =
+    Files.createDirectories(out): Unit
+    given system: ActorSystem = ActorSystem("skein")
+    val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator)
+    try
+      // Flights on one simulator that runs already follow each other; built-in ones fly side by side.
+      val rounds = if simulator.isDefined then settings.plans.map(Vector(_)) else Vector(settings.plans)
+      rounds.foldLeft[Either[String, Vector[Landed]]](Right(Vector.empty)): (soFar, plans) =>
+        soFar.flatMap(before => flyTogether(rigs, plans, settings, out).map(before ++ _))
+    finally
+      val _ = Edge.await(system.terminate())
+
+  private def flyTogether(rigs: FlightRigs, plans: Vector[FlightPlan], settings: FlySettings, out: Path)(using
+      system: ActorSystem
+  ): Either[String, Vector[Landed]] =
+    import system.dispatcher
+    Edge
+      .await(LiveFlights.start(rigs, plans, out))
+      .map: flights =>
+        val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
+        val timer =
+          system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
+        try Edge.untilInterrupted(() => flights.stop())(Edge.await(flights.landed))
+        finally
+          val _ = timer.cancel()
+          board.close()
+
+  private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[Landed]] =
+    Files.createDirectories(out): Unit
+    VirtualFlights.fly(settings, settings.plans, out)((landed, contents) =>
+      Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
+    )
+
+  /** Shows what was flown, also when a flight failed: its recording is readable to its end. */
+  private def report(landed: Vector[Landed], out: Path): Either[String, Unit] =
+    for
+      flights <- Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n"))
+      _ = Console.out.println(SummaryTables.text(flights))
+      output <- Report.write(flights, out)
+      _ = Console.out.println(s"Report: ${output.page}")
+      _ <- allWell(landed)
+    yield ()
+
+  private def allWell(landed: Vector[Landed]): Either[String, Unit] =
+    val failures = landed.flatMap: flight =>
+      val ended = flight.outcome match
+        case Outcome.Failed(reason)              => Some(reason)
+        case Outcome.Completed | Outcome.Stopped => None
+      ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
+        s"${flight.plan.id} failed: $reason"
+      )
+    Either.cond(failures.isEmpty, (), failures.mkString("\n"))

@@ -1,0 +1,46 @@
+package skein.cli
+
+import org.slf4j.LoggerFactory
+
+object Main:
+  private val commands: Seq[Command] = Seq(
+    FlyCommand,
+    SpreadCommand,
+    ServeCommand,
+    LinkCommand,
+    LatencyCommand,
+    ReportCommand,
+    ExportCommand,
+    ReplayCommand,
+    TortureCommand
+  )
+
+  def main(arguments: Array[String]): Unit = sys.exit(run(arguments.toSeq))
+
+  private def run(arguments: Seq[String]): Int =
+    arguments.headOption match
+      case None | Some("--help" | "-h" | "help") =>
+        Console.out.println(help)
+        0
+      case Some(word) =>
+        commands.find(_.name == word) match
+          case Some(command) =>
+            // Set up before several threads of a command need it at once, which it would remark on.
+            val _ = LoggerFactory.getILoggerFactory
+            command.run(arguments.tail)
+          case None =>
+            Console.err.println(
+              s"skein: no command '$word'. There are: ${commands.map(_.name).mkString(", ")}."
+            )
+            2
+
+  private def help: String =
+    val width = commands.map(_.name.length).maxOption.getOrElse(0)
+    val lines = commands.map(command => s"  ${command.name.padTo(width, ' ')}  ${command.summary}")
+    s"""Skein: control graphs for teams of drones that know how old their data is.
+       |
+       |Usage: ./skein COMMAND [OPTION…]
+       |
+       |${lines.mkString("\n")}
+       |
+       |./skein COMMAND --help tells a command's options.""".stripMargin

@@ -1,0 +1,68 @@
+package skein.cli
+
+import mainargs.{ParserForClass, arg}
+import skein.torture.{Ordeal, Torture, Verdict}
+import skein.units.*
+
+/** Options of `./skein torture`. */
+final case class TortureOptions(
+    @arg(doc = "flights to fly, one for each seed")
+    seeds: Int = 100,
+    @arg(doc = "the first seed")
+    first: Long = 1,
+    @arg(doc = "of each flight, for example 60s")
+    duration: String = "60s",
+    @arg(doc = "flights at once; without it, as many as there are cores")
+    threads: Option[Int]
+)
+
+object TortureCommand
+    extends OptionsCommand[TortureOptions](
+      "torture",
+      "flies teams in virtual time while everything goes wrong, and checks what must hold all the same",
+      ParserForClass[TortureOptions]
+    ):
+
+  protected def execute(options: TortureOptions): Either[String, Unit] =
+    for
+      duration <- Arguments
+        .span(options.duration)
+        .filterOrElse(
+          _ >= Ordeal.Shortest,
+          s"expected ${Ordeal.Shortest.toSeconds} s or more, came ${options.duration}"
+        )
+        .left
+        .map(mistake => s"--duration: $mistake")
+      threads = options.threads.getOrElse(Runtime.getRuntime.availableProcessors)
+      _      <- Either.cond(options.seeds > 0 && threads > 0, (), "--seeds and --threads: expected 1 or more")
+      failed <- Right(fly(options, duration, threads))
+      _      <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
+    yield ()
+
+  private def fly(options: TortureOptions, duration: Span, threads: Int): Vector[Verdict] =
+    val startedAt = System.nanoTime()
+    var flown     = 0
+    var shownAt   = startedAt
+    var failed    = Vector.empty[Verdict]
+
+    def show(): Unit =
+      val seconds = (System.nanoTime() - startedAt) * 1e-9
+      val speed   = flown * duration.toSeconds / seconds
+      Console.err.println(
+        f"$flown of ${options.seeds} flights of ${options.duration}, ${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
+      )
+
+    Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads): verdict =>
+      flown += 1
+      if !verdict.isClean then
+        failed :+= verdict
+        Console.out.println(verdict.ordeal)
+        verdict.violations.foreach(line => Console.out.println(s"  $line"))
+        Console.out.println(
+          s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}"
+        )
+      if System.nanoTime() - shownAt > 10_000_000_000L then
+        shownAt = System.nanoTime()
+        show()
+    show()
+    failed

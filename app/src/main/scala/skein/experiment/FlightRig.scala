@@ -1,0 +1,181 @@
+package skein.experiment
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.*
+import skein.airsim.simulator.{SimulatorServer, SimulatorSettings}
+import skein.link.*
+import skein.loop.*
+import skein.policy.Scenario
+import skein.record.{Flight as FlightRow, *}
+import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** One flight put together: simulator, link, client, vehicles at their starts, loop. */
+final class FlightRig private[experiment] (
+    val plan: FlightPlan,
+    val flight: Flight,
+    watch: Watch,
+    startedAt: Instant,
+    clock: Clock,
+    shutDown: () => Future[Done]
+)(using ExecutionContext):
+
+  /** How far it is, in the controller's time. */
+  def progress: Progress = Progress(plan.id, clock.now().since(startedAt), watch.sight)
+
+  /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
+  val landed: Future[Landed] =
+    for
+      outcome <- flight.outcome
+      _       <- shutDown()
+      written <- watch.close()
+    yield Landed(plan, outcome, written)
+
+/** How a flight ended, and what is on record. */
+final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])
+
+/** Puts flights together.
+  *
+  * @param simulator
+  *   the address of a simulator that runs already; without one, each flight has a built-in simulator of its own
+  */
+final class FlightRigs(
+    transport: Transport,
+    clock: Clock,
+    settings: FlySettings,
+    simulator: Option[Address]
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  val scenario: Scenario = Scenario.duels(settings.pairs, settings.asPublished)
+
+  /** What a recording of this flight begins with. */
+  def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
+    FlightRow(
+      plan.id,
+      plan.loop.label,
+      plan.link.name,
+      plan.seed,
+      settings.period,
+      settings.duration,
+      clockKind,
+      simulator.fold("built-in")(_.toString),
+      if settings.asPublished then "duel, as published" else "duel",
+      FlightRigs.version,
+      clock.now()
+    ),
+    scenario.agents.map(agent =>
+      Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+    ),
+    RecordedPlan.parameters(settings)
+  )
+
+  /** Prepares and starts a flight.
+    *
+    * @return
+    *   or why it cannot be flown
+    */
+  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightRig]] =
+    val starting =
+      for
+        server <- serve()
+        address = server.fold(simulator.get)(_.address)
+        ready <- prepare(address)
+        proxy <- between(plan, address)
+        watch  = Watch(recorder)
+        client = fly(plan, proxy.fold(address)(_.address), watch)
+        crafts = ready.zipWithIndex.map((vehicle, index) =>
+          MultirotorCraft(Multirotor(client, vehicle.name, vehicle.originNed, index))
+        )
+        _ <- client.ping()
+      yield
+        val timely       = LoopSettings.every(settings.period)
+        val loopSettings = if settings.asPublished then timely.asPublished else timely
+        val team         = Team(scenario, crafts, clock, watch, loopSettings)
+        val startedAt    = clock.now()
+        val flight       =
+          Flight.start(plan.loop, team, AirSimStepper(client), settings.duration, clock, watch)
+        def shutDown() =
+          for
+            _ <- client.close()
+            _ <- proxy.fold(Future.successful(Done))(_.close())
+            _ <- server.fold(Future.successful(Done))(_.close())
+          yield Done
+        Right(FlightRig(plan, flight, watch, startedAt, clock, () => shutDown()))
+    starting.recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
+
+  private def serve(): Future[Option[SimulatorServer]] =
+    if simulator.isDefined then Future.successful(None)
+    else
+      val vehicles = scenario.agents.map(agent =>
+        VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
+      )
+      SimulatorServer
+        .start(
+          SimulatorSettings(
+            WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+            FlightRigs.anyPort
+          ),
+          transport,
+          clock
+        )
+        .map(Some(_))
+
+  /** Over a connection of its own, without the link: this is not part of the flight. */
+  private def prepare(address: Address): Future[Vector[Multirotor]] =
+    val client      = AirSimClient(RpcClient(transport, address, clock))
+    val preparation = Preparation(client)
+    val prepared    = if simulator.isDefined then preparation.climb(scenario) else preparation.place(scenario)
+    prepared
+      .flatMap(result => client.close().map(_ => result))
+      .map(_.fold(error => throw CannotFly(error.message), identity))
+
+  /** The emulated link, if the flight is to have one. */
+  private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
+    if plan.link == LatencyProfile.none then Future.successful(None)
+    else
+      val link = EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+      LinkProxy.start(FlightRigs.anyPort, simulator, link, transport).map(Some(_))
+
+  private def fly(plan: FlightPlan, address: Address, recorder: Recorder): AirSimClient =
+    val rpc = RpcClient(
+      transport,
+      address,
+      clock,
+      FlightRigs.rpcSettings(plan.loop),
+      plan.seed,
+      event =>
+        FlightRigs.eventOf(event).foreach((kind, detail) =>
+          recorder.offer(Event(clock.now(), kind, None, detail))
+        )
+    )
+    AirSimClient(rpc, timeout = FlightRigs.askTimeout)
+
+  private case class CannotFly(reason: String) extends RuntimeException(reason)
+
+object FlightRigs:
+  /** The paper's, of every question. */
+  val askTimeout: Span = Span.ofMillis(500)
+
+  /** Of the client that flies a loop. */
+  def rpcSettings(loop: LoopKind): RpcSettings = loop match
+    // Each command must reach the simulator before the step that follows it: one ordered connection.
+    case LoopKind.Paused => RpcSettings(controlConnections = 1)
+    case _               => RpcSettings()
+
+  private val anyPort = Address("127.0.0.1", 0)
+
+  private val version = Option(getClass.getPackage.getImplementationVersion).getOrElse("development")
+
+  /** What of the client's events a recording keeps; failed calls are recorded by whoever called. */
+  private def eventOf(event: RpcEvent): Option[(EventKind, String)] = event match
+    case RpcEvent.Disconnected(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.ConnectFailed(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.LateReply(method, _, _, after) =>
+      Some(EventKind.LateReply -> f"$method answered after ${after.toMillis}%.0f ms")
+    case _ => None

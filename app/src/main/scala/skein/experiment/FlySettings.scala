@@ -1,0 +1,80 @@
+package skein.experiment
+
+import com.typesafe.config.Config
+import java.nio.file.Path
+import pureconfig.*
+import pureconfig.error.CannotConvert
+import scala.concurrent.duration.FiniteDuration
+import skein.loop.LoopKind
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network. */
+final case class FlySettings(
+    loops: List[LoopKind],
+    links: List[LatencyProfile],
+    duration: Span,
+    period: Span,
+    seed: Long,
+    pairs: Int,
+    asPublished: Boolean
+) derives ConfigReader:
+
+  /** The flights, the truth first. Their links' seeds differ, so that no two flights meet the same delays. */
+  def plans: Vector[FlightPlan] =
+    val truth  = Option.when(loops.contains(LoopKind.Paused))((LoopKind.Paused, LatencyProfile.none))
+    val others =
+      for
+        link <- links
+        loop <- loops if loop != LoopKind.Paused
+      yield (loop, link)
+    (truth.toVector ++ others).distinct.zipWithIndex.map:
+      case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
+
+/** One flight of an experiment. */
+final case class FlightPlan(id: String, loop: LoopKind, link: LatencyProfile, seed: Long):
+
+  /** Where its recording goes. */
+  def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
+
+object FlySettings:
+
+  /** Reads `skein.fly`.
+    *
+    * @return
+    *   or every mistake, with its file, line, and what was expected
+    */
+  def read(config: Config): Either[String, FlySettings] =
+    ConfigSource
+      .fromConfig(config)
+      .at("skein.fly")
+      .load[FlySettings]
+      .left
+      .map(_.prettyPrint())
+      .flatMap(validated)
+
+  private def validated(settings: FlySettings): Either[String, FlySettings] =
+    val mistakes = Seq(
+      Option.when(settings.loops.isEmpty)("loops: expected at least one loop, came none"),
+      Option.when(
+        settings.duration <= Span.Zero
+      )(s"duration: expected more than 0, came ${settings.duration.toSeconds} s"),
+      Option.when(
+        settings.period < Span.ofMillis(1)
+      )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
+      Option.when(
+        settings.pairs < 1 || settings.pairs > 50
+      )(s"pairs: expected 1 to 50, came ${settings.pairs}")
+    ).flatten
+    Either.cond(mistakes.isEmpty, settings, mistakes.mkString("skein.fly.", "\nskein.fly.", ""))
+
+  private given ConfigReader[Span] =
+    ConfigReader[FiniteDuration].map(duration => Span.ofNanos(duration.toNanos))
+
+  private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
+
+  private given ConfigReader[LatencyProfile] =
+    parsed("latency profile", text => LatencyProfile.parse(text, TextFile.read).left.map(_.message))
+
+  private def parsed[A](what: String, parse: String => Either[String, A]): ConfigReader[A] =
+    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, what, _)))

@@ -1,0 +1,54 @@
+package skein.experiment
+
+import java.nio.file.Path
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.record.DuckDbRecorder
+
+/** Flights in real time, side by side, each with a recording of its own in `folder`. */
+final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSystem):
+  import system.dispatcher
+
+  /** Completes when all have ended and their recordings are closed. */
+  val landed: Future[Vector[Landed]] = Future.sequence(rigs.map(_.landed))
+
+  /** Ends all flights now; vehicles hover. */
+  def stop(): Unit = rigs.foreach(_.flight.stop())
+
+  def progress: Vector[Progress] = rigs.map(_.progress)
+
+object LiveFlights:
+
+  /** Starts all flights, or none.
+    *
+    * @return
+    *   or why they cannot be flown; those that had started were stopped again
+    */
+  def start(rigs: FlightRigs, plans: Vector[FlightPlan], folder: Path)(using
+      system: ActorSystem
+  ): Future[Either[String, LiveFlights]] =
+    import system.dispatcher
+    Future
+      .sequence(plans.map(start(rigs, _, folder)))
+      .flatMap: started =>
+        val flying = started.collect { case Right(rig) => rig }
+        started.collectFirst { case Left(reason) => reason } match
+          case None         => Future.successful(Right(LiveFlights(flying)))
+          case Some(reason) =>
+            flying.foreach(_.flight.stop())
+            Future.sequence(flying.map(_.landed)).map(_ => Left(reason))
+
+  private def start(rigs: FlightRigs, plan: FlightPlan, folder: Path)(using
+      system: ActorSystem
+  ): Future[Either[String, FlightRig]] =
+    import system.dispatcher
+    DuckDbRecorder
+      .open(plan.file(folder), rigs.heading(plan, clockKind = "real"))
+      .flatMap:
+        case Left(error)     => Future.successful(Left(error.message))
+        case Right(recorder) =>
+          rigs
+            .start(plan, recorder)
+            .flatMap:
+              case Left(reason) => recorder.close().map(_ => Left(s"${plan.id}: $reason"))
+              case started      => Future.successful(started)

@@ -1,0 +1,42 @@
+package skein.experiment
+
+import skein.loop.LoopKind
+import skein.policy.Scenario
+import skein.record.{Parameter, Recording}
+import skein.signal.LatencyProfile
+
+/** What a recording says was flown: enough to fly it again. */
+final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
+  def scenario: Scenario = Scenario.duels(settings.pairs, settings.asPublished)
+
+object RecordedPlan:
+  private val Pairs       = "pairs"
+  private val AsPublished = "asPublished"
+
+  /** What [[of]] needs besides the columns that every recording has. */
+  def parameters(settings: FlySettings): Seq[Parameter] =
+    Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
+
+  /** Reads it back.
+    *
+    * @return
+    *   or what is missing, or is not what `skein fly` records
+    */
+  def of(recording: Recording): Either[String, RecordedPlan] =
+    val flight     = recording.flight
+    val parameters = recording.heading.parameters.map(parameter => parameter.name -> parameter.value).toMap
+
+    def parameter[A](name: String, expected: String)(parse: String => Option[A]): Either[String, A] =
+      parameters.get(name) match
+        case None        => Left(s"the recording has no parameter '$name'")
+        case Some(value) => parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
+
+    for
+      pairs       <- parameter(Pairs, "a number from 1")(_.toIntOption.filter(_ > 0))
+      asPublished <- parameter(AsPublished, "true or false")(_.toBooleanOption)
+      loop        <- LoopKind.parse(flight.loop)
+      link        <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+    yield RecordedPlan(
+      FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, pairs, asPublished),
+      FlightPlan(flight.id, loop, link, flight.seed)
+    )

@@ -1,0 +1,41 @@
+package skein.plot
+
+import java.util.Locale
+
+/** One axis: what it shows, from where to where, and where its marks stand. */
+final case class Axis(label: String, from: Double, to: Double, ticks: Vector[Double]):
+  require(from < to, s"axis '$label' runs from $from to $to")
+
+  /** Where a value lies: 0 at the axis' begin, 1 at its end. */
+  def share(value: Double): Double = (value - from) / (to - from)
+
+  /** A tick's text, with as many decimals as the ticks' distance needs. */
+  def text(tick: Double): String =
+    val step     = if ticks.sizeIs > 1 then ticks(1) - ticks(0) else 1
+    val decimals = math.ceil(-math.log10(step) - 1e-9).toInt.max(0)
+    // Avoids a minus before zero.
+    String.format(Locale.ROOT, s"%.${decimals}f", if math.abs(tick) < step / 1e6 then 0.0 else tick)
+
+object Axis:
+
+  /** Ends at ticks, so that all values lie between. */
+  def around(label: String, least: Double, most: Double, ticks: Int = 5): Axis =
+    val upper = if most > least then most else least + 1
+    val step  = niceStep((upper - least) / ticks)
+    val from  = math.floor(least / step + 1e-9) * step
+    val to    = math.ceil(upper / step - 1e-9) * step
+    Axis(label, from, to, ticksBetween(from, to, step))
+
+  /** Ends exactly where told. */
+  def exactly(label: String, from: Double, to: Double, ticks: Int = 5): Axis =
+    Axis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
+
+  /** The smallest of 1, 2, 5 × 10^n^ that is not below `atLeast`. */
+  private def niceStep(atLeast: Double): Double =
+    val power = math.pow(10, math.floor(math.log10(atLeast)))
+    Seq(1, 2, 5, 10).map(_ * power).find(_ >= atLeast * (1 - 1e-9)).getOrElse(10 * power)
+
+  private def ticksBetween(from: Double, to: Double, step: Double): Vector[Double] =
+    val first = math.ceil(from / step - 1e-9).toLong
+    val last  = math.floor(to / step + 1e-9).toLong
+    Vector.range(first, last + 1).map(_ * step)

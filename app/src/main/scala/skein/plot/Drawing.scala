@@ -1,0 +1,95 @@
+package skein.plot
+
+/** A picture: shapes on a canvas, in the order in which they are painted. Lengths are in CSS pixels, 1/96 inch, from
+  * the top left corner, y downwards. [[Svg]] and [[Png]] render it.
+  */
+final case class Drawing(width: Double, height: Double, shapes: Vector[Shape])
+
+object Drawing:
+
+  /** Drawings side by side and line by line; every cell is as large as the largest drawing. */
+  def grid(cells: Seq[Drawing], columns: Int): Drawing =
+    require(cells.nonEmpty && columns > 0, "a grid needs a cell and a column")
+    val width  = cells.map(_.width).max
+    val height = cells.map(_.height).max
+    val shapes = cells.zipWithIndex.flatMap: (cell, index) =>
+      cell.shapes.map(_.moved(index % columns * width, index / columns * height))
+    Drawing(width * columns.min(cells.size), height * ((cells.size + columns - 1) / columns), shapes.toVector)
+
+  /** Drawings one below the other. */
+  def stacked(parts: Drawing*): Drawing =
+    val tops = parts.scanLeft(0.0)(_ + _.height)
+    Drawing(
+      parts.map(_.width).max,
+      tops.last,
+      parts.zip(tops).flatMap((part, top) => part.shapes.map(_.moved(0, top))).toVector
+    )
+
+final case class Point(x: Double, y: Double):
+  def moved(dx: Double, dy: Double): Point = Point(x + dx, y + dy)
+
+/** @param rgb
+  *   0xRRGGBB
+  * @param opacity
+  *   from 0, unseen, to 1
+  */
+final case class Colour(rgb: Int, opacity: Double = 1):
+  def faded(opacity: Double): Colour = copy(opacity = opacity)
+
+  /** Mixed with white: `share` of this colour. */
+  def tinted(share: Double): Colour =
+    def channel(shift: Int) = math.round(255 + ((rgb >> shift & 0xff) - 255) * share).toInt << shift
+    copy(rgb = channel(16) | channel(8) | channel(0))
+
+/** @param dash
+  *   lengths of dash and gap; empty for a solid line
+  */
+final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty)
+
+enum Anchor:
+  case Start, Middle, End
+
+enum Shape:
+  /** Straight lines from point to point. */
+  case Path(
+      points: Vector[Point],
+      stroke: Option[Stroke],
+      fill: Option[Colour] = None,
+      closed: Boolean = false
+  )
+
+  case Disc(centre: Point, radius: Double, stroke: Option[Stroke], fill: Option[Colour] = None)
+
+  /** One line of text.
+    *
+    * @param at
+    *   on the baseline, at the text's anchor
+    * @param upwards
+    *   turned by a quarter, to be read from below
+    */
+  case Text(
+      at: Point,
+      content: String,
+      size: Double,
+      colour: Colour,
+      anchor: Anchor = Anchor.Start,
+      bold: Boolean = false,
+      upwards: Boolean = false
+  )
+
+  def moved(dx: Double, dy: Double): Shape = this match
+    case path: Path => path.copy(points = path.points.map(_.moved(dx, dy)))
+    case disc: Disc => disc.copy(centre = disc.centre.moved(dx, dy))
+    case text: Text => text.copy(at = text.at.moved(dx, dy))
+
+object Shape:
+  def line(from: Point, to: Point, stroke: Stroke): Shape = Path(Vector(from, to), Some(stroke))
+
+  def box(left: Double, top: Double, right: Double, bottom: Double, fill: Colour): Shape =
+    Path(rectangle(left, top, right, bottom), stroke = None, Some(fill), closed = true)
+
+  def outline(left: Double, top: Double, right: Double, bottom: Double, stroke: Stroke): Shape =
+    Path(rectangle(left, top, right, bottom), Some(stroke), closed = true)
+
+  private def rectangle(left: Double, top: Double, right: Double, bottom: Double): Vector[Point] =
+    Vector(Point(left, top), Point(right, top), Point(right, bottom), Point(left, bottom))

@@ -1,0 +1,30 @@
+package skein.plot
+
+/** One line that says what marks stand for. */
+object Legend:
+  private val gap         = 18.0
+  private val letterWidth = 6.3
+  private val middle      = 9.0
+  private val height      = 24.0
+
+  /** @param width
+    *   of the mark
+    * @param mark
+    *   its shapes, when its left end's middle is at the point
+    */
+  final case class Item(label: String, width: Double, mark: Point => Vector[Shape])
+
+  def line(label: String, stroke: Stroke): Item =
+    Item(label, 20, at => Vector(Shape.line(at, at.moved(20, 0), stroke)))
+
+  def box(label: String, fill: Colour): Item =
+    Item(label, 12, at => Vector(Shape.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
+
+  /** Items from left to right; texts may be a little narrower than the room they get. */
+  def apply(left: Double, items: Item*): Drawing =
+    val starts =
+      items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
+    val shapes = items.zip(starts).flatMap: (item, start) =>
+      item.mark(Point(start, middle)) :+
+        Shape.Text(Point(start + item.width + 6, middle + 4), item.label, Ink.labelSize, Ink.labelColour)
+    Drawing(starts.last - gap, height, shapes.toVector)

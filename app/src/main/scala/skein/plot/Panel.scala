@@ -1,0 +1,71 @@
+package skein.plot
+
+/** A rectangle of a drawing with an axis below and one at its left; turns values into points. */
+final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Double, height: Double):
+  import Ink.*
+
+  def right: Double  = left + width
+  def bottom: Double = top + height
+
+  def at(xValue: Double, yValue: Double): Point = Point(atX(xValue), atY(yValue))
+  def atX(value: Double): Double                = left + x.share(value) * width
+  def atY(value: Double): Double                = bottom - y.share(value) * height
+
+  /** A line through values; at most one point per tenth of a pixel is kept. */
+  def curve(values: Iterable[(Double, Double)], stroke: Stroke): Shape =
+    val points = values.iterator.map(at(_, _)).toVector
+    val kept   = points.foldLeft(Vector.empty[Point]): (kept, point) =>
+      if kept.lastOption.exists(last => math.hypot(point.x - last.x, point.y - last.y) < 0.1) then kept
+      else kept :+ point
+    Shape.Path(kept, Some(stroke))
+
+  /** Grid lines, and lines, numbers and names of both axes; to be painted below the values. */
+  def axes: Vector[Shape] = grid ++ xAxis ++ yAxis
+
+  private def grid: Vector[Shape] =
+    x.ticks.map(tick => Shape.line(Point(atX(tick), top), Point(atX(tick), bottom), gridLine)) ++ rules(
+      left,
+      right
+    )
+
+  /** Horizontal lines at the ticks of the axis at the left. */
+  def rules(from: Double, to: Double): Vector[Shape] =
+    y.ticks.map(tick => Shape.line(Point(from, atY(tick)), Point(to, atY(tick)), gridLine))
+
+  def xAxis: Vector[Shape] =
+    x.ticks.map: tick =>
+      Shape.Text(Point(atX(tick), bottom + 14), x.text(tick), tickSize, tickColour, Anchor.Middle)
+    ++ Vector(
+      Shape.line(Point(left, bottom), Point(right, bottom), axisLine),
+      Shape.Text(Point(left + width / 2, bottom + 30), x.label, labelSize, labelColour, Anchor.Middle)
+    )
+
+  def yAxis: Vector[Shape] =
+    y.ticks.map: tick =>
+      Shape.Text(Point(left - 6, atY(tick) + 3.5), y.text(tick), tickSize, tickColour, Anchor.End)
+    ++ Vector(
+      Shape.line(Point(left, top), Point(left, bottom), axisLine),
+      Shape.Text(
+        Point(left - 36, top + height / 2),
+        y.label,
+        labelSize,
+        labelColour,
+        Anchor.Middle,
+        upwards = true
+      )
+    )
+
+  def title(text: String): Shape =
+    Shape.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
+
+/** The looks that all pictures share. */
+object Ink:
+  val tickSize  = 10.0
+  val labelSize = 11.0
+  val titleSize = 12.0
+
+  val titleColour: Colour = Colour(0x1a1a1a)
+  val labelColour: Colour = Colour(0x333333)
+  val tickColour: Colour  = Colour(0x555555)
+  val gridLine: Stroke    = Stroke(Colour(0xe9e9e9), 0.8)
+  val axisLine: Stroke    = Stroke(Colour(0x888888), 0.9)

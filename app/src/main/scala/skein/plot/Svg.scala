@@ -1,0 +1,72 @@
+package skein.plot
+
+import java.util.Locale
+import scalatags.Text.implicits.*
+import scalatags.Text.svgAttrs.*
+import scalatags.Text.svgTags.{circle, path, svg, text}
+import scalatags.Text.{Attr, Modifier, TypedTag}
+
+/** Renders drawings as SVG with text as text. */
+object Svg:
+  private val fonts = "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
+
+  /** An element of the drawing's own size, for a style sheet to shrink where there is less room. */
+  def element(drawing: Drawing, description: String): TypedTag[String] =
+    svg(
+      xmlns              := "http://www.w3.org/2000/svg",
+      width              := number(drawing.width),
+      height             := number(drawing.height),
+      viewBox            := s"0 0 ${number(drawing.width)} ${number(drawing.height)}",
+      attr("role")       := "img",
+      attr("aria-label") := description,
+      fontFamily         := fonts,
+      drawing.shapes.map(render)
+    )
+
+  /** A file of its own. */
+  def file(drawing: Drawing, description: String): String =
+    s"""<?xml version="1.0" encoding="UTF-8"?>\n${element(drawing, description).render}\n"""
+
+  private def render(shape: Shape): TypedTag[String] = shape match
+    case Shape.Path(points, line, area, closed) =>
+      val steps = points.map(point => s"${number(point.x)} ${number(point.y)}")
+      path(d := steps.mkString("M", "L", if closed then "Z" else ""), paint(line, area))
+    case Shape.Disc(centre, radius, line, area) =>
+      circle(cx := number(centre.x), cy := number(centre.y), r := number(radius), paint(line, area))
+    case Shape.Text(at, content, size, colour, anchor, bold, upwards) =>
+      text(
+        x          := number(at.x),
+        y          := number(at.y),
+        fontSize   := number(size),
+        textAnchor := anchor.toString.toLowerCase(Locale.ROOT),
+        colourOf(fill, fillOpacity, colour),
+        Option.when(bold)(fontWeight   := "600"),
+        Option.when(upwards)(transform := s"rotate(-90 ${number(at.x)} ${number(at.y)})"),
+        content
+      )
+
+  private def paint(line: Option[Stroke], area: Option[Colour]): Seq[Modifier] =
+    val filled = area match
+      case Some(colour) => colourOf(fill, fillOpacity, colour)
+      case None         => Seq[Modifier](fill := "none")
+    val stroked = line.toSeq.flatMap: line =>
+      colourOf(stroke, strokeOpacity, line.colour) ++ Seq[Modifier](
+        strokeWidth    := number(line.width),
+        strokeLinejoin := "round",
+        Option.when(line.dash.nonEmpty)(strokeDasharray := line.dash.map(number).mkString(" "))
+      )
+    filled ++ stroked
+
+  private def colourOf(
+      name: Attr,
+      opacity: Attr,
+      colour: Colour
+  ): Seq[Modifier] =
+    Seq(name := f"#${colour.rgb}%06x", Option.when(colour.opacity < 1)(opacity := number(colour.opacity)))
+
+  /** A hundredth of a pixel is finer than any eye or printer. */
+  private def number(value: Double): String =
+    val text = String.format(Locale.ROOT, "%.2f", value)
+    text.reverse.dropWhile(_ == '0').dropWhile(_ == '.').reverse match
+      case ""      => "0"
+      case trimmed => trimmed

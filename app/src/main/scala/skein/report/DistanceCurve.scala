@@ -1,0 +1,31 @@
+package skein.report
+
+import skein.units.*
+
+/** The horizontal distance between two vehicles at equal instants of the simulator's clock.
+  *
+  * @param points
+  *   seconds since both were first seen, every 20 ms, and metres; never empty
+  */
+final case class DistanceCurve private (points: Vector[(Double, Double)]):
+
+  /** When they were closest, s, and how close, m. */
+  val closest: (Double, Double) = points.minBy(_._2)
+
+  /** Distances over the last 10 s, evenly spaced in time, m. */
+  val lastTenSeconds: Distribution =
+    val end = points.last._1
+    Distribution.of(points.collect { case (time, distance) if time >= end - 10 => distance }).get
+
+object DistanceCurve:
+  private val step = Span.ofMillis(20)
+
+  /** Over the time for which both tracks run; none if there is no such time. */
+  def between(one: Track, other: Track): Option[DistanceCurve] =
+    val from = one.from.max(other.from)
+    val to   = one.to.min(other.to)
+    Option.when(from < to):
+      val count = to.since(from).toNanos / step.toNanos + 1
+      DistanceCurve(Vector.tabulate(count.toInt): index =>
+        val time = from + step * index
+        (time.since(from).toSeconds, one.at(time).horizontalDistance(other.at(time))))

@@ -1,0 +1,51 @@
+package skein.report
+
+import skein.plot.Drawing
+
+/** A picture of the report.
+  *
+  * @param name
+  *   of its files
+  * @param caption
+  *   what it shows and how to read it
+  */
+final case class Figure(name: String, title: String, caption: String, drawing: Drawing)
+
+object Figure:
+
+  /** The pictures that the flights give; those without anything to show are left out. */
+  def all(set: FlightSet): Vector[Figure] = Vector(
+    TrajectoryFigure(set).map: drawing =>
+      Figure(
+        "trajectories",
+        "Trajectories",
+        "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has the colour of its " +
+          "loop, the evader is grey; rings are starts, discs are ends.",
+        drawing
+      ),
+    DistanceFigure(set).map: drawing =>
+      Figure(
+        "distance",
+        "Distance over time",
+        "Horizontal distance between pursuer and evader at equal instants of the simulator's clock. Right of each " +
+          "panel, mean and range over the last 10 s: ours as coloured discs, the paper's as black diamonds.",
+        drawing
+      ),
+    ObservationFigure(set).map: drawing =>
+      Figure(
+        "observations",
+        "What decisions were made on",
+        "Means over all decisions. Ages count from a reading's arrival, as published, and so hide the network; the " +
+          "dashed outlines are the true ages, from when physics was sampled. Diamonds are the paper's means.",
+        drawing
+      ),
+    LatencyFigure(set).map: drawing =>
+      Figure(
+        "latency",
+        "Latency",
+        "Round trips as measured in these flights (bars), and the link's profile (black line) with its 5, 50 and " +
+          "95 % quantiles; direct and vpn are the paper's own samples. An emulated link takes half of one sample there " +
+          "and half of another back, so its round trips spread less (orange line).",
+        drawing
+      )
+  ).flatten

@@ -1,0 +1,31 @@
+package skein.report
+
+/** Flights that are reported together; in the order of the paper: by link, then by loop. */
+final case class FlightSet private (flights: Vector[FlightSummary]):
+
+  def links: Vector[String] = flights.map(_.flight.link).distinct
+
+  def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
+
+  /** The flight that the others are measured against. */
+  val truth: Option[FlightSummary] = flights.find(_.flight.loop == "paused")
+
+  /** Mean distance of the last 10 s against the truth's, as a share of the truth's; absent for the truth itself. */
+  def deviation(flight: FlightSummary): Option[Double] =
+    for
+      truth <- truth if truth != flight
+      from  <- truth.distance
+      own   <- flight.distance
+    yield own.lastTenSeconds.mean / from.lastTenSeconds.mean - 1
+
+object FlightSet:
+  private val linkOrder = Vector("none", "direct", "vpn", "vpn-mixed")
+  private val loopOrder = Vector("paused", "sequential", "futures", "stream", "predictive")
+
+  def apply(flights: Seq[FlightSummary]): FlightSet =
+    def place(order: Vector[String], name: String) =
+      Some(order.indexOf(name)).filter(_ >= 0).getOrElse(order.size)
+    new FlightSet(
+      flights.toVector.sortBy: summary =>
+        (place(linkOrder, summary.flight.link), summary.flight.link, place(loopOrder, summary.flight.loop))
+    )

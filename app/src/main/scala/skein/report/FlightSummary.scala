@@ -1,0 +1,84 @@
+package skein.report
+
+import skein.record.*
+import skein.units.*
+
+/** What one recording comes to.
+  *
+  * @param roles
+  *   evaders first, as in the paper
+  * @param roundTripsMs
+  *   of the link's own samples where there are any, else of the readings
+  * @param distance
+  *   between the first pursuer and the first evader; absent if they were not both seen
+  */
+final case class FlightSummary(
+    flight: Flight,
+    tracks: Vector[Track],
+    distance: Option[DistanceCurve],
+    roles: Vector[RoleSummary],
+    roundTripsMs: Option[Distribution],
+    readings: Int,
+    decisions: Int,
+    commands: Int,
+    events: Map[EventKind, Int],
+    aborted: Option[String]
+):
+  /** Time flown on the simulator's clock, s. */
+  def flownS: Double = distance.fold(0.0)(_.points.last._1)
+
+  def count(kind: EventKind): Int = events.getOrElse(kind, 0)
+
+/** The decisions for all vehicles of one role.
+  *
+  * @param ownTrueAgeMs
+  *   from when physics was sampled to the decision
+  */
+final case class RoleSummary(
+    role: String,
+    observedMs: Map[Observation, Distribution],
+    ownTrueAgeMs: Option[Distribution],
+    opponentTrueAgeMs: Option[Distribution]
+)
+
+object FlightSummary:
+
+  def of(recording: Recording): FlightSummary =
+    val tracks = Track.of(recording)
+    FlightSummary(
+      recording.flight,
+      tracks,
+      for
+        pursuer <- tracks.find(_.role == "pursuer")
+        evader  <- tracks.find(_.role == "evader")
+        curve   <- DistanceCurve.between(pursuer, evader)
+      yield curve,
+      roles(recording),
+      roundTripsMs(recording),
+      recording.readings.size,
+      recording.decisions.size,
+      recording.commands.size,
+      recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
+      recording.events.find(_.kind == EventKind.Aborted).map(_.detail)
+    )
+
+  private def roles(recording: Recording): Vector[RoleSummary] =
+    val roleOf = recording.heading.vehicles.map(vehicle => vehicle.name -> vehicle.role.toLowerCase).toMap
+    recording.decisions
+      .groupBy(decision => roleOf.getOrElse(decision.vehicle, ""))
+      .toVector
+      .sortBy(_._1)
+      .map: (role, decisions) =>
+        RoleSummary(
+          role,
+          Observation.values
+            .flatMap(observation => Distribution.of(decisions.flatMap(observation.ms)).map(observation -> _))
+            .toMap,
+          Distribution.of(decisions.flatMap(_.trueAge).map(_.own.toMillis)),
+          Distribution.of(decisions.flatMap(_.trueAge).map(_.opponent.toMillis))
+        )
+
+  private def roundTripsMs(recording: Recording): Option[Distribution] =
+    val ofReadings = recording.readings.map(_.state.roundTrip)
+    val ofLink     = recording.latencies.map(_.roundTrip)
+    Distribution.of((if ofLink.nonEmpty then ofLink else ofReadings).map(_.toMillis))

@@ -1,0 +1,31 @@
+package skein.report
+
+import skein.plot.{Colour, Point, Shape, Stroke}
+
+/** One colour per loop in every picture: Okabe and Ito's palette, told apart by colour-blind readers too. */
+object Looks:
+  private val loops = Map(
+    "paused"     -> Colour(0x404040),
+    "sequential" -> Colour(0xd55e00),
+    "futures"    -> Colour(0x0072b2),
+    "stream"     -> Colour(0x009e73),
+    "predictive" -> Colour(0xaa4499)
+  )
+
+  /** An unknown loop is ochre. */
+  def of(loop: String): Colour = loops.getOrElse(loop, Colour(0xb58900))
+
+  /** What was published stands in black beside our colours. */
+  val published: Colour = Colour(0x111111)
+  val halo: Colour      = Colour(0xffffff)
+  val evader: Colour    = Colour(0x8c8c8c)
+
+  def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
+
+  /** How a link is named in titles. */
+  def link(name: String): String = if name == "none" then "no network" else s"$name link"
+
+  /** The mark of a published value. */
+  def diamond(centre: Point, radius: Double = 4): Shape =
+    val corners = Vector((0.0, -radius), (radius, 0.0), (0.0, radius), (-radius, 0.0)).map(centre.moved(_, _))
+    Shape.Path(corners, Some(Stroke(halo, 0.8)), Some(published), closed = true)

@@ -1,0 +1,43 @@
+package skein.report
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import skein.plot.{Png, Svg}
+import skein.record.{RecordError, Recording, RecordingReader}
+
+/** Turns recordings into tables and pictures; needs nothing but the recordings. */
+object Report:
+
+  /** Summarises recordings. All files are tried; every one that cannot be read is named. Blocks. */
+  def read(files: Seq[Path]): Either[Seq[RecordError], FlightSet] =
+    val (unread, read) = files.map(RecordingReader.read).partitionMap(identity)
+    Either.cond(unread.isEmpty, of(read), unread)
+
+  def of(recordings: Seq[Recording]): FlightSet = FlightSet(recordings.map(FlightSummary.of))
+
+  /** What was written.
+    *
+    * @param withoutPng
+    *   why there are no PNG files, where there are none
+    */
+  final case class Output(page: Path, withoutPng: Option[String])
+
+  /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which is made
+    * if need be; files of these names are replaced.
+    *
+    * @return
+    *   or why it could not be written
+    */
+  def write(set: FlightSet, directory: Path): Either[String, Output] =
+    val figures = Figure.all(set)
+    val page    = directory.resolve("report.html")
+    try
+      val folder = Files.createDirectories(directory.resolve("figures"))
+      val _      = Files.writeString(page, HtmlReport.render(set, figures))
+      for figure <- figures do
+        Files.writeString(folder.resolve(s"${figure.name}.svg"), Svg.file(figure.drawing, figure.title))
+      val (unpainted, painted) =
+        figures.map(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
+      for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
+      Right(Output(page, unpainted.headOption))
+    catch case failed: IOException => Left(s"cannot write the report to $directory: $failed")

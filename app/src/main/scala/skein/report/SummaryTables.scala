@@ -1,0 +1,102 @@
+package skein.report
+
+import java.util.Locale
+import skein.record.EventKind
+
+/** The tables of a report, for the terminal and for the page alike. */
+object SummaryTables:
+
+  /** Distances, ours beside the paper's. */
+  def distances(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "flown s", "closest m", "at s") ++
+        Vector("last 10 s m", "sd", "<min … max", "vs paused") ++
+        Vector("paper m", "<min … max", "closest m"),
+      set.flights.map: summary =>
+        val ours = summary.distance match
+          case Some(curve) =>
+            val last = curve.lastTenSeconds
+            Vector(
+              fixed(summary.flownS, 1),
+              fixed(curve.closest._2, 2),
+              fixed(curve.closest._1, 1),
+              fixed(last.mean, 2),
+              fixed(last.sd, 2),
+              s"${fixed(last.least, 1)} … ${fixed(last.most, 1)}",
+              set.deviation(summary).fold("")(share => s"${signed(share * 100)} %")
+            )
+          case None => Vector("0", "", "", "", "", "", "")
+        val paper = Published.flight(summary.flight.loop, summary.flight.link).flatMap(_.distance) match
+          case Some(published) =>
+            Vector(
+              fixed(published.mean, 2),
+              s"${fixed(published.least, 1)} … ${fixed(published.most, 1)}",
+              fixed(published.closest, 2)
+            )
+          case None => Vector("", "", "")
+        Vector(summary.flight.loop, summary.flight.link) ++ ours ++ paper
+    )
+
+  /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true ages; by the
+    * role that was decided for.
+    */
+  def observations(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "<for") ++
+        Vector("own age", "paper", "opp.'s age", "paper", "own move", "paper", "opp.'s move", "paper") ++
+        Vector("true own", "opp.'s"),
+      for
+        summary <- set.flights
+        role    <- summary.roles
+      yield
+        val published = Published.flight(summary.flight.loop, summary.flight.link).map(_.observedMs)
+        val observed  = Observation.values.toVector.flatMap: observation =>
+          Vector(
+            role.observedMs.get(observation).fold(""): ms =>
+              s"${brief(ms.mean)}/${brief(ms.median)}/${brief(ms.p99)}",
+            published.fold("")(means => brief(ofRole(means(observation), role.role)))
+          )
+        Vector(summary.flight.loop, summary.flight.link, role.role) ++ observed ++
+          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => brief(age.mean)))
+    )
+
+  /** How much was done, and what did not go as wished; of the rarer kinds of events those that occurred. */
+  def counts(set: FlightSet): TextTable =
+    val always = Set(EventKind.Dropped, EventKind.Skipped, EventKind.TimedOut)
+    val kinds  =
+      EventKind.values.toVector.filter(kind => always(kind) || set.flights.exists(_.count(kind) > 0))
+    TextTable(
+      Vector("<loop", "<link", "readings", "decisions", "commands") ++ kinds.map(label),
+      set.flights.map: summary =>
+        Vector(summary.flight.loop, summary.flight.link) ++
+          Vector(summary.readings, summary.decisions, summary.commands).map(_.toString) ++
+          kinds.map(summary.count(_).toString)
+    )
+
+  /** All of them, for the terminal. */
+  def text(set: FlightSet): String =
+    Vector(
+      "Distance between pursuer and evader, ours and the paper's",
+      distances(set).render,
+      "",
+      "What the decisions were made on, ms: mean/p50/p99, ages by arrival as published; true ages by the simulator's clock",
+      observations(set).render,
+      "",
+      "What happened",
+      counts(set).render
+    ).mkString("\n")
+
+  def ofRole(published: (evader: Double, pursuer: Double), role: String): Double =
+    if role == "pursuer" then published.pursuer else published.evader
+
+  /** `TimedOut` as `timed out`. */
+  def label(kind: EventKind): String =
+    kind.toString.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
+
+  private def signed(value: Double): String = (if value < 0 then "" else "+") + fixed(value, 1)
+
+  def fixed(value: Double, decimals: Int): String = String.format(Locale.ROOT, s"%.${decimals}f", value)
+
+  /** Ten and more without decimals, less with one, small ones with two. */
+  def brief(value: Double): String =
+    fixed(value, if value.abs >= 9.95 || value == 0 then 0 else if value.abs >= 0.95 then 1 else 2)

@@ -1,0 +1,45 @@
+package skein.torture
+
+import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
+import scala.util.control.NonFatal
+import skein.units.*
+
+/** How one flight stood its ordeal. */
+final case class Verdict(ordeal: Ordeal, violations: Vector[String]):
+  def isClean: Boolean = violations.isEmpty
+
+object Torture:
+
+  /** Flies the ordeal of one seed. A flight that cannot be flown to its end is a violation, too. */
+  def of(seed: Long, duration: Span): Verdict =
+    val ordeal = Ordeal.of(seed, duration)
+    val found  =
+      try Checks.violations(TortureFlight.fly(ordeal))
+      catch case NonFatal(error) => Vector(error.toString)
+    Verdict(ordeal, found)
+
+  /** Flies many, as many at once as there are `threads`. Blocks.
+    *
+    * @param onVerdict
+    *   told of each as it comes, on the calling thread
+    */
+  def all(seeds: Iterator[Long], duration: Span, threads: Int)(onVerdict: Verdict => Unit): Unit =
+    val pool                     = Executors.newFixedThreadPool(threads)
+    val ended                    = ExecutorCompletionService[Verdict](pool)
+    def submit(seed: Long): Unit =
+      val flight: Callable[Verdict] = () => of(seed, duration)
+      val _                         = ended.submit(flight)
+    try
+      var underWay = 0
+      while seeds.hasNext && underWay < threads do
+        submit(seeds.next())
+        underWay += 1
+      while underWay > 0 do
+        val verdict = ended.take().get()
+        underWay -= 1
+        if seeds.hasNext then
+          submit(seeds.next())
+          underWay += 1
+        onVerdict(verdict)
+    finally
+      val _ = pool.shutdownNow()

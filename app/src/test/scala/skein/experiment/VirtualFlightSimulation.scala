@@ -1,0 +1,40 @@
+package skein.experiment
+
+import java.util.concurrent.Executors
+import skein.loop.{LoopKind, Outcome}
+import skein.record.Digest
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Whole flights in virtual time repeat exactly. */
+class VirtualFlightSimulation extends munit.FunSuite:
+
+  private val settings = FlySettings(
+    List(LoopKind.Sequential, LoopKind.Stream),
+    List(LatencyProfile.vpn),
+    duration = Span.ofSeconds(3),
+    period = Span.ofMillis(100),
+    seed = 7,
+    pairs = 1,
+    asPublished = false
+  )
+
+  private def digest(plan: FlightPlan): Digest =
+    val flown = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
+    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assert(flown.recorder.records.size > 50)
+    flown.recorder.digest
+
+  test("the same flight leaves the same recording, again and beside another flight in another thread"):
+    val plans   = settings.plans
+    val alone   = plans.map(digest)
+    val threads = Executors.newFixedThreadPool(2)
+    val beside  =
+      try plans.map(plan => threads.submit(() => digest(plan))).map(_.get())
+      finally threads.shutdown()
+    assertEquals(beside, alone)
+    assertEquals(digest(plans.last), alone.last)
+
+  test("another seed leaves another recording"):
+    val plan = settings.plans.last
+    assertNotEquals(digest(plan.copy(seed = plan.seed + 1)), digest(plan))

@@ -1,0 +1,32 @@
+package skein.torture
+
+import scala.concurrent.duration.*
+import skein.units.*
+
+/** Whole flights through seeded trouble, in virtual time. */
+class TortureSimulation extends munit.FunSuite:
+
+  // Under a minute on two cores that have nothing else to do.
+  override val munitTimeout: Duration = 5.minutes
+
+  private val duration = Span.ofSeconds(8)
+  private val seeds    = 300
+
+  test(s"$seeds flights through faults of network, simulator, answers and disk break no rule"):
+    var failed = Vector.empty[String]
+    Torture.all(
+      Iterator.range(1, seeds + 1).map(_.toLong),
+      duration,
+      threads = Runtime.getRuntime.availableProcessors
+    ): verdict =>
+      if !verdict.isClean then
+        val again = s"./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration 8s"
+        failed :+= (verdict.ordeal.toString +: verdict.violations :+ again).mkString("\n  ")
+    assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
+
+  test("the same seed gives the same flight"):
+    for seed <- Seq(3L, 11L) do
+      val Seq(one, other) = Seq.fill(2)(TortureFlight.fly(Ordeal.of(seed, duration)))
+      assertEquals(one.arrivals, other.arrivals, s"seed $seed")
+      assertEquals(one.recording, other.recording, s"seed $seed")
+      assertEquals(one.stats, other.stats, s"seed $seed")
