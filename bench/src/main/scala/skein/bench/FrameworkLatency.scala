@@ -1,0 +1,78 @@
+package skein.bench
+
+import java.nio.charset.StandardCharsets.US_ASCII
+import java.util.concurrent.ConcurrentLinkedQueue
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.duration.Duration
+import scala.concurrent.{Await, Future}
+import scala.jdk.CollectionConverters.*
+import skein.experiment.*
+import skein.link.*
+import skein.loop.LoopKind
+import skein.record.MemoryRecorder
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** What does the framework itself add between a reading and the command made from it? The `stream` loop flies twenty
+  * vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the process. Measured at the
+  * client's sockets: from the last bytes that arrived before a command to the write of the bytes that hold the
+  * command; so decoding, joining, deciding and encoding are in it, for all twenty.
+  *
+  * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10).
+  */
+object FrameworkLatency:
+
+  def main(args: Array[String]): Unit =
+    given system: ActorSystem = ActorSystem("bench")
+    import system.dispatcher
+    val seconds  = args.headOption.fold(30.0)(_.toDouble)
+    val pairs    = args.lift(1).fold(10)(_.toInt)
+    val settings = FlySettings(
+      List(LoopKind.Stream),
+      List(LatencyProfile.none),
+      Span.ofSeconds(seconds),
+      Span.ofMillis(100),
+      1,
+      pairs,
+      false
+    )
+    val plan     = settings.plans.head
+    val observed = ObservedTransport(TcpTransport(), Clock.system)
+    val rigs     = FlightRigs(observed, Clock.system, settings, simulator = None)
+    val recorder = MemoryRecorder(rigs.heading(plan, "real"))
+    val outcome  =
+      rigs.start(plan, recorder).flatMap(_.fold(reason => Future.failed(RuntimeException(reason)), _.landed))
+    println(Await.result(outcome, Duration.Inf).outcome)
+    // The first seconds belong to the compiler.
+    val nanos               = observed.latencies.asScala.toVector.drop(pairs * 2 * 10 * 5).sorted
+    def quantile(p: Double) = nanos((p * (nanos.size - 1)).toInt) / 1000
+    println("vehicles   commands (witness)   p50 us   p99 us  p99.9 us   max us")
+    println(
+      f"${pairs * 2}%8d ${nanos.size}%20d ${quantile(0.5)}%8d ${quantile(0.99)}%8d ${quantile(0.999)}%9d ${quantile(1)}%8d"
+    )
+    Await.result(system.terminate(), Duration.Inf): Unit
+
+/** A transport that takes the time from the last arrival to each write that holds a move command. */
+private final class ObservedTransport(inner: Transport, clock: Clock) extends Transport:
+  private val command               = ByteString("moveByVelocityZ", US_ASCII)
+  @volatile private var lastArrival = Instant.Epoch
+  val latencies                     = ConcurrentLinkedQueue[Long]()
+
+  def connect(to: Address): Flow[ByteString, ByteString, Future[Done]] =
+    val tcp = inner.connect(to)
+    Flow[ByteString]
+      .map: bytes =>
+        val commands = bytes.sliding(command.size).count(_ == command)
+        if commands > 0 then
+          val latency = clock.now().since(lastArrival).toNanos
+          for _ <- 0 until commands do latencies.add(latency)
+        bytes
+      .viaMat(tcp)(org.apache.pekko.stream.scaladsl.Keep.right)
+      .map: bytes =>
+        lastArrival = clock.now()
+        bytes
+
+  def listen(at: Address): Source[Incoming, Future[Listening]] = inner.listen(at)
