@@ -20,6 +20,9 @@ object RpcFlow:
     * '''Completes when''' upstream has completed and no call is under way.
     * '''Cancels when''' downstream cancels.
     *
+    * @param parallelism
+    *   most calls under way; they wait for a place in the client's windows, which may be smaller, and are passed over
+    *   only if more of them wait than [[RpcSettings.queue]] allows
     * @param timeout
     *   of each call, in place of the one in its options
     */
@@ -30,7 +33,11 @@ object RpcFlow:
       .mapAsync(parallelism): element =>
         val call = request(element)
         client
-          .callStampedAs[B](call.method, call.params, call.options.copy(timeout = timeout))
+          .callStampedAs[B](
+            call.method,
+            call.params,
+            call.options.copy(timeout = timeout, whenFull = WhenFull.Wait)
+          )
           .map(_.left.map(error => client.skipped(call.method, error)))(using
             scala.concurrent.ExecutionContext.parasitic
           )

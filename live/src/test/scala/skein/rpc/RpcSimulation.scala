@@ -84,3 +84,30 @@ class RpcSimulation extends munit.FunSuite:
   test("the same seed gives the same calls, events and times to the nanosecond, another seed others"):
     assertEquals(fly(7), fly(7))
     assertNotEquals(fly(7), fly(8))
+
+  test(
+    "a flow of more calls than the windows hold passes over none, also while connections are still opening"
+  ):
+    // One connection is up long before the others, so that all windows together are full for a while.
+    val (answers, stats) = VirtualTime
+      .run(seed = 3): system =>
+        given ActorSystem = system
+        val network       =
+          MemoryNetwork(NetworkPlan(LinkProfile.symmetric(LatencyProfile.vpn)), 3, VirtualClock(system))
+        val settings = RpcSettings(controlConnections = 1, windowPerConnection = 16)
+        val client   = RpcClient(network.host("controller"), address, VirtualClock(system), settings)
+        for
+          server <- RpcServer.bind(network.host("simulator"), address): request =>
+            Future.successful(Right(request.params.head))
+          values <- Source(1 to 1_000)
+            .via(RpcFlow.ordered[Int, Int](client, 250, Span.ofSeconds(5))(i =>
+              RpcCall("echo", Seq(Int32(i)))
+            ))
+            .map(_.value)
+            .runWith(Sink.seq)
+          _ <- client.close()
+          _ <- server.close()
+        yield (values, client.stats)
+      .value
+    assertEquals(stats.skipped, 0L, s"$stats")
+    assertEquals(answers, 1 to 1_000)
