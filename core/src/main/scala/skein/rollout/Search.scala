@@ -1,5 +1,6 @@
 package skein.rollout
 
+import skein.policy.SearchSpace
 import skein.signal.{NormalQuantile, SplitMix64}
 
 /** A candidate and its objective over so many episodes. */

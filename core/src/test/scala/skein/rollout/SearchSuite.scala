@@ -1,6 +1,6 @@
 package skein.rollout
 
-import skein.policy.PaperPursuer
+import skein.policy.{Axis, PaperPursuer, SearchSpace}
 import skein.signal.SplitMix64
 
 class SearchSuite extends munit.FunSuite:
