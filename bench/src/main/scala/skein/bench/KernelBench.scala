@@ -30,16 +30,16 @@ object KernelBench:
   private val stream: Work = thread =>
     val batches = 64
     val worlds  = StreamDuelKernel.WORLDS
-    val kernel  = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, model)
+    val kernel  = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), model)
     val sum     = (0 until batches).map: batch =>
       val keys = Array.tabulate(worlds)(i => WorldRandom.key(thread, 0, batch * worlds + i))
-      kernel.fly(keys, Array.fill(worlds)(1f), Array.fill(worlds)(8f))
+      kernel.fly(keys, Array.fill(worlds)(DelayTable.vpn), Array.fill(worlds)(1f), Array.fill(worlds)(8f), 1f)
       kernel.meanLast10s.sum.toDouble
     (batches * worlds * 600 * 2.0, sum.sum / (batches * worlds))
 
   private val streamScalar: Work = thread =>
     val episodes = 256
-    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, model)
+    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), model)
     val sum      = (0 until episodes).map(i => rollout.fly(WorldRandom.key(thread, 0, i)).meanLast10sM).sum
     (episodes * 600 * 2.0, sum / episodes)
 

@@ -49,15 +49,35 @@ public final class StreamDuelKernel {
   // What is earlier, or later, is PAST or FUTURE, shifted by an episode's length at most.
   private static final FloatVector LONG_AGO = constant(-1e8f), LATER = constant(1e8f);
   private static final FloatVector MINUS_ONE = constant(-1f), QUARTER = constant(0.25f);
-  private final int steps, slots;
+  private static final FloatVector INFINITE = constant(Float.POSITIVE_INFINITY);
+  private static final FloatVector PER_TURN = constant((float) (0.5 / Math.PI)),
+      MINUS_TURN = constant((float) (-2 * Math.PI));
+
+  /** 1.5·2²³: adding it and taking it away leaves a float's nearest integer. */
+  private static final FloatVector ROUND = constant(12582912f);
+
+  private final LoopTiming.Stream timing;
+  private final Reduced model;
+  private final int steps;
   private final float periodS;
-  private final float[] delaysS;
+
+  /** The delays of all links of the episodes flown now, one table after the other. */
+  private float[] delaysS = new float[DelayTable.Size()];
+
+  /** Where a world's table begins. */
+  private final int[] tableOf = new int[WORLDS];
+
+  private final DelayTable[] tables = new DelayTable[WORLDS];
+  private int tableCount = 0;
+
+  /** Commands to one vehicle that may be under way. */
+  private int slots = 0;
 
   /** Where the command of so many questions ago is kept. */
-  private final int[] slotOf;
+  private int[] slotOf;
 
   /** What remains of a velocity's error after so many periods. */
-  private final float[] agedDecay;
+  private float[] agedDecay;
 
   private final FloatVector period, tolerance, lag, dead;
   private final FloatVector decayRate, growthRate, periodDecay, periodGain;
@@ -67,6 +87,10 @@ public final class StreamDuelKernel {
   private final Vehicles[] vehicles = new Vehicles[2];
   private final float[] pictureAt = new float[WORLDS], nextPictureAt = new float[WORLDS];
   private final float[] ahead = new float[WORLDS], right = new float[WORLDS];
+
+  /** The pursuer's heading that the evader's controller knows, and its direction. */
+  private final float[] frameHeading = new float[WORLDS];
+
   private final float[] frameCos = new float[WORLDS], frameSin = new float[WORLDS];
   private final float[] aside = new float[WORLDS];
   private final float[] decay = new float[WORLDS];
@@ -74,6 +98,7 @@ public final class StreamDuelKernel {
 
   // Per world: parameters of the policies, and what the episode came to.
   private final float[] turnRate = new float[WORLDS], radius = new float[WORLDS];
+  private FloatVector captureRadius = ZERO;
   private final float[] least = new float[WORLDS],
       sum = new float[WORLDS],
       lastSum = new float[WORLDS];
@@ -93,8 +118,7 @@ public final class StreamDuelKernel {
     // Commands under way, by question modulo slots: when each begins to act, counted from its own
     // question, e to that
     // time over the lag, and by how much it changes the velocity asked for.
-    final float[] at = new float[slots * WORLDS], growth = new float[slots * WORLDS];
-    final float[] changeX = new float[slots * WORLDS], changeY = new float[slots * WORLDS];
+    float[] at, growth, changeX, changeY;
 
     /** The velocity asked for last. */
     final float[] askedX = new float[WORLDS], askedY = new float[WORLDS];
@@ -111,6 +135,9 @@ public final class StreamDuelKernel {
         commandAt = new float[WORLDS];
     final float[] delay = new float[WORLDS], backDelay = new float[WORLDS];
 
+    /** The sum of the decided headings' changes. */
+    final float[] effort = new float[WORLDS];
+
     Vehicles(int role, Duelist duelist, float gain) {
       this.role = role;
       startX = (float) duelist.startX();
@@ -119,11 +146,20 @@ public final class StreamDuelKernel {
       speed = constant((float) (duelist.speed() * gain));
     }
 
+    void makeSlots() {
+      at = new float[slots * WORLDS];
+      growth = new float[slots * WORLDS];
+      changeX = new float[slots * WORLDS];
+      changeY = new float[slots * WORLDS];
+    }
+
     void start() {
       Arrays.fill(x, startX);
       Arrays.fill(y, startY);
       for (float[] zero :
-          new float[][] {vx, vy, wantedX, wantedY, askedX, askedY, growth, changeX, changeY})
+          new float[][] {
+            vx, vy, wantedX, wantedY, askedX, askedY, growth, changeX, changeY, effort
+          })
         Arrays.fill(zero, 0f);
       Arrays.fill(at, PAST);
       Arrays.fill(heading, startHeading);
@@ -140,20 +176,43 @@ public final class StreamDuelKernel {
 
   public final float[] meanLast10s = new float[WORLDS];
 
+  /** When the distance first was within the capture radius, s; infinite where it never was. */
+  public final float[] captureS = new float[WORLDS];
+
+  /** The sums of all changes of the commanded headings, by the shorter way, rad. */
+  public final float[] pursuerEffortRad = new float[WORLDS], evaderEffortRad = new float[WORLDS];
+
+  /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
+  public static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
+    return model.lagS() > 0 && longestS(timing, link.maxS(), model) <= MOST_LAGS * model.lagS();
+  }
+
+  /** The powers of e that a command's response needs stay within what floats can hold. */
+  private static final double MOST_LAGS = 80;
+
+  /**
+   * From a question to the time when its decision's command acts: a decision comes before the next
+   * picture, at most two delays after the next question; its command one later.
+   */
+  private static double longestS(LoopTiming.Stream timing, double maxDelayS, Reduced model) {
+    return 3 * maxDelayS + model.deadTimeS() + timing.periodS();
+  }
+
   /**
    * @param duel start, speeds and duration; its policies are not used
    * @param timing the period and the tolerance of the pace
    * @param model lag above 0
    */
-  public StreamDuelKernel(Duel duel, LoopTiming.Stream timing, DelayTable link, Reduced model) {
+  public StreamDuelKernel(Duel duel, LoopTiming.Stream timing, Reduced model) {
     if (!(model.lagS() > 0))
       throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
+    this.timing = timing;
+    this.model = model;
     periodS = (float) timing.periodS();
     period = constant(periodS);
     tolerance = constant((float) timing.toleranceS());
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     lastSteps = (int) Math.round(10 / timing.periodS());
-    delaysS = link.delaysS();
     lag = constant((float) model.lagS());
     decayRate = constant((float) (-1 / model.lagS()));
     growthRate = constant((float) (1 / model.lagS()));
@@ -161,17 +220,6 @@ public final class StreamDuelKernel {
     periodGain =
         constant((float) (model.lagS() * (1 - Math.exp(-timing.periodS() / model.lagS()))));
     dead = constant((float) model.deadTimeS());
-    // A decision comes before the next picture, at most two delays after the next question; its
-    // command one later.
-    double longest = 3 * link.maxS() + model.deadTimeS() + timing.periodS();
-    if (longest > 80 * model.lagS())
-      throw new IllegalArgumentException(
-          "the kernel needs a lag of at least " + longest / 80 + " s, got " + model.lagS());
-    slots = (int) Math.ceil(longest / timing.periodS()) + 1;
-    slotOf = new int[slots];
-    agedDecay = new float[slots + 1];
-    for (int age = 0; age <= slots; age++)
-      agedDecay[age] = (float) Math.exp(-age * timing.periodS() / model.lagS());
     vehicles[EVADER] = new Vehicles(EVADER, duel.evader(), (float) model.gain());
     vehicles[PURSUER] = new Vehicles(PURSUER, duel.pursuer(), (float) model.gain());
   }
@@ -180,17 +228,27 @@ public final class StreamDuelKernel {
    * Flies one episode in each of {@link #WORLDS} worlds.
    *
    * @param worldKeys {@link WorldRandom#key} of each world
+   * @param links of each world; {@link #canFly} must hold
    * @param turnRates of each pursuer, rad/s ({@code PaperPursuer})
    * @param radii that each evader assumes, m ({@code PaperEvader})
+   * @param captureRadiusM a distance of at most this is a capture
    */
-  public void fly(int[] worldKeys, float[] turnRates, float[] radii) {
+  public void fly(
+      int[] worldKeys,
+      DelayTable[] links,
+      float[] turnRates,
+      float[] radii,
+      float captureRadiusM) {
     keys = worldKeys;
+    captureRadius = constant(captureRadiusM);
+    takeOver(links);
     System.arraycopy(turnRates, 0, turnRate, 0, WORLDS);
     System.arraycopy(radii, 0, radius, 0, WORLDS);
     for (Vehicles each : vehicles) each.start();
     Arrays.fill(least, FUTURE);
     Arrays.fill(sum, 0f);
     Arrays.fill(lastSum, 0f);
+    Arrays.fill(captureS, Float.POSITIVE_INFINITY);
     ask(0, ZERO);
     nextQuestion(0);
     for (int step = 0; step < steps; step++) step(step);
@@ -198,6 +256,46 @@ public final class StreamDuelKernel {
       minDistance[i] = least[i];
       meanDistance[i] = sum[i] / steps;
       meanLast10s[i] = lastSum[i] / Math.min(lastSteps, steps);
+      pursuerEffortRad[i] = vehicles[PURSUER].effort[i];
+      evaderEffortRad[i] = vehicles[EVADER].effort[i];
+    }
+  }
+
+  /** Makes room for these links' delays and for the commands that they keep under way. */
+  private void takeOver(DelayTable[] links) {
+    int count = 0;
+    float maxS = 0;
+    for (int i = 0; i < WORLDS; i++) {
+      int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
+      if (table == count) {
+        if (count >= tableCount || tables[count] != links[i]) {
+          int end = (count + 1) * DelayTable.Size();
+          if (delaysS.length < end) delaysS = Arrays.copyOf(delaysS, 2 * end);
+          System.arraycopy(
+              links[i].delaysS(), 0, delaysS, count * DelayTable.Size(), DelayTable.Size());
+          tables[count] = links[i];
+        }
+        maxS = Math.max(maxS, links[i].maxS());
+        count++;
+      }
+      tableOf[i] = table * DelayTable.Size();
+    }
+    tableCount = Math.max(tableCount, count);
+    double longest = longestS(timing, maxS, model);
+    if (longest > MOST_LAGS * model.lagS())
+      throw new IllegalArgumentException(
+          "the kernel needs a lag of at least "
+              + longest / MOST_LAGS
+              + " s over this link, got "
+              + model.lagS());
+    int needed = (int) Math.ceil(longest / timing.periodS()) + 1;
+    if (needed > slots) {
+      slots = needed;
+      slotOf = new int[slots];
+      agedDecay = new float[slots + 1];
+      for (int age = 0; age <= slots; age++)
+        agedDecay[age] = (float) Math.exp(-age * timing.periodS() / model.lagS());
+      for (Vehicles each : vehicles) each.makeSlots();
     }
   }
 
@@ -216,10 +314,10 @@ public final class StreamDuelKernel {
     LaneMath.sinCos(pursuer.newHeading, pursuer.newSin, pursuer.newCos, WORLDS);
     know(evader, pursuer);
     relate(frameCos, frameSin);
-    evade(evader, pursuer);
+    evade(evader);
     LaneMath.sinCos(evader.newHeading, evader.newSin, evader.newCos, WORLDS);
     for (Vehicles each : vehicles) {
-      command(each, slotOf[0]);
+      command(each, slotOf[0], constant((float) ((steps - step) * timing.periodS())));
       LaneMath.exp(each.growth, slotOf[0], WORLDS);
       fly(each);
     }
@@ -228,8 +326,8 @@ public final class StreamDuelKernel {
   }
 
   private void draw(int step, int place, float[] into) {
-    WorldRandom.upperBits(keys, step * Rollout.Places() + place, DelayTable.Drop(), draws, WORLDS);
-    for (int i = 0; i < WORLDS; i++) into[i] = delaysS[draws[i]];
+    LaneRandom.upperBits(keys, step * Rollout.Places() + place, DelayTable.Drop(), draws, WORLDS);
+    for (int i = 0; i < WORLDS; i++) into[i] = delaysS[tableOf[i] + draws[i]];
   }
 
   /**
@@ -338,7 +436,7 @@ public final class StreamDuelKernel {
               .compare(LT, FloatVector.fromArray(SPECIES, evader.decideAt, i));
       FloatVector.fromArray(SPECIES, pursuer.heading, i)
           .blend(FloatVector.fromArray(SPECIES, pursuer.newHeading, i), before)
-          .intoArray(pursuer.heading, i);
+          .intoArray(frameHeading, i);
       FloatVector.fromArray(SPECIES, pursuer.cos, i)
           .blend(FloatVector.fromArray(SPECIES, pursuer.newCos, i), before)
           .intoArray(frameCos, i);
@@ -349,7 +447,7 @@ public final class StreamDuelKernel {
   }
 
   /** {@code PaperEvader}. */
-  private void evade(Vehicles evader, Vehicles pursuer) {
+  private void evade(Vehicles evader) {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
           y = FloatVector.fromArray(SPECIES, right, i),
@@ -362,7 +460,7 @@ public final class StreamDuelKernel {
       VectorMask<Float> breakAway = distance.compare(LT, rSquare).andNot(inLeft.or(inRight));
       y.blend(toLeft, inLeft).blend(toRight, inRight).intoArray(right, i);
       ZERO.blend(HALF_PI, breakAway)
-          .add(FloatVector.fromArray(SPECIES, pursuer.heading, i))
+          .add(FloatVector.fromArray(SPECIES, frameHeading, i))
           .intoArray(aside, i);
     }
     LaneMath.atan2(right, ahead, evader.newHeading, WORLDS);
@@ -377,8 +475,8 @@ public final class StreamDuelKernel {
     }
   }
 
-  /** Sends what was decided, and takes it over as known. */
-  private void command(Vehicles each, int slot) {
+  /** Sends what was decided, and takes it over as known; the episode ends at {@code end}. */
+  private void command(Vehicles each, int slot, FloatVector end) {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector at = FloatVector.fromArray(SPECIES, each.decideAt, i),
           before = FloatVector.fromArray(SPECIES, each.commandAt, i);
@@ -407,7 +505,13 @@ public final class StreamDuelKernel {
       turn.max(at).add(period).blend(turn, skip).intoArray(each.turnAt, i);
       at.blend(FloatVector.fromArray(SPECIES, each.decidedAt, i), skip)
           .intoArray(each.decidedAt, i);
-      FloatVector.fromArray(SPECIES, each.newHeading, i).intoArray(each.heading, i);
+      FloatVector newHeading = FloatVector.fromArray(SPECIES, each.newHeading, i);
+      FloatVector change = newHeading.sub(FloatVector.fromArray(SPECIES, each.heading, i));
+      FloatVector turns = change.fma(PER_TURN, ROUND).sub(ROUND);
+      ZERO.blend(turns.fma(MINUS_TURN, change).abs(), at.compare(LT, end))
+          .add(FloatVector.fromArray(SPECIES, each.effort, i))
+          .intoArray(each.effort, i);
+      newHeading.intoArray(each.heading, i);
       FloatVector.fromArray(SPECIES, each.newCos, i).intoArray(each.cos, i);
       FloatVector.fromArray(SPECIES, each.newSin, i).intoArray(each.sin, i);
     }
@@ -496,6 +600,7 @@ public final class StreamDuelKernel {
   private void score(int step) {
     Vehicles evader = vehicles[EVADER], pursuer = vehicles[PURSUER];
     boolean last = step >= steps - lastSteps;
+    FloatVector time = constant((float) ((step + 1) * timing.periodS()));
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
           x =
@@ -508,6 +613,10 @@ public final class StreamDuelKernel {
       FloatVector leastSoFar = FloatVector.fromArray(SPECIES, least, i);
       leastSoFar.blend(distance, distance.compare(LT, leastSoFar)).intoArray(least, i);
       FloatVector.fromArray(SPECIES, sum, i).add(distance).intoArray(sum, i);
+      INFINITE
+          .blend(time, distance.compare(LE, captureRadius))
+          .min(FloatVector.fromArray(SPECIES, captureS, i))
+          .intoArray(captureS, i);
       if (last) FloatVector.fromArray(SPECIES, lastSum, i).add(distance).intoArray(lastSum, i);
     }
   }

@@ -1,12 +1,5 @@
 package skein.rollout;
 
-import static jdk.incubator.vector.VectorOperators.LSHR;
-import static jdk.incubator.vector.VectorOperators.XOR;
-import static skein.rollout.LaneMath.INTS;
-import static skein.rollout.LaneMath.LANES;
-
-import jdk.incubator.vector.IntVector;
-
 /**
  * Random numbers without state: the number at a place of a world's sequence is a hash of the
  * world's key and the place. So it depends on seed, candidate and episode alone, whatever the
@@ -18,14 +11,11 @@ import jdk.incubator.vector.IntVector;
 public final class WorldRandom {
   private WorldRandom() {}
 
-  private static final int MULTIPLIER_1 = 0x7feb352d;
-  private static final int MULTIPLIER_2 = 0x846ca68b;
+  static final int MULTIPLIER_1 = 0x7feb352d;
+  static final int MULTIPLIER_2 = 0x846ca68b;
 
   /** Steps from one place to the next; odd, so that all places differ. */
-  private static final int STRIDE = 0x9e3779b9;
-
-  private static final IntVector VECTOR_1 = IntVector.broadcast(INTS, MULTIPLIER_1);
-  private static final IntVector VECTOR_2 = IntVector.broadcast(INTS, MULTIPLIER_2);
+  static final int STRIDE = 0x9e3779b9;
 
   /** The key of the world that flies a candidate's episode. */
   public static int key(long seed, long candidate, long episode) {
@@ -39,22 +29,6 @@ public final class WorldRandom {
     x = (x ^ x >>> 16) * MULTIPLIER_1;
     x = (x ^ x >>> 15) * MULTIPLIER_2;
     return x ^ x >>> 16;
-  }
-
-  /**
-   * The upper {@code 32 - drop} bits at one place of many worlds' sequences.
-   *
-   * @param count a multiple of the lane count
-   */
-  static void upperBits(int[] keys, int place, int drop, int[] into, int count) {
-    int offset = place * STRIDE;
-    for (int i = 0; i < count; i += LANES) {
-      IntVector x = IntVector.fromArray(INTS, keys, i).add(offset);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 16)).mul(VECTOR_1);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 15)).mul(VECTOR_2);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 16));
-      x.lanewise(LSHR, drop).intoArray(into, i);
-    }
   }
 
   // SplitMix64's finaliser (Steele, Lea, Flood 2014).

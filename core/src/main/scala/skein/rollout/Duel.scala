@@ -43,6 +43,10 @@ object Duel:
   *
   * @param captureS
   *   when the distance first was at most the capture radius; infinite if never
+  * @param pursuerEffortRad
+  *   control effort: the sum of all changes of the commanded heading, by the shorter way
+  * @param evaderEffortRad
+  *   the same of the evader
   * @param decisions
   *   of both agents
   * @param skipped
@@ -54,6 +58,8 @@ final case class Outcome(
     meanDistanceM: Double,
     meanLast10sM: Double,
     captureS: Double,
+    pursuerEffortRad: Double,
+    evaderEffortRad: Double,
     decisions: Int,
     skipped: Int
 )

@@ -30,6 +30,7 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: DelayTable, model: Vel
   private val heading     = Array.ofDim[Double](2) // last decided
   private val sentHeading = Array.ofDim[Double](2) // last sent, as the opponent's policy knows it
   private val decidedAt   = Array.ofDim[Double](2)
+  private val effort      = Array.ofDim[Double](2)
   private val outstanding = Array.ofDim[Int](2)    // commands sent and not acknowledged
   private val waitingStep = Array.ofDim[Int](2) // picture or decision that waits to leave; None if none does
   private val turnAt      = Array.ofDim[Double](2)
@@ -51,7 +52,7 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: DelayTable, model: Vel
     while score.count < scores do
       now = queue.nextTime
       handle(queue.take())
-    score.outcome(decisions, skipped)
+    score.outcome(effort(Pursuer), effort(Evader), decisions, skipped)
 
   private def start(worldKey: Int, captureRadiusM: Double, onScore: Listener): Unit =
     key = worldKey
@@ -66,7 +67,7 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: DelayTable, model: Vel
       vehicles(agent).start(agents(agent).startX, agents(agent).startY, agents(agent).altitudeDownM)
       heading(agent) = agents(agent).startHeadingRad
       sentHeading(agent) = heading(agent)
-      decidedAt(agent) = Double.NaN
+      decidedAt(agent) = Double.NaN; effort(agent) = 0
       commandAt(agent) = 0; ackAt(agent) = 0; turnAt(agent) = Double.NegativeInfinity
       answered(agent) = 0; outstanding(agent) = 0; waitingStep(agent) = None; flown(agent) = false
     queue.add(timing.periodS, event(ScoreNow, 0, 0, 1))
@@ -165,6 +166,7 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: DelayTable, model: Vel
     val own     = ringSlot(chain, agent, step)
     val other   = ringSlot(chain, 1 - agent, step)
     val elapsed = if decidedAt(agent).isNaN then 0.0 else now - decidedAt(agent)
+    val before  = heading(agent)
     heading(agent) = agents(agent).policy.heading(
       readX(other) - readX(own),
       readY(other) - readY(own),
@@ -174,6 +176,7 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: DelayTable, model: Vel
       sentHeading(1 - agent),
       elapsed
     )
+    effort(agent) += math.abs(math.IEEEremainder(heading(agent) - before, 2 * math.Pi))
     decidedAt(agent) = now
     decisions += 1
 
@@ -273,5 +276,15 @@ private final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0)
       lastSum += distanceM
       lastCount += 1
 
-  def outcome(decisions: Int, skipped: Int): Outcome =
-    Outcome(least, leastAt, sum / count, lastSum / lastCount, captureS, decisions, skipped)
+  def outcome(pursuerEffort: Double, evaderEffort: Double, decisions: Int, skipped: Int): Outcome =
+    Outcome(
+      least,
+      leastAt,
+      sum / count,
+      lastSum / lastCount,
+      captureS,
+      pursuerEffort,
+      evaderEffort,
+      decisions,
+      skipped
+    )

@@ -11,6 +11,8 @@ class StreamDuelKernelSuite extends munit.FunSuite:
   private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)
   private val radii     = Array.tabulate(worlds)(i => 7f + 0.02f * i)
 
+  private val captureRadiusM = 3.9f
+
   private def duel(world: Int, durationS: Double): Duel = Duel(
     Duel.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
     Duel.paper.evader.copy(policy = PaperEvader(radii(world))),
@@ -18,8 +20,8 @@ class StreamDuelKernelSuite extends munit.FunSuite:
   )
 
   private def fly(link: DelayTable, durationS: Double): StreamDuelKernel =
-    val kernel = StreamDuelKernel(Duel.paper.copy(durationS = durationS), LoopTiming.Stream(), link, lag)
-    kernel.fly(keys, turnRates, radii)
+    val kernel = StreamDuelKernel(Duel.paper.copy(durationS = durationS), LoopTiming.Stream(), lag)
+    kernel.fly(keys, Array.fill(worlds)(link), turnRates, radii, captureRadiusM)
     kernel
 
   for (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
@@ -28,22 +30,54 @@ class StreamDuelKernelSuite extends munit.FunSuite:
     test(s"over $name kernel and scalar reference fly the same 5 s, to 2 mm in 97 % of the worlds"):
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
-        val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world))
+        val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
         (kernel.minDistance(world) - scalar.minDistanceM).abs < 2e-3 &&
-        (kernel.meanDistance(world) - scalar.meanDistanceM).abs < 2e-3
+        (kernel.meanDistance(world) - scalar.meanDistanceM).abs < 2e-3 &&
+        (kernel.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+        (kernel.evaderEffortRad(world) - scalar.evaderEffortRad).abs < 2e-3
       assert(equal >= 0.97 * worlds, s"$equal of $worlds worlds agree")
 
     test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
       val kernel  = fly(link, 60)
       val scalars = ArrayBuffer.empty[Outcome]
       for world <- 0 until worlds do
-        scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world))
+        scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
       assertEqualsDouble(kernel.meanLast10s.sum / worlds, scalars.map(_.meanLast10sM).sum / worlds, 0.01)
       assertEqualsDouble(kernel.minDistance.sum / worlds, scalars.map(_.minDistanceM).sum / worlds, 0.01)
+      assertEqualsDouble(
+        kernel.pursuerEffortRad.sum / worlds,
+        scalars.map(_.pursuerEffortRad).sum / worlds,
+        0.05
+      )
+      // A capture is the same but where the smallest distance lies within a rounding error of the radius.
+      val captured = scalars.count(_.captureS.isFinite)
+      val same     = scalars.indices.count: world =>
+        val (ours, reference) = (kernel.captureS(world), scalars(world).captureS.toFloat)
+        ours == reference || (ours - reference).abs < 1e-3
+      assert(
+        captured > worlds / 10 && captured < worlds,
+        s"$captured captured; median of the smallest distances ${scalars.map(_.minDistanceM).sorted.apply(worlds / 2)}"
+      )
+      assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
 
   test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
     val before   = kernel.meanLast10s.clone
-    val reversed = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, lag)
-    reversed.fly(keys.reverse, turnRates.reverse, radii.reverse)
+    val reversed = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), lag)
+    reversed.fly(
+      keys.reverse,
+      Array.fill(worlds)(DelayTable.vpn),
+      turnRates.reverse,
+      radii.reverse,
+      captureRadiusM
+    )
     assertEquals(reversed.meanLast10s.reverse.toSeq, before.toSeq)
+
+  test("worlds of different links fly side by side as each would alone"):
+    val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
+    val kernel = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), lag)
+    for _ <- 1 to 2 do
+      kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), turnRates, radii, captureRadiusM)
+      val alone = links.map(link => fly(link, 60))
+      for world <- 0 until worlds do
+        assertEquals(kernel.meanLast10s(world), alone(world / 5 % 3).meanLast10s(world), s"world $world")

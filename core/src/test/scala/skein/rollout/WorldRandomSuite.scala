@@ -6,7 +6,7 @@ class WorldRandomSuite extends munit.FunSuite:
     val keys = Array.tabulate(256)(WorldRandom.key(1, 2, _))
     val bits = Array.ofDim[Int](256)
     for place <- Seq(0, 1, 17, 9599) do
-      WorldRandom.upperBits(keys, place, 22, bits, 256)
+      LaneRandom.upperBits(keys, place, 22, bits, 256)
       for i <- keys.indices do assertEquals(bits(i), WorldRandom.bits(keys(i), place) >>> 22)
 
   test("each of 64 bins of a world's sequence is filled evenly"):

@@ -1,0 +1,39 @@
+package skein.rollout
+
+import skein.policy.Policy
+
+/** The worlds of one call of [[DuelBatch]], by number from 0. Pure functions of the number, called from any thread.
+  *
+  * Neighbours that share a link should return the same object: it is copied into the first-level cache once for all of
+  * them. Otherwise the order is free.
+  */
+trait DuelWorlds:
+  def size: Int
+
+  /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same delays. */
+  def key(world: Int): Int
+  def link(world: Int): DelayTable
+  def pursuer(world: Int): Policy
+  def evader(world: Int): Policy
+
+/** What each world came to; see [[Outcome]] for the meanings. One number per world, in metres, seconds and radians.
+  *
+  * @param flown
+  *   worlds from 0 on that were flown: all, unless the call was cancelled; the others' numbers mean nothing
+  */
+final class DuelOutcomes private[rollout] (size: Int):
+  val minDistanceM, meanDistanceM, meanLast10sM, captureS, pursuerEffortRad, evaderEffortRad: Array[Float] =
+    Array.ofDim[Float](size)
+  private var done = 0
+
+  def flown: Int = done
+
+  private[rollout] def flown_=(worlds: Int): Unit = done = worlds
+
+  private[rollout] def set(world: Int, outcome: Outcome): Unit =
+    minDistanceM(world) = outcome.minDistanceM.toFloat
+    meanDistanceM(world) = outcome.meanDistanceM.toFloat
+    meanLast10sM(world) = outcome.meanLast10sM.toFloat
+    captureS(world) = outcome.captureS.toFloat
+    pursuerEffortRad(world) = outcome.pursuerEffortRad.toFloat
+    evaderEffortRad(world) = outcome.evaderEffortRad.toFloat

@@ -1,0 +1,127 @@
+package skein.rollout
+
+import java.util.concurrent.atomic.AtomicInteger
+import scala.jdk.CollectionConverters.*
+import skein.policy.*
+
+class DuelBatchSuite extends munit.FunSuite:
+  import DuelBatchSuite.*
+
+  private val short = Duel.paper.copy(durationS = 12)
+
+  test("threads, the other worlds and their order change no bit"):
+    val all    = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2).fly(mixed(300), captureRadiusM = 5)
+    val single = DuelBatch(short, LoopTiming.Stream(), lag, threads = 1)
+    val backwards = single.fly(reordered(mixed(300), 299 - _), captureRadiusM = 5)
+    assertEquals(all.flown, 300)
+    for world <- 0 until 300 do
+      assertEquals(numbers(backwards, 299 - world), numbers(all, world), s"world $world")
+
+  test("worlds whose policies the lanes do not know fly by the scalar reference, beside the others"):
+    val worlds   = mixed(40)
+    val outcomes = DuelBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
+    for world <- 0 until worlds.size if worlds.evader(world) == KeepHeading do
+      assertEquals(numbers(outcomes, world), scalar(worlds, world, LoopTiming.Stream(), lag), s"world $world")
+
+  for
+    (timing, model) <- Seq(
+      LoopTiming.Futures()    -> lag,
+      LoopTiming.Stream()     -> VelocityResponse.Ideal,
+      LoopTiming.Sequential() -> VelocityResponse.Ideal
+    )
+  do
+    test(s"$timing with $model flies by the scalar reference, and says so"):
+      val batch  = DuelBatch(short, timing, model, threads = 2)
+      val worlds = mixed(20)
+      val flown  = batch.fly(worlds, captureRadiusM = 5)
+      assert(batch.engine.startsWith("scalar: the lanes fly only the"), batch.engine)
+      for world <- 0 until worlds.size do
+        assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
+
+  test("progress counts all worlds, and a cancelled call says how many it flew"):
+    val batch = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2)
+    val seen  = Vector.newBuilder[Int]
+    batch.fly(mixed(600), onProgress = seen += _): Unit
+    assertEquals(seen.result().last, 600)
+    assertEquals(seen.result(), seen.result().sorted)
+    val done   = AtomicInteger()
+    val worlds = mixed(600)
+    val part   = batch.fly(worlds, onProgress = done.set, isCancelled = () => done.get > 0)
+    assert(part.flown > 0 && part.flown < 600, s"${part.flown} flown")
+    val whole = batch.fly(worlds)
+    for world <- 0 until part.flown do
+      assertEquals(numbers(part, world), numbers(whole, world), s"world $world")
+
+  test("what a world throws reaches the caller"):
+    val worlds = mixed(300)
+    val broken = new DuelWorlds:
+      export worlds.{evader, key, pursuer, size}
+      def link(world: Int): DelayTable =
+        if world == 200 then sys.error("no such link") else worlds.link(world)
+    val thrown = intercept[RuntimeException](DuelBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
+    assertEquals(thrown.getMessage, "no such link")
+
+  test("without the vector module the scalar engine flies, and says how to get the other"):
+    val binary  = java.nio.file.Path.of(System.getProperty("java.home"), "bin", "java").toString
+    val process = ProcessBuilder(
+      binary,
+      "-cp",
+      System.getProperty("java.class.path"),
+      "skein.rollout.DuelBatchWithoutVectors"
+    ).redirectErrorStream(true).start()
+    val lines = process.inputReader.lines.iterator.asScala.toVector
+    assertEquals(process.waitFor(), 0, lines.mkString("\n"))
+    assertEquals(
+      lines.head,
+      "scalar: the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
+    )
+    val here = scalar(mixed(1), 0, LoopTiming.Stream(), lag)
+    assertEquals(lines(1), here.toString)
+
+object DuelBatchSuite:
+  val lag: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+
+  /** Worlds of different links and policies; the evader of every seventh goes straight on. */
+  def mixed(count: Int): DuelWorlds =
+    val links = Vector(DelayTable.vpn, DelayTable.direct, DelayTable.none)
+    new DuelWorlds:
+      def size: Int                    = count
+      def key(world: Int): Int         = WorldRandom.key(7, 1, world)
+      def link(world: Int): DelayTable = links(world / 10 % links.size)
+      def pursuer(world: Int): Policy  = PaperPursuer(0.8 + 0.001 * world)
+      def evader(world: Int): Policy = if world % 7 == 6 then KeepHeading else PaperEvader(8 - 0.002 * world)
+
+  def reordered(worlds: DuelWorlds, number: Int => Int): DuelWorlds = new DuelWorlds:
+    def size: Int                    = worlds.size
+    def key(world: Int): Int         = worlds.key(number(world))
+    def link(world: Int): DelayTable = worlds.link(number(world))
+    def pursuer(world: Int): Policy  = worlds.pursuer(number(world))
+    def evader(world: Int): Policy   = worlds.evader(number(world))
+
+  def numbers(o: DuelOutcomes, world: Int): Vector[Float] =
+    Vector(
+      o.minDistanceM,
+      o.meanDistanceM,
+      o.meanLast10sM,
+      o.captureS,
+      o.pursuerEffortRad,
+      o.evaderEffortRad
+    ).map(_(world))
+
+  def scalar(worlds: DuelWorlds, world: Int, timing: LoopTiming, model: VelocityResponse): Vector[Float] =
+    val duel = Duel(
+      Duel.paper.pursuer.copy(policy = worlds.pursuer(world)),
+      Duel.paper.evader.copy(policy = worlds.evader(world)),
+      12
+    )
+    val o = Rollout(duel, timing, worlds.link(world), model).fly(worlds.key(world), 5)
+    Vector(o.minDistanceM, o.meanDistanceM, o.meanLast10sM, o.captureS, o.pursuerEffortRad, o.evaderEffortRad)
+      .map(_.toFloat)
+
+/** Started in a JVM without the vector module. */
+object DuelBatchWithoutVectors:
+  def main(args: Array[String]): Unit =
+    val batch =
+      DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSuite.lag, threads = 1)
+    println(batch.engine)
+    println(DuelBatchSuite.numbers(batch.fly(DuelBatchSuite.mixed(1), captureRadiusM = 5), 0))
