@@ -39,7 +39,7 @@ object KernelBench:
 
   private val streamScalar: Work = thread =>
     val episodes = 256
-    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), model)
+    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, model)
     val sum      = (0 until episodes).map(i => rollout.fly(WorldRandom.key(thread, 0, i)).meanLast10sM).sum
     (episodes * 600 * 2.0, sum / episodes)
 
