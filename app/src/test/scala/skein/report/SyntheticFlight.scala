@@ -98,7 +98,7 @@ object SyntheticFlight:
     val elapsed = lastSent(agent).fold(Span.Zero)(decided.since)
     val self    = scenario.agents(agent)
     val heading =
-      self.policy.heading(
+      self.duelPolicy.heading(
         away.x,
         away.y,
         closing.x,

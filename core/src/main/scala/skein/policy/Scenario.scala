@@ -2,17 +2,20 @@ package skein.policy
 
 import skein.units.*
 
+/** What a vehicle is to the others. */
 enum Role:
-  case Pursuer, Evader
+  case Pursuer, Evader, Leader, Follower, Traveller
 
 /** One vehicle of a scenario and how it behaves.
   *
   * @param speed
-  *   of the velocity it commands
+  *   of the velocity it commands, where its policy does not choose one
   * @param startPositionNed
   *   m, in the world frame; it also holds this altitude
   * @param startHeading
   *   the heading its policy starts from
+  * @param policy
+  *   against one opponent, or for a vehicle among all
   */
 final case class Agent(
     name: String,
@@ -20,25 +23,45 @@ final case class Agent(
     speed: MetresPerSecond,
     startPositionNed: Vector3,
     startHeading: Radians,
-    policy: Policy
+    policy: Policy | TeamPolicy
 ):
-  /** The velocity to command for a heading, m/s, horizontal, world NED. */
-  def velocityNed(headingRad: Double): Vector3 =
-    Vector3(speed.value * math.cos(headingRad), speed.value * math.sin(headingRad), 0)
+  /** The velocity to command for a heading, m/s, horizontal, world NED.
+    *
+    * @param chosen
+    *   the speed, where the policy chose one
+    */
+  def velocityNed(headingRad: Double, chosen: Option[MetresPerSecond] = None): Vector3 =
+    val commanded = chosen.getOrElse(speed).value
+    Vector3(commanded * math.cos(headingRad), commanded * math.sin(headingRad), 0)
 
-/** Who takes part. Every agent plays against the nearest one of the other role. */
+  /** The policy of an agent that plays against one other. */
+  def duelPolicy: Policy = policy match
+    case against: Policy => against
+    case _: TeamPolicy   =>
+      throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
+
+/** Who takes part. Every agent has an opponent: the nearest one of another role, or, where all have the same role, the
+  * nearest.
+  */
 final case class Scenario(agents: Vector[Agent]):
-  private val opponents: Vector[Vector[Int]] =
-    agents.map(agent => agents.indices.filter(agents(_).role != agent.role).toVector)
+  private val opponents: Vector[Vector[Int]] = agents.indices.toVector.map: self =>
+    val others = agents.indices.filter(_ != self).toVector
+    val rivals = others.filter(agents(_).role != agents(self).role)
+    agents(self).policy match
+      case _: Policy     => rivals
+      case _: TeamPolicy => if rivals.nonEmpty then rivals else others
 
   require(
     agents.map(_.name).distinct.size == agents.size,
     "every vehicle of a scenario needs a name of its own"
   )
   for (agent, i) <- agents.zipWithIndex do
-    require(opponents(i).nonEmpty, s"vehicle ${agent.name} has no opponent: a scenario needs both roles")
+    require(
+      opponents(i).nonEmpty,
+      s"vehicle ${agent.name} has no opponent: a duel needs both roles, a team two vehicles"
+    )
 
-  /** Index of the agent that agent `self` plays against: the nearest of the other role, the first of equals.
+  /** Index of the agent that agent `self` plays against: the nearest of its opponents, the first of equals.
     *
     * @param positionNed
     *   position of an agent by its index

@@ -33,7 +33,7 @@ object Duel:
         agent.startPositionNed.y,
         agent.startPositionNed.z,
         agent.startHeading.value,
-        agent.policy
+        agent.duelPolicy
       )
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 

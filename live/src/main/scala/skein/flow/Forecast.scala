@@ -19,6 +19,9 @@ final case class Forecast private (
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
+  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the others.
+  @volatile private var told: Option[(Instant, Vector[Estimate])] = None
+
   def withEvidence(evidence: Evidence): Forecast = evidence match
     case Evidence.Seen(vehicle, reading)                  => seen(vehicle, reading)
     case Evidence.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
@@ -33,8 +36,14 @@ final case class Forecast private (
     *   on the controller's clock
     */
   def whenActing(now: Instant): Option[Vector[Estimate]] =
-    for delays <- delays if tracks.forall(_.isDefined)
-    yield tracks.flatten.map(_.estimateAt(delays.expectedArrival(now), delays, now))
+    told
+      .collect { case (`now`, estimates) => estimates }
+      .orElse:
+        for delays <- delays if tracks.forall(_.isDefined)
+        yield
+          val estimates = tracks.flatten.map(_.estimateAt(delays.expectedArrival(now), delays, now))
+          told = Some((now, estimates))
+          estimates
 
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))

@@ -14,20 +14,22 @@ object Predict:
     * '''Emits when''' an element arrives by whose forecast every vehicle was seen. '''Backpressures when''' downstream
     * backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream cancels.
     *
+    * @param verified
+    *   vehicles whose estimates are held against readings
     * @param onVerified
     *   told of every prediction whose moment was read, with its error
     */
-  def whenActing[A](clock: Clock)(
+  def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true)(
       onVerified: Verified => Unit
   ): Flow[(A, Forecast), (A, Vector[Estimate]), NotUsed] =
     Flow[(A, Forecast)]
       .statefulMap(() => Unverified.none)(
         { case (unverified, (element, forecast)) =>
-          val now              = clock.now()
-          val (left, verified) = unverified.heldAgainst(forecast)
-          verified.foreach(onVerified)
+          val now          = clock.now()
+          val (left, held) = unverified.heldAgainst(forecast)
+          held.foreach(onVerified)
           forecast.whenActing(now) match
-            case Some(estimates) => (left.withMade(now, estimates), Some((element, estimates)))
+            case Some(estimates) => (left.withMade(now, estimates, verified), Some((element, estimates)))
             case None            => (left, None)
         },
         _ => None
@@ -41,8 +43,13 @@ final case class Verified(vehicle: Int, madeAt: Instant, estimate: Estimate, err
 final case class Unverified private (made: Vector[Unverified.Made]):
   import Unverified.*
 
-  def withMade(at: Instant, estimates: Vector[Estimate]): Unverified =
-    val more = estimates.zipWithIndex.map((estimate, vehicle) => Made(vehicle, at, estimate))
+  /** @param of
+    *   vehicles, by their place among the estimates
+    */
+  def withMade(at: Instant, estimates: Vector[Estimate], of: Int => Boolean): Unverified =
+    val more =
+      for (estimate, vehicle) <- estimates.zipWithIndex if of(vehicle)
+      yield Made(vehicle, at, estimate)
     Unverified((made ++ more).takeRight(Limit * estimates.size))
 
   /** What is left, and the predictions that a forecast's readings verify. */

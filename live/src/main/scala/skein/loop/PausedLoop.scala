@@ -55,14 +55,14 @@ object PausedLoop:
         team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
       moves =
         for (vehicle, (_, decision)) <- team.vehicles.toVector.zip(decided)
-        yield send(team, clock, vehicle, decision)
+        yield send(team, clock, vehicle, decision, picture)
       // A move has reached the simulator when the one that it replaces has ended.
       _ <- Future.sequence(step.unanswered)
       _ <- orFail(stepper.continueFor(team.settings.period))
     yield
       val moved = team.vehicles.zip(decided).foldLeft(picture):
         case (seen, (vehicle, (_, decision))) =>
-          seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now))
+          seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now, decision.speed))
       Some((Step(step.number + 1, decided.map(_._1), moved, moves), Done))
 
   /** Ends the last moves and lets the simulator run again. */
@@ -78,10 +78,10 @@ object PausedLoop:
     val at = reading.state.validAt
     reading.copy(state = reading.state.copy(sentAt = at, receivedAt = at))
 
-  private def send(team: Team, clock: Clock, vehicle: Int, decision: Decision)(using
+  private def send(team: Team, clock: Clock, vehicle: Int, decision: Decision, picture: Picture)(using
       ExecutionContext
   ): Future[Either[RpcError, Boolean]] =
-    team.record(decision)
+    team.record(vehicle, decision, picture)
     team.sent(vehicle, decision, clock.now())
     team.move(vehicle, decision).andThen(result => team.ended(vehicle, decision, clock.now(), result))
 

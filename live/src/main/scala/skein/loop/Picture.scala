@@ -1,13 +1,23 @@
 package skein.loop
 
-import skein.policy.{Policy, Role, Scenario}
+import skein.policy.{Policy, Role, Scenario, TeamPolicy, TeamSight}
 import skein.flow.{Estimate, Evidence, Forecast}
-import skein.record.{Decision, Observations, Predicted, Reading, TrueAge}
+import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sighting, TrueAge}
 import skein.signal.{ClockAlignment, Kinematics}
 import skein.units.*
 
-/** A command that was sent to a vehicle, as the other vehicles' policies see it. */
-final case class Move(vehicle: Int, decision: Long, headingRad: Double, sentAt: Instant)
+/** A command that was sent to a vehicle, as the other vehicles' policies see it.
+  *
+  * @param speed
+  *   absent where the vehicle always commands its own
+  */
+final case class Move(
+    vehicle: Int,
+    decision: Long,
+    headingRad: Double,
+    sentAt: Instant,
+    speed: Option[MetresPerSecond] = None
+)
 
 /** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
   * two clocks relate.
@@ -56,7 +66,7 @@ final case class Memory(headingRad: Double, decidedAt: Option[Instant], decision
   * @param policy
   *   the agent's own, or one in its place
   */
-final class Decider(scenario: Scenario, self: Int, policy: Policy):
+final class Decider(scenario: Scenario, self: Int, policy: Policy | TeamPolicy):
   private val agent = scenario.agents(self)
 
   def this(scenario: Scenario, self: Int) = this(scenario, self, scenario.agents(self).policy)
@@ -68,27 +78,87 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy):
     * @param now
     *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
-  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
-    val other           = scenario.opponentOf(self, picture.kinematics(_).positionNed)
-    val own             = picture.readings(self).get
-    val opponent        = picture.readings(other).get
-    val opponentHeading = picture.moves(other).fold(scenario.agents(other).startHeading.value)(_.headingRad)
-    val elapsed         = memory.decidedAt.fold(Span.Zero)(now.since)
-    val (here, there)   = (picture.kinematics(self), picture.kinematics(other))
-    val toOpponent      = there.positionNed - here.positionNed
-    val closing         = there.velocityNed - here.velocityNed
-    val heading         = policy.heading(
+  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) = policy match
+    case team: TeamPolicy =>
+      val course = team.course(sight(memory, picture, now))
+      decided(memory, picture, now, course.headingRad, Some(MetresPerSecond(course.speedMps)))
+    case duel: Policy => decided(memory, picture, now, headingOf(duel, memory, picture, now), None)
+
+  /** What the vehicle knows of its team. */
+  def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
+    val all = scenario.agents.indices.map(picture.kinematics)
+    TeamSight(
+      self,
+      IArray.from(all.map(_.positionNed.x)),
+      IArray.from(all.map(_.positionNed.y)),
+      IArray.from(all.map(_.velocityNed.x)),
+      IArray.from(all.map(_.velocityNed.y)),
+      memory.headingRad,
+      elapsed(memory, now).toSeconds
+    )
+
+  /** What a decision was made from besides what it names itself: the other vehicles of a team. */
+  def sightings(picture: Picture, decision: Decision): Vector[Sighting] = policy match
+    case _: Policy     => Vector.empty
+    case _: TeamPolicy =>
+      for
+        other <- scenario.agents.indices.toVector
+        reading = picture.readings(other).get
+        if other != self && reading.vehicle != decision.opponent.vehicle
+      yield Sighting(
+        agent.name,
+        decision.sequence,
+        reading.vehicle,
+        reading.sequence,
+        picture.estimates.map: estimates =>
+          val expected = estimates(other).kinematics
+          PredictedMotion(expected.positionNed, expected.velocityNed)
+      )
+
+  private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
+
+  private def opponentIn(picture: Picture): Int =
+    scenario.opponentOf(self, picture.kinematics(_).positionNed)
+
+  private def headingIn(picture: Picture, other: Int): Double =
+    picture.moves(other).fold(scenario.agents(other).startHeading.value)(_.headingRad)
+
+  private def headingOf(duel: Policy, memory: Memory, picture: Picture, now: Instant): Double =
+    val other         = opponentIn(picture)
+    val (here, there) = (picture.kinematics(self), picture.kinematics(other))
+    val toOpponent    = there.positionNed - here.positionNed
+    val closing       = there.velocityNed - here.velocityNed
+    duel.heading(
       toOpponent.x,
       toOpponent.y,
       closing.x,
       closing.y,
       memory.headingRad,
-      opponentHeading,
-      elapsed.toSeconds
+      headingIn(picture, other),
+      elapsed(memory, now).toSeconds
     )
+
+  /** The decision for a course that was chosen, however that was done.
+    *
+    * @param speed
+    *   absent where the vehicle commands its own
+    */
+  def decided(
+      memory: Memory,
+      picture: Picture,
+      now: Instant,
+      heading: Double,
+      speed: Option[MetresPerSecond]
+  ): (Memory, Decision) =
+    val other                      = opponentIn(picture)
+    val own                        = picture.readings(self).get
+    val opponent                   = picture.readings(other).get
+    val opponentHeading            = headingIn(picture, other)
+    val (here, there)              = (picture.kinematics(self), picture.kinematics(other))
+    val toOpponent                 = there.positionNed - here.positionNed
     val (toEvader, pursuerHeading) = agent.role match
-      case Role.Pursuer => (toOpponent, memory.headingRad)
-      case Role.Evader  => (toOpponent * -1, opponentHeading)
+      case Role.Evader => (toOpponent * -1, opponentHeading)
+      case _           => (toOpponent, memory.headingRad)
     val (cos, sin) = (math.cos(pursuerHeading), math.sin(pursuerHeading))
     val decision   = Decision(
       sequence = memory.decisions,
@@ -101,7 +171,7 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy):
       headingBefore = Radians(memory.headingRad),
       opponentHeading = Radians(opponentHeading),
       heading = Radians(heading),
-      elapsed = elapsed,
+      elapsed = elapsed(memory, now),
       observations = Observations(
         ownAge = own.state.ageByArrival(now),
         opponentAge = opponent.state.ageByArrival(now),
@@ -124,6 +194,7 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy):
           there.positionNed,
           there.velocityNed
         )
-      )
+      ),
+      speed = speed
     )
     (Memory(heading, Some(now), memory.decisions + 1), decision)

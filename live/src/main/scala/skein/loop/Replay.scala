@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.Scenario
+import skein.policy.{Policy, Scenario, TeamPolicy}
 import skein.record.*
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -22,6 +22,7 @@ final class Replay(scenario: Scenario, recording: Recording):
     if paused then recording.readings.map(PausedLoop.timeless) else recording.readings
   private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
+  private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
   private val moves      = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
 
   /** The first decision that comes out differently. */
@@ -44,16 +45,38 @@ final class Replay(scenario: Scenario, recording: Recording):
       opponent <- reading(recorded, "opponentSequence", recorded.opponent)
       ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
       itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
+      others   <- othersSeen(recorded, self, other)
     yield
       val empty = Picture.empty(scenario.agents.size)
+      val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
       val known = empty.copy(
-        readings = empty.readings.updated(self, Some(own)).updated(other, Some(opponent)),
+        readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),
         moves = empty.moves.updated(self, ownMove).updated(other, itsMove),
         alignment = recorded.trueAge.map(alignment)
       )
       val decider = Decider(scenario, self)
       val decided = pictures(known, recorded).map(decider.decide(memories(self), _, recorded.decidedAt))
       decided.find(_._2.opponent.vehicle == recorded.opponent.vehicle).getOrElse(decided.head)
+
+  /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
+  private def othersSeen(of: Decision, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
+    val rest = scenario.agents(self).policy match
+      case _: Policy     => Nil
+      case _: TeamPolicy => scenario.agents.indices.filter(index => index != self && index != opponent)
+    rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
+      val name = scenario.agents(vehicle).name
+      for
+        readings <- soFar
+        sighting <- sightingOf(of, name).toRight(
+          Difference(where(of), "sighting", name, "missing in the table of sightings")
+        )
+        reading <- bySequence
+          .get((name, sighting.reading))
+          .toRight(Difference(where(of), "sighting", s"$name ${sighting.reading}", "no such reading"))
+      yield readings.updated(vehicle, reading)
+
+  private def sightingOf(of: Decision, vehicle: String): Option[Sighting] =
+    sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
 
   /** The picture with what was known of the vehicles that the decision was not made from. It was drawn at some moment
     * after the readings used had come, so there is one for each reading that came since.
@@ -77,7 +100,10 @@ final class Replay(scenario: Scenario, recording: Recording):
           moved(read, predicted.ownPositionNed, predicted.ownVelocityNed)
         else if reading.vehicle == recorded.opponent.vehicle then
           moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed)
-        else moved(read, OutOfSight, read.velocityNed)
+        else
+          sightingOf(recorded, reading.vehicle).flatMap(_.predicted) match
+            case Some(motion) => moved(read, motion.positionNed, motion.velocityNed)
+            case None         => moved(read, OutOfSight, read.velocityNed)
       skein.flow.Estimate(estimated, predicted.actsAt, reading.state.validAt)
 
   private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
@@ -125,7 +151,8 @@ final class Replay(scenario: Scenario, recording: Recording):
       vehicle,
       sequence,
       decision.heading.value,
-      if paused then decision.decidedAt else command.sentAt
+      if paused then decision.decidedAt else command.sentAt,
+      decision.speed
     )
 
   private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"

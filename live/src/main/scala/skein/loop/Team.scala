@@ -7,7 +7,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
 import skein.flow.*
 import skein.link.Clock
-import skein.policy.{Policy, Scenario}
+import skein.policy.{Policy, Scenario, TeamPolicy}
 import skein.record.*
 import skein.rpc.RpcError
 import skein.units.*
@@ -95,7 +95,9 @@ final class Team(
       .collect(Function.unlift(sight =>
         sight.picture.forecast.filter(_ => sight.deciders(vehicle)).map((sight, _))
       ))
-      .via(Predict.whenActing(clock)(verified => recorder.offer(prediction(vehicle, verified))))
+      .via(Predict.whenActing(clock, verified(vehicle))(verified =>
+        recorder.offer(prediction(vehicle, verified))
+      ))
       .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
 
   /** Decides for one vehicle on the sights that are meant for it, and records the decision. */
@@ -104,8 +106,10 @@ final class Team(
       // Not `filter`: it fetches one element ahead, which would grow old in it.
       .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
-        decideAt(vehicle, memory, seen._1, seen._2))
-      .via(Tap(recorder.offer))
+        val (next, decision) = decideAt(vehicle, memory, seen._1, seen._2)
+        (next, (decision, seen._1)))
+      .via(Tap(record(vehicle, _, _)))
+      .map(_._1)
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
     *
@@ -118,23 +122,30 @@ final class Team(
   def decideWithin(
       vehicle: Int,
       deadline: Span,
-      instead: Option[Policy]
+      instead: Option[Policy | TeamPolicy]
   )(
       policy: (Memory, (Picture, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[Sight, Decision, NotUsed] =
-    val otherwise = instead.fold(Otherwise.Hold()): fallback =>
+    type Seen = (Picture, Instant)
+    def withPicture(decided: (Memory, Decision), seen: Seen) = (decided._1, (decided._2, seen._1))
+    val otherwise                                            = instead.fold(Otherwise.Hold()): fallback =>
       val decider = Decider(scenario, vehicle, fallback)
-      Otherwise.Ask((memory: Memory, seen: (Picture, Instant)) => decider.decide(memory, seen._1, seen._2))
+      Otherwise.Ask((memory: Memory, seen: Seen) =>
+        withPicture(decider.decide(memory, seen._1, seen._2), seen)
+      )
     Flow[Sight]
       .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
-      .via(Decide.within(deadline, otherwise, start(vehicle))(policy))
+      .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
+        policy(memory, seen).map(withPicture(_, seen))
+      ))
       .map:
         case Timely.Decided(decision)     => Some(decision)
         case Timely.Missed(miss, instead) =>
           note(EventKind.DeadlineMissed, Some(vehicle), miss.toString)
           instead
-      .collect { case Some(decision) => decision }
-      .via(Tap(recorder.offer))
+      .collect { case Some(decided) => decided }
+      .via(Tap(record(vehicle, _, _)))
+      .map(_._1)
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
@@ -177,7 +188,7 @@ final class Team(
       .map:
         case Steered.Sent(decision, at) =>
           sent(vehicle, decision, at)
-          Some(Percept.Moved(Move(vehicle, decision.sequence, decision.heading.value, at)))
+          Some(Percept.Moved(Move(vehicle, decision.sequence, decision.heading.value, at, decision.speed)))
         case Steered.Ended(decision, at, result) =>
           ended(vehicle, decision, at, result)
           result match
@@ -204,11 +215,10 @@ final class Team(
 
   /** Sends what was decided; the answer comes when the move ends. */
   def move(vehicle: Int, decision: Decision): Future[Either[RpcError, Boolean]] =
-    val agent = scenario.agents(vehicle)
-    crafts(vehicle).move(agent.velocityNed(decision.heading.value), altitude(vehicle), settings.moveDuration)
+    crafts(vehicle).move(velocityNed(vehicle, decision), altitude(vehicle), settings.moveDuration)
 
   def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
-    val velocity = scenario.agents(vehicle).velocityNed(decision.heading.value)
+    val velocity = velocityNed(vehicle, decision)
     recorder.offer(
       Command(
         decision.sequence,
@@ -236,13 +246,24 @@ final class Team(
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
 
-  def record(row: Record): Unit = recorder.offer(row)
+  /** Records a decision and what it was made from. */
+  def record(vehicle: Int, decision: Decision, picture: Picture): Unit =
+    recorder.offer(decision)
+    deciders(vehicle).sightings(picture, decision).foreach(recorder.offer)
 
   private def name(vehicle: Int): String = scenario.agents(vehicle).name
 
   private def setpoint(move: Move): Setpoint =
-    val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad)
+    val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
     Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
+
+  private def velocityNed(vehicle: Int, decision: Decision): Vector3 =
+    scenario.agents(vehicle).velocityNed(decision.heading.value, decision.speed)
+
+  /** Whose predictions are held against readings by a decider: where each of a team predicts all, its own. */
+  private def verified(decider: Int): Int => Boolean = scenario.agents(decider).policy match
+    case _: Policy     => _ => true
+    case _: TeamPolicy => _ == decider
 
   private def prediction(decider: Int, verified: Verified): Prediction = Prediction(
     decider = name(decider),

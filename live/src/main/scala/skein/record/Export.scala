@@ -19,7 +19,9 @@ object Export:
       _     <- createDirectory(directory)
       files <- RecordingReader.withRecording(recording): connection =>
         RecordingFile.attempt(RecordError.ExportFailed(directory, _)):
-          Table.all.map(table => write(table, directory.resolve(table.name + ".parquet"), connection))
+          Table.all.filterNot(_.isMissing(connection)).map(table =>
+            write(table, directory.resolve(table.name + ".parquet"), connection)
+          )
     yield files
 
   private def createDirectory(directory: Path): Either[RecordError, Unit] =

@@ -63,9 +63,10 @@ final case class Reading(sequence: Long, vehicle: String, state: Stamped[Kinemat
   * @param opponent
   *   the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX
-  *   the evader seen from the pursuer, along the pursuer's commanded heading
+  *   the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of other roles, the opponent
+  *   seen from the vehicle
   * @param relativeY
-  *   the same, to the right of the pursuer's commanded heading
+  *   the same, to the right of that heading
   * @param headingBefore
   *   commanded last to this vehicle
   * @param opponentHeading
@@ -78,6 +79,8 @@ final case class Reading(sequence: Long, vehicle: String, state: Stamped[Kinemat
   *   absent until the clocks' offset is known
   * @param predicted
   *   where both vehicles were expected to be, if that was decided upon instead of the readings
+  * @param speed
+  *   the one chosen; absent where the vehicle always commands its own
   */
 final case class Decision(
     sequence: Long,
@@ -93,8 +96,32 @@ final case class Decision(
     elapsed: Span,
     observations: Observations,
     trueAge: Option[TrueAge],
-    predicted: Option[Predicted] = None
+    predicted: Option[Predicted] = None,
+    speed: Option[MetresPerSecond] = None
 ) extends Record
+
+/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle, where the
+  * policy regards the whole team.
+  *
+  * @param decider
+  *   the vehicle that was decided for
+  * @param decision
+  *   the decision's sequence
+  * @param reading
+  *   the sequence of the reading of `vehicle` that was used
+  * @param predicted
+  *   where it was expected to be, if that was decided upon instead of the reading
+  */
+final case class Sighting(
+    decider: String,
+    decision: Long,
+    vehicle: String,
+    reading: Long,
+    predicted: Option[PredictedMotion]
+) extends Record
+
+/** Where a vehicle was expected to be when the command acts. */
+final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
 /** The paper's four observations at one decision. Both ages count from the *arrival* of the reading used, as
   * published; a time since a move is absent before the first move.

@@ -30,8 +30,10 @@ enum RecordError(val message: String):
   case NotARecording(file: Path, reason: String) extends RecordError(s"$file is not a recording: $reason")
 
   /** The recording was written by a version with other tables. */
-  case OtherVersion(file: Path, expected: Int, found: Int)
-      extends RecordError(s"$file has recording format $found; this program reads format $expected")
+  case OtherVersion(file: Path, oldest: Int, newest: Int, found: Int)
+      extends RecordError(
+        s"$file has recording format $found; this program reads formats $oldest to $newest"
+      )
 
   /** The folder or a file in it could not be written. */
   case ExportFailed(directory: Path, reason: String)

@@ -34,8 +34,11 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
 private[record] object RecordingFile:
 
-  /** Counts changes of the tables; a file of another version is not read. */
-  val formatVersion = 2
+  /** Counts changes of the tables; a file of a later version is not read. */
+  val formatVersion = 3
+
+  /** Files since this version are read: what came later reads as absent. */
+  val oldestVersion = 2
 
   /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the first. */
   def create(file: Path, heading: Heading): Either[RecordError, RecordingFile] =

@@ -17,6 +17,7 @@ object RecordingReader:
             Heading(flight, Table.vehicle.read(connection), Table.parameter.read(connection)),
             Table.reading.read(connection),
             Table.decision.read(connection),
+            Table.sighting.read(connection),
             Table.prediction.read(connection),
             Table.command.read(connection),
             Table.acknowledgement.read(connection),
@@ -32,7 +33,7 @@ object RecordingReader:
       RecordingFile.attempt(RecordError.NotARecording(file, _)):
         Table.all.flatMap(_.readNumbered(connection)).sortBy(_._1)
 
-  /** Opens for reading only, checks that it is a recording of this format, and closes afterwards. */
+  /** Opens for reading only, checks that it is a recording of a format that is read, and closes afterwards. */
   private[record] def withRecording[A](file: Path)(
       action: Connection => Either[RecordError, A]
   ): Either[RecordError, A] =
@@ -54,9 +55,9 @@ object RecordingReader:
             rows.getInt(1)
       .flatMap: found =>
         Either.cond(
-          found == RecordingFile.formatVersion,
+          found >= RecordingFile.oldestVersion && found <= RecordingFile.formatVersion,
           (),
-          RecordError.OtherVersion(file, RecordingFile.formatVersion, found)
+          RecordError.OtherVersion(file, RecordingFile.oldestVersion, RecordingFile.formatVersion, found)
         )
 
   /** DuckDB's files bear its name behind an eight-byte checksum. */

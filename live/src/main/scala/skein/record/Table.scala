@@ -5,8 +5,16 @@ import org.duckdb.DuckDBConnection
 import scala.util.Using
 import skein.record.Columns.*
 
-/** A table of a recording: the type of its rows, its name and its columns. */
-private[record] final case class Table[A <: Record](name: String, columns: Columns[A]):
+/** A table of a recording: the type of its rows, its name and its columns.
+  *
+  * @param since
+  *   the format that it came with; it has no rows in older files
+  */
+private[record] final case class Table[A <: Record](
+    name: String,
+    columns: Columns[A],
+    since: Int = RecordingFile.oldestVersion
+):
 
   def create: String =
     (Column("row", "BIGINT") +: columns.definitions).map(_.sql).mkString(s"CREATE TABLE $name (", ", ", ")")
@@ -23,15 +31,33 @@ private[record] final case class Table[A <: Record](name: String, columns: Colum
   /** All rows in the order in which they were recorded. */
   def read(connection: Connection): Vector[A] = readNumbered(connection).map(_._2)
 
-  /** The same, each with its number. */
+  /** The same, each with its number. A column that may be null and is missing in an older file is absent. */
   def readNumbered(connection: Connection): Vector[(Long, A)] =
-    val names = columns.definitions.map(_.name).mkString(", ")
+    val present = columnsIn(connection)
+    val cells   = columns.definitions.map: column =>
+      if column.nullable && !present(column.name) then s"NULL AS ${column.name}" else column.name
+    if isMissing(present) then Vector.empty
+    else
+      Using.resource(connection.createStatement()): statement =>
+        Using.resource(statement.executeQuery(
+          s"SELECT row, ${cells.mkString(", ")} FROM $name ORDER BY row"
+        )): rows =>
+          Vector.unfold(rows): rows =>
+            Option.when(rows.next()):
+              val cells = Cells(rows)
+              ((cells.next(_.getLong(_)), columns.read(cells)), rows)
+
+  /** Whether an older file does not have it. */
+  def isMissing(connection: Connection): Boolean = isMissing(columnsIn(connection))
+
+  private def isMissing(present: Set[String]): Boolean =
+    present.isEmpty && since > RecordingFile.oldestVersion
+
+  private def columnsIn(connection: Connection): Set[String] =
     Using.resource(connection.createStatement()): statement =>
-      Using.resource(statement.executeQuery(s"SELECT row, $names FROM $name ORDER BY row")): rows =>
-        Vector.unfold(rows): rows =>
-          Option.when(rows.next()):
-            val cells = Cells(rows)
-            ((cells.next(_.getLong(_)), columns.read(cells)), rows)
+      Using.resource(statement.executeQuery(
+        s"SELECT column_name FROM information_schema.columns WHERE table_name = '$name'"
+      ))(rows => Set.unfold(rows)(rows => Option.when(rows.next())((rows.getString(1), rows))))
 
 private[record] object Table:
   private val readingColumns = product[Reading]((long("sequence"), text("vehicle"), stampedKinematics))
@@ -97,8 +123,24 @@ private[record] object Table:
               ned("opponentPredictedPosition", "M"),
               ned("opponentPredictedVelocity", "Mps")
             )
-        )
+        ),
+        optional(speed("speed"))
       )
+  )
+
+  val sighting: Table[Sighting] = Table(
+    "sighting",
+    product[Sighting]:
+      (
+        text("decider"),
+        long("decision"),
+        text("vehicle"),
+        long("reading"),
+        optional(product[PredictedMotion]:
+          (ned("predictedPosition", "M"), ned("predictedVelocity", "Mps")))
+      )
+    ,
+    since = 3
   )
 
   val prediction: Table[Prediction] = Table(
@@ -152,6 +194,7 @@ private[record] object Table:
       vehicle,
       reading,
       decision,
+      sighting,
       prediction,
       command,
       acknowledgement,
@@ -172,6 +215,7 @@ private[record] object Table:
     case _: Vehicle         => vehicle
     case _: Reading         => reading
     case _: Decision        => decision
+    case _: Sighting        => sighting
     case _: Prediction      => prediction
     case _: Command         => command
     case _: Acknowledgement => acknowledgement

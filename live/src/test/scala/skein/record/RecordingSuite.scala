@@ -26,6 +26,18 @@ class RecordingSuite extends munit.FunSuite:
     record(file, Samples.oneOfEach*)
     assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
 
+  folder.test("a file of the format before is read: what it does not have is absent"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    execute(file, "DROP TABLE sighting")
+    execute(file, "ALTER TABLE decision DROP COLUMN speedMps")
+    execute(file, "UPDATE format SET version = 2")
+    val older = Samples.oneOfEach.collect:
+      case decision: Decision                     => decision.copy(speed = None)
+      case other if !other.isInstanceOf[Sighting] => other
+    assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, older)))
+    assert(Export.parquet(file, folder.resolve("parquet")).isRight)
+
   folder.test("rows are numbered through all tables in the order of their records"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.reading(1), Samples.decision(1), Samples.reading(2))
@@ -67,7 +79,7 @@ class RecordingSuite extends munit.FunSuite:
     execute(file, "UPDATE format SET version = 99")
     assertEquals(
       RecordingReader.read(file),
-      Left(RecordError.OtherVersion(file, RecordingFile.formatVersion, 99))
+      Left(RecordError.OtherVersion(file, RecordingFile.oldestVersion, RecordingFile.formatVersion, 99))
     )
 
   folder.test("each table is exported as a Parquet file with all its rows"): folder =>

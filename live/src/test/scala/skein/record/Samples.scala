@@ -83,7 +83,15 @@ object Samples:
   val oneOfEach: Vector[Record] = Vector(
     reading(1),
     decision(1),
-    decision(2).copy(trueAge = None, predicted = None),
+    decision(2).copy(trueAge = None, predicted = None, speed = Some(MetresPerSecond(3.75))),
+    Sighting("Pursuer", 2, "Evader", 3, None),
+    Sighting(
+      "Evader",
+      4,
+      "Pursuer",
+      5,
+      Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
+    ),
     Prediction(
       "Pursuer",
       "Evader",

@@ -1,0 +1,67 @@
+package skein.policy
+
+/** Leads round a circuit: flies towards the point a fixed length ahead of its own place on it (pure pursuit; Coulter,
+  * ''Implementation of the Pure Pursuit Path Tracking Algorithm'', CMU-RI-TR-92-01).
+  *
+  * @param aheadM
+  *   about as far as the vehicle flies before it follows a command
+  */
+final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends TeamPolicy:
+
+  def course(seen: TeamSight): Course =
+    val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
+    val (toNorth, toEast) = circuit.point(circuit.nearest(north, east) + aheadM)
+    val direction         = math.hypot(toNorth - north, toEast - east)
+    if direction == 0 then Course(seen.headingRad, speedMps)
+    else Course(math.atan2(toEast - east, toNorth - north), speedMps)
+
+/** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is, the second
+  * to the right; it turns as the leader moves along, and the slot's velocity follows from both: the leader's velocity
+  * plus turn rate × offset, so that the outer vehicles of a turn fly faster and the inner ones slower.
+  *
+  * @param aheadM
+  *   of the slot before the leader
+  * @param rightM
+  *   of the slot to the right of the leader
+  */
+final case class KeepSlot(
+    leader: Int,
+    circuit: Racetrack,
+    aheadM: Double,
+    rightM: Double,
+    mostMps: Double,
+    pursuit: Pursuit = Pursuit()
+) extends TeamPolicy:
+
+  def course(seen: TeamSight): Course =
+    val self                      = seen.self
+    val place                     = circuit.nearest(seen.northM(leader), seen.eastM(leader))
+    val heading                   = circuit.headingRad(place)
+    val (cos, sin)                = (math.cos(heading), math.sin(heading))
+    val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
+    // How fast the place on the circuit moves when the leader flies beside it.
+    val (nearNorth, nearEast) = circuit.point(place)
+    val toTheRightM = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
+    val curvature   = circuit.curvaturePerM(place)
+    val alongMps    = seen.northMps(leader) * cos + seen.eastMps(leader) * sin
+    val turnRadps   = alongMps * curvature / (1 - curvature * toTheRightM).max(KeepSlot.LeastShare)
+    Course.of(
+      pursuit.along(
+        seen.northM(leader) + northOffset,
+        seen.northMps(leader) - turnRadps * eastOffset,
+        seen.northM(self),
+        seen.northMps(self)
+      ),
+      pursuit.along(
+        seen.eastM(leader) + eastOffset,
+        seen.eastMps(leader) + turnRadps * northOffset,
+        seen.eastM(self),
+        seen.eastMps(self)
+      ),
+      mostMps,
+      seen.headingRad
+    )
+
+object KeepSlot:
+  /** Near the middle of a turn the place on the circuit moves ever faster; not more than four times as fast here. */
+  private val LeastShare = 0.25

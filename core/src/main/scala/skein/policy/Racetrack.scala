@@ -1,0 +1,49 @@
+package skein.policy
+
+/** A closed circuit of two straights joined by two half circles, flown clockwise as seen from above: from the origin
+  * north, a half turn to the right, back south at twice the radius further east, and a half turn to the right again.
+  * Places on it are told by the length flown from the origin.
+  */
+final case class Racetrack(straightM: Double, radiusM: Double):
+  require(straightM >= 0 && radiusM > 0, s"not a circuit: straights of $straightM m, turns of $radiusM m")
+
+  private val turnM = math.Pi * radiusM
+
+  /** Of one lap, m. */
+  val lengthM: Double = 2 * (straightM + turnM)
+
+  /** The place on the circuit nearest to a point, m from the origin, 0 to [[lengthM]]. */
+  def nearest(northM: Double, eastM: Double): Double =
+    if northM > straightM then straightM + radiusM * math.atan2(northM - straightM, radiusM - eastM)
+    else if northM < 0 then
+      2 * straightM + turnM + radiusM * math.atan2(-northM, eastM - radiusM)
+    else if eastM < radiusM then northM
+    else straightM + turnM + (straightM - northM)
+
+  /** North and east of a place, m. */
+  def point(placeM: Double): (Double, Double) =
+    val along = lap(placeM)
+    if along < straightM then (along, 0)
+    else if along < straightM + turnM then
+      val angle = (along - straightM) / radiusM
+      (straightM + radiusM * math.sin(angle), radiusM * (1 - math.cos(angle)))
+    else if along < 2 * straightM + turnM then (2 * straightM + turnM - along, 2 * radiusM)
+    else
+      val angle = (along - 2 * straightM - turnM) / radiusM
+      (-radiusM * math.sin(angle), radiusM * (1 + math.cos(angle)))
+
+  /** Direction of flight at a place, from north towards east. */
+  def headingRad(placeM: Double): Double =
+    val along = lap(placeM)
+    if along < straightM then 0
+    else if along < straightM + turnM then (along - straightM) / radiusM
+    else if along < 2 * straightM + turnM then math.Pi
+    else math.Pi + (along - 2 * straightM - turnM) / radiusM
+
+  /** Turn to the right per metre flown at a place, rad/m. */
+  def curvaturePerM(placeM: Double): Double =
+    val along = lap(placeM)
+    if along < straightM || along >= straightM + turnM && along < 2 * straightM + turnM then 0
+    else 1 / radiusM
+
+  private def lap(placeM: Double): Double = placeM - lengthM * math.floor(placeM / lengthM)

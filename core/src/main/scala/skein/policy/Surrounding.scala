@@ -1,0 +1,56 @@
+package skein.policy
+
+/** Several pursuers on a ring around one evader, at evenly spaced bearings.
+  *
+  * Slots keep the cyclic order in which the pursuers stand around the evader, so that their ways to them do not cross;
+  * the ring is turned so that together they have the least to turn: with the bearings β in ascending order, that of rank
+  * k of n gets mean(β) + (k − (n − 1)/2)·2π/n. Wherever bearings are cut open, the same slots come out, and every pursuer
+  * finds them by itself.
+  *
+  * @param evader
+  *   its place in the scenario; all other vehicles are pursuers
+  * @param mostMps
+  *   the fastest that is commanded
+  */
+final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
+    extends TeamPolicy:
+
+  def course(seen: TeamSight): Course =
+    val slot  = slotRad(seen)
+    val north = seen.northM(evader) + ringM * math.cos(slot)
+    val east  = seen.eastM(evader) + ringM * math.sin(slot)
+    val self  = seen.self
+    Course.of(
+      pursuit.along(north, seen.northMps(evader), seen.northM(self), seen.northMps(self)),
+      pursuit.along(east, seen.eastMps(evader), seen.eastM(self), seen.eastMps(self)),
+      mostMps,
+      seen.headingRad
+    )
+
+  /** The own slot's bearing from the evader, from north towards east. */
+  private[policy] def slotRad(seen: TeamSight): Double =
+    val n      = seen.count - 1
+    val own    = bearing(seen, seen.self)
+    var before = 0
+    var sum    = 0.0
+    for vehicle <- 0 until seen.count if vehicle != evader do
+      val its = bearing(seen, vehicle)
+      sum += its
+      if its < own || its == own && vehicle < seen.self then before += 1
+    sum / n + (before - (n - 1) / 2.0) * 2 * math.Pi / n
+
+  private def bearing(seen: TeamSight, vehicle: Int): Double =
+    math.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))
+
+/** Flees straight away from whoever of the others is nearest, the first of equals. */
+final case class Flee(speedMps: Double) extends TeamPolicy:
+
+  def course(seen: TeamSight): Course =
+    val self                  = seen.self
+    def distanceM(other: Int) =
+      math.hypot(seen.northM(other) - seen.northM(self), seen.eastM(other) - seen.eastM(self))
+    val nearest               = (0 until seen.count).filter(_ != self).minBy(distanceM)
+    val (awayNorth, awayEast) =
+      (seen.northM(self) - seen.northM(nearest), seen.eastM(self) - seen.eastM(nearest))
+    if awayNorth == 0 && awayEast == 0 then Course(seen.headingRad, speedMps)
+    else Course(math.atan2(awayEast, awayNorth), speedMps)

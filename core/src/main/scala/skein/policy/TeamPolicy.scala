@@ -1,0 +1,69 @@
+package skein.policy
+
+/** Chooses a velocity for one vehicle from what it knows of its whole team. A pure function of its argument; it
+  * integrates over elapsed time and never counts its calls.
+  */
+trait TeamPolicy:
+
+  /** The horizontal velocity to command now. */
+  def course(seen: TeamSight): Course
+
+/** What one vehicle knows of its team at one moment. Arrays are by the vehicle's place in the scenario, its own
+  * included; world frame NED.
+  *
+  * @param self
+  *   the own place
+  * @param northM
+  *   positions, m
+  * @param northMps
+  *   velocities, m/s
+  * @param headingRad
+  *   commanded last to the own vehicle
+  * @param elapsedS
+  *   time since the own last decision; 0 at the first
+  */
+final case class TeamSight(
+    self: Int,
+    northM: IArray[Double],
+    eastM: IArray[Double],
+    northMps: IArray[Double],
+    eastMps: IArray[Double],
+    headingRad: Double,
+    elapsedS: Double
+):
+  require(
+    northM.length == eastM.length && northM.length == northMps.length && northM.length == eastMps.length,
+    "a position and a velocity of every vehicle are needed"
+  )
+
+  /** How many vehicles there are. */
+  def count: Int = northM.length
+
+/** A horizontal velocity to command.
+  *
+  * @param headingRad
+  *   from north towards east
+  */
+final case class Course(headingRad: Double, speedMps: Double)
+
+object Course:
+
+  /** A velocity as a course, no faster than allowed. One without a direction keeps the heading. */
+  def of(northMps: Double, eastMps: Double, mostMps: Double, headingRad: Double): Course =
+    val speed = math.hypot(northMps, eastMps)
+    if speed < 1e-9 then Course(headingRad, 0)
+    else Course(math.atan2(eastMps, northMps), speed.min(mostMps))
+
+/** How a vehicle that answers late to its commands follows a point that moves: the point's velocity, and shares of how
+  * far it lags behind in place and in speed (proportional-derivative control with feed-forward).
+  *
+  * @param perS
+  *   commanded speed per metre behind
+  * @param lead
+  *   commanded speed per speed behind: 1 halves the time constant of a vehicle that follows its command with a lag
+  */
+final case class Pursuit(perS: Double = 0.6, lead: Double = 1.0):
+
+  /** Speed to command on one axis. */
+  def along(goalM: Double, goalMps: Double, ownM: Double, ownMps: Double): Double =
+    goalMps + perS * (goalM - ownM) + lead * (goalMps - ownMps)

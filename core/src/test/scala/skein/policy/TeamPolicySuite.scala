@@ -1,0 +1,182 @@
+package skein.policy
+
+import skein.units.*
+
+class TeamPolicySuite extends munit.FunSuite:
+
+  test("pursuers stand at rest on the ring at even bearings around an evader that does not move"):
+    val surround = TeamScenario.Surround(vehicles = 6)
+    val agents   = surround.scenario.agents
+    val still    = agents.head.copy(policy = Flee(0))
+    val flight   = TeamFlight(Scenario(still +: agents.tail), lagS = 1.5)
+    flight.fly(60)()
+    val bearings = (1 to 5)
+      .map(pursuer =>
+        math.atan2(flight.eastM(pursuer) - flight.eastM(0), flight.northM(pursuer) - flight.northM(0))
+      )
+      .sorted
+    for pursuer <- 1 to 5 do
+      assertEqualsDouble(flight.distanceM(0, pursuer), surround.ringM, 0.01)
+      assertEqualsDouble(math.hypot(flight.northMps(pursuer), flight.eastMps(pursuer)), 0, 0.01)
+    for (before, after) <- bearings.zip(bearings.tail) do
+      assertEqualsDouble(after - before, 2 * math.Pi / 5, 0.01)
+
+  test("every pursuer has a slot of its own, wherever the bearings are cut open"):
+    val random = scala.util.Random(5)
+    for turn <- 0 until 200 do
+      val bearings                 = Seq.fill(7)((random.nextDouble() - 0.5) * 2 * math.Pi)
+      val policy                   = Surrounding(evader = 3, ringM = 5, mostMps = 8)
+      def slots(turnedRad: Double) =
+        val around = bearings.map(_ + turnedRad)
+        val all    = around.take(3) ++ Seq(Double.NaN) ++ around.drop(3)
+        val flat   = IArray.fill(8)(0.0)
+        for self <- 0 until 8 if self != 3
+        yield policy.slotRad(
+          TeamSight(
+            self,
+            IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.cos(rad))),
+            IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.sin(rad))),
+            flat,
+            flat,
+            0,
+            0
+          )
+        ) - turnedRad
+      val plain = slots(0)
+      for (one, other) <- plain.zip(slots(random.nextDouble() * 7)) do
+        assertEqualsDouble(math.cos(one), math.cos(other), 1e-9, s"turn $turn")
+        assertEqualsDouble(math.sin(one), math.sin(other), 1e-9, s"turn $turn")
+      assertEquals(
+        plain.map(rad => math.floorMod(math.round((rad - plain.head) / (2 * math.Pi / 7)), 7L)).toSet.size,
+        7
+      )
+
+  test("the evader flees straight away from the nearest"):
+    val scene = TeamScenario.Surround(vehicles = 3).scenario
+    val seen  = TeamFlight(scene, lagS = 0).seenBy(0)
+    val moved = seen.copy(northM = IArray(0, 3, -2), eastM = IArray(0, 4, -1))
+    val fled  = Flee(4).course(moved)
+    assertEqualsDouble(fled.headingRad, math.atan2(1, 2), 1e-12)
+    assertEquals(fled.speedMps, 4.0)
+
+  test("a place on the circuit is found again from its point, and directions follow the points"):
+    val circuit = Racetrack(50, 20)
+    for step <- 0 until 500 do
+      val place         = circuit.lengthM * step / 500
+      val (north, east) = circuit.point(place)
+      assertEqualsDouble(circuit.nearest(north, east), place, 1e-9)
+      val (nextNorth, nextEast) = circuit.point(place + 1e-6)
+      assertEqualsDouble((nextNorth - north) / 1e-6, math.cos(circuit.headingRad(place)), 1e-5)
+      assertEqualsDouble((nextEast - east) / 1e-6, math.sin(circuit.headingRad(place)), 1e-5)
+
+  private def slotErrorsM(formation: TeamScenario.Formation, flight: TeamFlight): Seq[Double] =
+    val circuit    = TeamScenario.circuit(formation)
+    val heading    = circuit.headingRad(circuit.nearest(flight.northM(0), flight.eastM(0)))
+    val (cos, sin) = (math.cos(heading), math.sin(heading))
+    for ((ahead, right), index) <- TeamScenario.slots(formation).zipWithIndex
+    yield math.hypot(
+      flight.northM(0) + ahead * cos - right * sin - flight.northM(index + 1),
+      flight.eastM(0) + ahead * sin + right * cos - flight.eastM(index + 1)
+    )
+
+  test("a formation has no error on the straight"):
+    val formation = TeamScenario.Formation(straightM = 500)
+    val flight    = TeamFlight(formation.scenario, lagS = 0.8)
+    flight.fly(60)()
+    assert(slotErrorsM(formation, flight).max < 0.01, slotErrorsM(formation, flight))
+
+  test("a formation turns with its leader"):
+    val formation = TeamScenario.Formation(straightM = 0, radiusM = 30)
+    val flight    = TeamFlight(formation.scenario, lagS = 0, stepS = 0.01)
+    var worst     = 0.0
+    flight.fly(10)()
+    flight.fly(40)({ worst = worst.max(slotErrorsM(formation, flight).max) })
+    // Without turn rate × offset in the slot's velocity it would be 0.6 m.
+    assert(worst < 0.15, s"$worst m")
+
+  private def headOn(sideM: Double, lagS: Double): TeamFlight =
+    def one(name: String, north: Double, east: Double, heading: Double) = Agent(
+      name,
+      Role.Traveller,
+      MetresPerSecond(5),
+      Vector3(north, east, -5),
+      Radians(heading),
+      Avoidance(-north, -east, cruiseMps = 5, mostMps = 8, apartM = 3.5, horizonS = 4)
+    )
+    val flight = TeamFlight(Scenario(Vector(one("A", -30, -sideM, 0), one("B", 30, sideM, math.Pi))), lagS)
+    flight.fly(30)()
+    flight
+
+  for (sideM, lagS) <- Seq((0.0, 0.0), (0.5, 0.0), (-0.5, 0.0)) do
+    test(
+      s"two vehicles head-on, $sideM m to the side, pass with the separation asked for and reach their goals"
+    ):
+      val flight = headOn(sideM, lagS)
+      assert(flight.leastM > 3.45, s"${flight.leastM} m")
+      assertEqualsDouble(flight.northM(0), 30, 0.1)
+      assertEqualsDouble(flight.northM(1), -30, 0.1)
+
+  test("two that lag 1.5 s behind their commands pass with the set minimum, by the margin"):
+    val flight = headOn(0, lagS = 1.5)
+    assert(flight.leastM > 2.0, s"${flight.leastM} m")
+
+  test("twenty in four streams cross with the separation asked for, if they follow their commands at once"):
+    val crossing = TeamScenario.Crossing()
+    val flight   = TeamFlight(crossing.scenario, lagS = 0)
+    flight.fly(60)()
+    assert(flight.leastM > crossing.minimumM, s"${flight.leastM} m")
+    val missing = TeamScenario.goals(crossing).zipWithIndex.map: (goal, vehicle) =>
+      math.hypot(goal._1 - flight.northM(vehicle), goal._2 - flight.eastM(vehicle))
+    assert(missing.max < 1, missing)
+
+  test("the chosen velocity is the allowed one nearest to that wanted, as a search over a grid finds it"):
+    import Avoidance.*
+    val random = scala.util.Random(3)
+    for turn <- 0 until 200 do
+      def normal = { val rad = random.nextDouble() * 2 * math.Pi; Velocity(math.cos(rad), math.sin(rad)) }
+      val bounds = Array.fill(5)(Bound(Velocity(random.nextGaussian(), random.nextGaussian()), normal))
+      val wanted = Velocity(random.nextGaussian() * 4, random.nextGaussian() * 4)
+      val grid   =
+        for
+          north <- -60 to 60
+          east  <- -60 to 60
+          one = Velocity(north / 10.0, east / 10.0)
+          if (one dot one) <= 36 && bounds.forall(_.violation(one) <= 0)
+        yield math.sqrt((one - wanted) dot (one - wanted))
+      nearestAllowed(wanted, bounds, 6, 0) match
+        case Some(found) =>
+          val away = math.sqrt((found - wanted) dot (found - wanted))
+          assert(bounds.forall(_.violation(found) <= 1e-8) && (found dot found) <= 36.0001, s"turn $turn")
+          assert(grid.forall(_ >= away - 1e-6), s"turn $turn: the grid has ${grid.min}, came $away")
+        case None =>
+          assert(grid.isEmpty, s"turn $turn")
+          val found = leastViolation(wanted, bounds, 6)
+          val worst = bounds.map(_.violation(found)).max
+          val other = -60 to 60
+          val best  = (for
+            north <- other; east <- other; one = Velocity(north / 10.0, east / 10.0) if (one dot one) <= 36
+          yield bounds.map(_.violation(one)).max).min
+          assert(worst <= best + 1e-4, s"turn $turn: $worst, the grid has $best")
+
+  test("settings are read back as they were written, and mistakes are named"):
+    for settings <- Seq(
+        TeamScenario.Surround(vehicles = 4),
+        TeamScenario.Formation(radiusM = 12.5),
+        TeamScenario.Crossing(streams = 2)
+      )
+    do
+      assertEquals(TeamScenario.of(settings.name, settings.settings.toMap), Right(settings))
+      assertEquals(settings.mistakes, Nil)
+      assertEquals(settings.scenario.agents.size, settings.vehicles)
+    assertEquals(
+      TeamScenario.of("surround", TeamScenario.Surround().settings.toMap - "ringM" + ("vehicles" -> "many")),
+      Left("setting 'vehicles': expected a whole number, came 'many'; no setting 'ringM'")
+    )
+    assertEquals(
+      TeamScenario.Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
+      Seq(
+        "crossing.vehicles: expected 2 to 100, came 1",
+        "crossing.spacingM: expected more than 0, came -1.0",
+        "crossing.streams: expected 2 or 4, came 3"
+      )
+    )
