@@ -22,6 +22,10 @@ final case class FlyOptions(
       "real, or virtual: the same flights in virtual time, many times faster, the same for the same seed"
     )
     clock: String = "real",
+    @arg(doc =
+      "how often each live flight is flown again in virtual time, for the report's comparison; 0 for not at all"
+    )
+    twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String]
 )
@@ -37,9 +41,13 @@ object FlyCommand
     for
       settings  <- options.flights.settings
       simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
+      _         <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
       out = options.out.fold(defaultFolder)(Path.of(_))
       landed <- options.clock match
-        case "real"                         => flyLive(settings, simulator, out)
+        case "real" =>
+          flyLive(settings, simulator, out).flatMap(landed =>
+            flyTwins(landed, settings, options.twins, out).map(landed ++ _)
+          )
         case "virtual" if simulator.isEmpty => flyVirtual(settings, out)
         case "virtual"                      =>
           Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
@@ -80,6 +88,22 @@ object FlyCommand
         finally
           val _ = timer.cancel()
           board.close()
+
+  /** Virtual twins of the flights that were flown to their end. */
+  private def flyTwins(
+      landed: Vector[Landed],
+      settings: FlySettings,
+      count: Int,
+      out: Path
+  ): Either[String, Vector[Landed]] =
+    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
+    if twins.isEmpty then Right(Vector.empty)
+    else
+      val seeds = twins.map(_.seed)
+      Console.err.println(
+        s"virtual twins of the live flights: ${twins.size}, seeds ${seeds.min} to ${seeds.max}"
+      )
+      VirtualFlights.fly(settings, twins, out)((_, _) => ())
 
   private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[Landed]] =
     Files.createDirectories(out): Unit

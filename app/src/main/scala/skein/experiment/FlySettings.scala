@@ -37,6 +37,13 @@ final case class FlightPlan(id: String, loop: LoopKind, link: LatencyProfile, se
   /** Where its recording goes. */
   def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
 
+  /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the same seed, then
+    * with the seeds that follow.
+    */
+  def twins(count: Int): Vector[FlightPlan] =
+    Vector.tabulate(count): index =>
+      copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
+
 object FlySettings:
 
   /** Reads `skein.fly`.

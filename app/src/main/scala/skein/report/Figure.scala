@@ -47,5 +47,14 @@ object Figure:
           "95 % quantiles; direct and vpn are the paper's own samples. An emulated link takes half of one sample there " +
           "and half of another back, so its round trips spread less (orange line).",
         drawing
+      ),
+    TwinFigure(set).map: drawing =>
+      Figure(
+        TwinFigure.name,
+        "Live against virtual",
+        "Each live flight (coloured) and its virtual twins (black, dashed): shares of decisions whose own data was at most " +
+          "so old, counted from when physics was sampled, and whose own last move was at most so long ago; KS is the " +
+          "Kolmogorov-Smirnov distance between the two curves, the largest vertical gap.",
+        drawing
       )
   ).flatten

@@ -1,7 +1,13 @@
 package skein.report
 
-/** Flights that are reported together; in the order of the paper: by link, then by loop. */
-final case class FlightSet private (flights: Vector[FlightSummary]):
+/** Flights that are reported together; in the order of the paper: by link, then by loop.
+  *
+  * @param flights
+  *   without the virtual twins of live flights
+  * @param twins
+  *   live flights beside their virtual twins
+  */
+final case class FlightSet private (flights: Vector[FlightSummary], twins: Vector[Twin]):
 
   def links: Vector[String] = flights.map(_.flight.link).distinct
 
@@ -25,7 +31,7 @@ object FlightSet:
   def apply(flights: Seq[FlightSummary]): FlightSet =
     def place(order: Vector[String], name: String) =
       Some(order.indexOf(name)).filter(_ >= 0).getOrElse(order.size)
-    new FlightSet(
-      flights.toVector.sortBy: summary =>
-        (place(linkOrder, summary.flight.link), summary.flight.link, place(loopOrder, summary.flight.loop))
-    )
+    val ordered = flights.toVector.sortBy: summary =>
+      (place(linkOrder, summary.flight.link), summary.flight.link, place(loopOrder, summary.flight.loop))
+    val twins = Twin.among(ordered)
+    new FlightSet(ordered.diff(twins.flatMap(_.virtual)), twins)

@@ -22,7 +22,8 @@ object HtmlReport:
         h1(heading(set)),
         p(cls := "lead", abstractOf(set)),
         section(h2("Results"), table(SummaryTables.distances(set)), p(cls := "note", resultsNote)),
-        figures.map(figureOf),
+        figures.filterNot(_.name == TwinFigure.name).map(figureOf),
+        twins(set, figures),
         section(
           h2("Observations per decision, ms"),
           table(SummaryTables.observations(set)),
@@ -55,10 +56,19 @@ object HtmlReport:
     "Mean/median/99th percentile in ms, by the role that was decided for. Ages count from the arrival of the reading used, as published; the true " +
       "ages, means, count from when physics was sampled, by the simulator's clock."
 
-  private def figureOf(shown: Figure): TypedTag[String] = section(
-    h2(shown.title),
+  private def figureOf(shown: Figure): TypedTag[String] = section(h2(shown.title), pictureOf(shown))
+
+  private def pictureOf(shown: Figure): TypedTag[String] =
     figure(Svg.element(shown.drawing, shown.title), figcaption(shown.caption))
-  )
+
+  private def twins(set: FlightSet, figures: Seq[Figure]): Option[TypedTag[String]] =
+    Option.when(set.twins.nonEmpty):
+      section(
+        h2("Live against virtual"),
+        table(SummaryTables.twins(set)),
+        p(cls := "note", SummaryTables.twinsNote.capitalize + "."),
+        figures.filter(_.name == TwinFigure.name).map(pictureOf)
+      )
 
   private def table(text: TextTable): TypedTag[String] =
     val left              = text.header.map(_.startsWith("<"))
@@ -91,7 +101,7 @@ object HtmlReport:
         "<scenario"
       ) ++
         Vector("<version", "<started (UTC)"),
-      set.flights.map(_.flight).map: flight =>
+      (set.flights ++ set.twins.flatMap(_.virtual)).map(_.flight).distinct.map: flight =>
         Vector(
           flight.id,
           flight.loop,

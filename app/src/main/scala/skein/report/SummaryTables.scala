@@ -73,9 +73,26 @@ object SummaryTables:
           kinds.map(summary.count(_).toString)
     )
 
+  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, evader's
+    * and pursuer's, and how far apart they converged.
+    */
+  def twins(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "seed", "<virtual") ++ Twin.columns.map(_._3) ++
+        Vector("live m", "virtual m", "difference", "<flown otherwise"),
+      set.twins.map: twin =>
+        val flight = twin.live.flight
+        Vector(flight.loop, flight.link, flight.seed.toString, twin.seeds) ++
+          Twin.columns.map((role, quantity, _) =>
+            twin.find(role, quantity).fold("")(one => fixed(one.distance, 2))
+          ) ++
+          twin.converged.fold(Vector("", ""))((live, virtual) => Vector(fixed(live, 2), fixed(virtual, 2))) ++
+          Vector(twin.difference.fold("")(share => s"${signed(share * 100)} %"), twin.unlike.mkString("; "))
+    )
+
   /** All of them, for the terminal. */
   def text(set: FlightSet): String =
-    Vector(
+    (Vector(
       "Distance between pursuer and evader, ours and the paper's",
       distances(set).render,
       "",
@@ -84,7 +101,13 @@ object SummaryTables:
       "",
       "What happened",
       counts(set).render
-    ).mkString("\n")
+    ) ++ (if set.twins.isEmpty then Vector.empty
+          else Vector("", s"Live against virtual: $twinsNote", twins(set).render))).mkString("\n")
+
+  /** How to read [[twins]]. */
+  val twinsNote: String =
+    "Kolmogorov-Smirnov distance between live and virtual decisions (evader's, pursuer's) of the age of the own data and " +
+      "of the time since the own last move; mean distance of the last 10 s"
 
   def ofRole(published: (evader: Double, pursuer: Double), role: String): Double =
     if role == "pursuer" then published.pursuer else published.evader
@@ -93,7 +116,7 @@ object SummaryTables:
   def label(kind: EventKind): String =
     kind.toString.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
 
-  private def signed(value: Double): String = (if value < 0 then "" else "+") + fixed(value, 1)
+  def signed(value: Double): String = (if value < 0 then "" else "+") + fixed(value, 1)
 
   def fixed(value: Double, decimals: Int): String = String.format(Locale.ROOT, s"%.${decimals}f", value)
 
