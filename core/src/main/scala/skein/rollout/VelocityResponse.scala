@@ -1,6 +1,6 @@
 package skein.rollout
 
-import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint}
+import skein.vehicle.{Environment, Quadrotor, QuadrotorState, ReducedModel, Setpoint}
 import skein.units.Vector3
 
 /** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and thread. */
@@ -41,6 +41,14 @@ object VelocityResponse:
 final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends VelocityResponse:
   require(lagS >= 0 && deadTimeS >= 0, s"lag $lagS s and dead time $deadTimeS s must not be negative")
   def create(): Vehicle = LagVehicle(this)
+
+  def model: ReducedModel = ReducedModel.lag(gain, lagS, deadTimeS)
+
+object Reduced:
+  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to the paper's duels:
+    * see [[skein.vehicle.ReducedModel.AirSim]], which follows it more closely.
+    */
+  val AirSim: Reduced = Reduced(gain = 0.915, lagS = 2.64, deadTimeS = 0.067)
 
 /** Integrates [[Reduced]] exactly between the times at which commands begin to act. */
 private final class LagVehicle(model: Reduced) extends Vehicle:

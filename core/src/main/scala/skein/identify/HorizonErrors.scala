@@ -1,0 +1,93 @@
+package skein.identify
+
+import skein.units.Vector3
+import skein.vehicle.*
+
+/** How far predictions over one horizon were off: half of them less than the medians, 95 % less than the others. */
+final case class HorizonError(
+    horizonS: Double,
+    predictions: Int,
+    positionP50M: Double,
+    positionP95M: Double,
+    velocityP50Mps: Double,
+    velocityP95Mps: Double
+)
+
+object HorizonErrors:
+  val HorizonsS: Vector[Double] = Vector(1, 2, 5)
+
+  /** Of a model's predictions from a sight every half second, against the sights nearest to the horizons; horizons that
+    * no flight is long enough for are left out.
+    */
+  def of(model: ReducedModel, flights: Vector[Flown]): Vector[HorizonError] =
+    val flight = ReducedFlight(model)
+    for
+      horizonS <- HorizonsS
+      errors =
+        for
+          flown    <- flights
+          from     <- flown.starts(Identification.StartEveryS, horizonS)
+          position <- atHorizon(model, flight, flown, from, horizonS)
+        yield position
+      if errors.nonEmpty
+    yield
+      val (position, velocity) = (errors.map(_._1).sorted, errors.map(_._2).sorted)
+      HorizonError(
+        horizonS,
+        errors.size,
+        quantile(position, 0.5),
+        quantile(position, 0.95),
+        quantile(velocity, 0.5),
+        quantile(velocity, 0.95)
+      )
+
+  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first sight: the truth
+    * that a reduced model stands for. Sights each 0.1 s, at the nearest whole step.
+    */
+  def reflown(flown: Flown, quadrotor: Quadrotor = Quadrotor.AirSim): Flown =
+    if flown.sights.isEmpty then flown
+    else
+      val first              = flown.sights.head
+      val place              = Vector3(first.x, first.y, flown.downM)
+      val state              = quadrotor.hovering(place)
+      var setpoint: Setpoint = Setpoint.hold(place)
+      var next               = 0
+      val sights             = Vector.newBuilder[Sight]
+      var nextSightS         = first.atS
+      val steps              = ((flown.sights.last.atS - first.atS) / quadrotor.stepS).toInt
+      for step <- 0 to steps do
+        val atS = first.atS + step * quadrotor.stepS
+        if atS >= nextSightS - quadrotor.stepS / 2 then
+          sights += Sight(atS, state.x, state.y, state.vx, state.vy)
+          nextSightS += SightEveryS
+        while next < flown.arrivals.size && flown.arrivals(next).atS <= atS do
+          setpoint = Setpoint.velocityZ(flown.arrivals(next).vx, flown.arrivals(next).vy, flown.downM)
+          next += 1
+        quadrotor.step(state, setpoint, Environment.Calm)
+      flown.copy(sights = sights.result())
+
+  private val SightEveryS = 0.1
+
+  /** Errors of position and velocity at the sight nearest to the horizon. */
+  private def atHorizon(
+      model: ReducedModel,
+      flight: ReducedFlight,
+      flown: Flown,
+      from: Int,
+      horizonS: Double
+  ): Option[(Double, Double)] =
+    val goal    = flown.sights(from).atS + horizonS
+    val nearest = flown.nearest(goal, from)
+    Option(nearest)
+      .filter(i => i > from && math.abs(flown.sights(i).atS - goal) <= SightEveryS)
+      .map: index =>
+        val sight = flown.sights(index)
+        // The tenth of a microsecond includes the nearest sight whatever the rounding.
+        flown.predict(flight, model.deadTimeS, from, sight.atS - flown.sights(from).atS + 1e-7)(_ => ())
+        (
+          math.hypot(flight.x - sight.x, flight.y - sight.y),
+          math.hypot(flight.vx - sight.vx, flight.vy - sight.vy)
+        )
+
+  private def quantile(sorted: Vector[Double], p: Double): Double =
+    sorted(((sorted.size - 1) * p).round.toInt)

@@ -1,0 +1,94 @@
+package skein.identify
+
+/** Levenberg and Marquardt's method within bounds, with a Jacobian by central differences.
+  *
+  * Source: Marquardt, SIAM J. Appl. Math. 11 (1963); damping by the diagonal of JᵀJ.
+  */
+private[identify] object LeastSquares:
+
+  /** @param jacobian
+    *   at the solution: by parameter, then by residual
+    */
+  final case class Solution(
+      parameters: Array[Double],
+      residuals: Array[Double],
+      jacobian: Array[Array[Double]],
+      iterations: Int
+  )
+
+  private val MostIterations = 60
+
+  /** A step that changes no parameter by more than this share ends the search. */
+  private val SmallStep = 1e-7
+
+  /** @param residuals
+    *   a pure function of the parameters; always of the same size, more than the parameters
+    */
+  def solve(start: Array[Double], least: Array[Double], most: Array[Double])(
+      residuals: Array[Double] => Array[Double]
+  ): Solution =
+    def clamped(values: Array[Double]) = values.indices.map(i => values(i).max(least(i)).min(most(i))).toArray
+
+    def go(at: Array[Double], here: Array[Double], damping: Double, iteration: Int): Solution =
+      val jacobian = differences(at, least, most, residuals)
+      val normal   = at.indices.map(i => at.indices.map(j => dot(jacobian(i), jacobian(j))).toArray).toArray
+      val gradient = at.indices.map(i => -dot(jacobian(i), here)).toArray
+
+      def attempt(damping: Double): Option[(Array[Double], Array[Double], Double)] =
+        if damping > 1e12 then None
+        else
+          val damped = normal.map(_.clone)
+          for i <- at.indices do damped(i)(i) += damping * normal(i)(i).max(1e-12)
+          val next  = clamped(solveLinear(damped, gradient).zip(at).map(_ + _))
+          val there = residuals(next)
+          if dot(there, there) < dot(here, here) then Some((next, there, damping / 5))
+          else attempt(damping * 4)
+
+      attempt(damping) match
+        case None                      => Solution(at, here, jacobian, iteration)
+        case Some((next, there, less)) =>
+          val isSmall =
+            at.indices.forall(i => math.abs(next(i) - at(i)) <= SmallStep * (math.abs(at(i)) + 1e-3))
+          if isSmall || iteration == MostIterations then
+            Solution(next, there, differences(next, least, most, residuals), iteration)
+          else go(next, there, less, iteration + 1)
+
+    val from = clamped(start)
+    go(from, residuals(from), 1e-3, 1)
+
+  /** Central; one-sided at a bound. */
+  private def differences(
+      at: Array[Double],
+      least: Array[Double],
+      most: Array[Double],
+      residuals: Array[Double] => Array[Double]
+  ): Array[Array[Double]] =
+    at.indices
+      .map: i =>
+        val step   = 1e-4 * math.abs(at(i)).max(1e-3)
+        val (a, b) = ((at(i) - step).max(least(i)), (at(i) + step).min(most(i)))
+        val below  = residuals(at.updated(i, a))
+        val above  = residuals(at.updated(i, b))
+        Array.tabulate(above.length)(k => (above(k) - below(k)) / (b - a))
+      .toArray
+
+  def dot(a: Array[Double], b: Array[Double]): Double =
+    var sum = 0.0
+    var i   = 0
+    while i < a.length do
+      sum += a(i) * b(i)
+      i += 1
+    sum
+
+  /** Solves a small linear system by Gaussian elimination with pivoting. */
+  def solveLinear(matrix: Array[Array[Double]], right: Array[Double]): Array[Double] =
+    val n = right.length
+    val m = Array.tabulate(n)(i => matrix(i) :+ right(i))
+    for column <- 0 until n do
+      val pivot = (column until n).maxBy(row => math.abs(m(row)(column)))
+      val kept  = m(pivot)
+      m(pivot) = m(column); m(column) = kept
+      for row <- 0 until n if row != column do
+        val factor = m(row)(column) / kept(column)
+        for k <- column to n do m(row)(k) -= factor * kept(k)
+    Array.tabulate(n)(i => m(i)(n) / m(i)(i))

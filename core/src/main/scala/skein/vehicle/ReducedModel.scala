@@ -1,0 +1,114 @@
+package skein.vehicle
+
+/** A few-parameter model of how horizontal velocity v follows a commanded velocity u that stands still between events:
+  *
+  *   - along u: v' = (gain · |u| − v) / lag − drag · s · v
+  *   - across u: v' = −v / turnLag − drag · s · v
+  *
+  * A command acts `deadTimeS` after it has come. s is the speed when the present piece of the flight began: pieces begin
+  * when a command begins to act, and every [[ReducedModel.PieceS]] after it. So each piece is linear and has a closed
+  * form, and drag still grows with the square of the speed.
+  *
+  * Why this form: AirSim's flight controller tilts in proportion to the velocity's error, so velocity has a first-order
+  * lag (the tilt itself settles within a dead time); the air's drag is quadratic, so a gain fits one speed only.
+  *
+  * @param gain
+  *   reached over commanded speed, drag apart
+  * @param lagS
+  *   of the velocity along the command, s
+  * @param deadTimeS
+  *   from a command's arrival until it acts
+  * @param turnLagS
+  *   of the velocity across the command, s: how fast the old direction dies away
+  * @param dragPerM
+  *   deceleration per squared speed, 1/m
+  */
+final case class ReducedModel(
+    gain: Double,
+    lagS: Double,
+    deadTimeS: Double,
+    turnLagS: Double,
+    dragPerM: Double
+):
+  require(lagS > 0 && turnLagS > 0, s"both lags must be positive, came $lagS s and $turnLagS s")
+  require(deadTimeS >= 0 && dragPerM >= 0, s"negative: dead time $deadTimeS s or drag $dragPerM /m")
+
+object ReducedModel:
+  /** The longest flight under one value of the drag, s. */
+  val PieceS = 0.1
+
+  /** A plain first-order lag. */
+  def lag(gain: Double, lagS: Double, deadTimeS: Double): ReducedModel =
+    ReducedModel(gain, lagS, deadTimeS, lagS, 0)
+
+  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m. The lag depends on the altitude, since AirSim's
+    * controller mistakes the altitude's goal for a velocity once the vehicle tilts ([[FlightController]]).
+    */
+  val AirSim: ReducedModel = ReducedModel(1.0, 2.909, 0.045, 2.909, 0.0053)
+
+/** One vehicle that flies by a [[ReducedModel]], from one event to the next. Mutable. How its time is cut into calls of
+  * [[advance]] does not change the flight, but for rounding.
+  */
+final class ReducedFlight(model: ReducedModel):
+  private var wantedVx, wantedVy                   = 0.0
+  private var pieceAtS                             = 0.0
+  private var pieceX, pieceY                       = 0.0
+  private var alongX, alongY, rateAlong, rateCross = 0.0
+  private var goal, excess, crossVx, crossVy       = 0.0
+  var x, y, vx, vy                                 = 0.0
+
+  /** Places it; the command given here acts from the start. */
+  def start(
+      atS: Double,
+      x: Double,
+      y: Double,
+      vx: Double,
+      vy: Double,
+      wantedVx: Double = 0,
+      wantedVy: Double = 0
+  ): Unit =
+    this.x = x; this.y = y; this.vx = vx; this.vy = vy
+    this.wantedVx = wantedVx; this.wantedVy = wantedVy
+    beginPiece(atS)
+
+  /** A command, m/s, that acts from now on: dead time is the caller's. */
+  def act(atS: Double, vx: Double, vy: Double): Unit =
+    advance(atS)
+    wantedVx = vx; wantedVy = vy
+    beginPiece(atS)
+
+  /** Flies until this time, s; never earlier than the call before. */
+  def advance(untilS: Double): Unit =
+    while untilS > pieceAtS + ReducedModel.PieceS do
+      fly(ReducedModel.PieceS)
+      beginPiece(pieceAtS + ReducedModel.PieceS)
+    fly(untilS - pieceAtS)
+
+  private def beginPiece(atS: Double): Unit =
+    pieceAtS = atS
+    pieceX = x; pieceY = y
+    val wanted = math.sqrt(wantedVx * wantedVx + wantedVy * wantedVy)
+    if wanted > 0 then
+      alongX = wantedVx / wanted; alongY = wantedVy / wanted
+    else
+      // Told to stand still, all velocity dies away with the lag along.
+      val speed = math.sqrt(vx * vx + vy * vy)
+      alongX = if speed > 0 then vx / speed else 1; alongY = if speed > 0 then vy / speed else 0
+    val drag = model.dragPerM * math.sqrt(vx * vx + vy * vy)
+    rateAlong = 1 / model.lagS + drag
+    rateCross = 1 / model.turnLagS + drag
+    goal = model.gain * wanted / (model.lagS * rateAlong)
+    val along = vx * alongX + vy * alongY
+    excess = along - goal
+    crossVx = vx - along * alongX; crossVy = vy - along * alongY
+
+  private def fly(spanS: Double): Unit =
+    val leftAlong  = math.exp(-rateAlong * spanS)
+    val leftCross  = if rateCross == rateAlong then leftAlong else math.exp(-rateCross * spanS)
+    val movedAlong = goal * spanS + excess * (1 - leftAlong) / rateAlong
+    val movedCross = (1 - leftCross) / rateCross
+    val along      = goal + excess * leftAlong
+    x = pieceX + alongX * movedAlong + crossVx * movedCross
+    y = pieceY + alongY * movedAlong + crossVy * movedCross
+    vx = alongX * along + crossVx * leftCross
+    vy = alongY * along + crossVy * leftCross
