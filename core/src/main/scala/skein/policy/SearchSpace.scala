@@ -35,16 +35,41 @@ final case class SearchSpace(axes: Vector[Axis]):
   def clamp(candidate: Vector[Double]): Vector[Double] =
     candidate.zip(axes).map((value, axis) => value.max(axis.least).min(axis.most))
 
-  /** Evenly spread candidates, `perAxis` values on each axis, both bounds included; the last axis varies fastest. */
-  def grid(perAxis: Int): Vector[Vector[Double]] =
-    require(perAxis >= 2, s"a grid needs at least 2 values per axis, got $perAxis")
-    axes.foldLeft(Vector(Vector.empty[Double])): (candidates, axis) =>
-      for
-        candidate <- candidates
-        i         <- 0 until perAxis
-      yield candidate :+ (axis.least + axis.width * i / (perAxis - 1))
+  /** How many candidates [[gridAt]] numbers. */
+  def gridSize(perAxis: Int): Long =
+    axes.foldLeft(1L)((product, _) => Math.multiplyExact(product, perAxis.toLong))
 
-  /** Candidates drawn evenly from the space; the same seed draws the same. */
-  def random(count: Int, seed: Long): Vector[Vector[Double]] =
-    val source = SplitMix64(seed)
-    Vector.fill(count)(axes.map(axis => axis.least + axis.width * source.nextDouble()))
+  /** One of evenly spread candidates, `perAxis` values on each axis, both bounds included; the last axis varies
+    * fastest.
+    */
+  def gridAt(perAxis: Int, index: Long): Vector[Double] =
+    require(perAxis >= 2, s"a grid needs at least 2 values per axis, got $perAxis")
+    val places = axes.indices.reverse.scanLeft(index)((rest, _) => rest / perAxis).map(_ % perAxis)
+    axes
+      .zip(places.take(dimension).reverse)
+      .map((axis, place) => axis.least + axis.width * place / (perAxis - 1))
+
+  def grid(perAxis: Int): Vector[Vector[Double]] =
+    Vector.tabulate(gridSize(perAxis).toInt)(gridAt(perAxis, _))
+
+  /** One of any number of candidates drawn evenly from the space; the same seed and number draw the same. */
+  def randomAt(seed: Long, index: Long): Vector[Double] =
+    val source = SplitMix64(SplitMix64.seedOf(seed, index))
+    axes.map(axis => axis.least + axis.width * source.nextDouble())
+
+  def random(count: Int, seed: Long): Vector[Vector[Double]] = Vector.tabulate(count)(randomAt(seed, _))
+
+  /** The candidate whose place between the bounds is `shares`, from 0 to 1 on each axis. Places outside are mirrored
+    * at the bounds, so that every vector stands for a candidate and neighbours for neighbours.
+    */
+  def at(shares: Vector[Double]): Vector[Double] =
+    shares.zip(axes).map((share, axis) => axis.least + axis.width * SearchSpace.mirrored(share))
+
+  /** The inverse of [[at]] for candidates within the bounds. */
+  def shares(candidate: Vector[Double]): Vector[Double] =
+    candidate.zip(axes).map((value, axis) => (value - axis.least) / axis.width)
+
+object SearchSpace:
+  private def mirrored(share: Double): Double =
+    val turn = share - 2 * math.floor(share / 2)
+    if turn > 1 then 2 - turn else turn

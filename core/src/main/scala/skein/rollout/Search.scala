@@ -3,102 +3,211 @@ package skein.rollout
 import skein.policy.SearchSpace
 import skein.signal.{NormalQuantile, SplitMix64}
 
-/** A candidate and its objective over so many episodes. */
-final case class Scored(candidate: Vector[Double], value: Double, episodes: Int)
+/** A candidate and what it came to. */
+final case class Scored(candidate: Vector[Double], tally: Tally)
 
-/** Chooses the best of many candidates. Pure: equal arguments give equal answers. Small values are good; of equal ones
-  * the first wins.
+/** Where a search stands: a value, which can be written down and gone on from.
+  *
+  * @param results
+  *   of the round's candidates so far, in their order
+  * @param leaders
+  *   the best so far, best first; at the end the standings of the play-off
+  * @param flown
+  *   episodes
   */
+final case class SearchState(course: Course, results: Vector[Tally], leaders: Vector[Scored], flown: Long):
+  def isDone: Boolean      = course == Course.Ended
+  def best: Option[Scored] = leaders.headOption
+
+/** What a method has to remember between rounds. */
+enum Course:
+  /** Grid and random: the number of the round's first candidate. */
+  case Listed(next: Long)
+
+  /** Cross-entropy: the distribution that the generation is drawn from. */
+  case Drawn(generation: Int, means: Vector[Double], deviations: Vector[Double])
+
+  /** CMA-ES. */
+  case Adapted(state: CmaEs.State)
+
+  /** Racing: who is left with what they have flown; empty in the first round. */
+  case Raced(round: Int, field: Vector[Scored])
+
+  /** The leaders, the distribution's centre and the defaults meet on fresh episodes. */
+  case PlayOff(candidates: Vector[Vector[Double]])
+
+  case Ended
+
+/** Chooses the best of many candidates. All meet the same episodes, and the leaders meet again on fresh ones, since the
+  * best of many seen on a few episodes was partly lucky.
+  *
+  * A state machine: [[step]] is a pure function, so that a search that was stopped and gone on with ends as one that
+  * never stopped. Of equal candidates the first wins.
+  *
+  * @param seed
+  *   of the candidates
+  */
+final class Search(space: SearchSpace, method: SearchMethod, direction: Direction, seed: Long):
+  import Search.*
+
+  private val evolution = method match
+    case SearchMethod.CmaEs(population, _, _, _) => Some(CmaEs(space.dimension, population, seed))
+    case _                                       => None
+
+  private val playOffEpisodes = (4 * method.episodes).max(LeastPlayOff).min(MostPlayOff)
+
+  /** Episodes of the whole search, if it does not end early. */
+  val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
+
+  def start: SearchState =
+    val course = method match
+      case _: (SearchMethod.Grid | SearchMethod.Random) => Course.Listed(0)
+      case _: SearchMethod.CrossEntropy                 =>
+        Course.Drawn(0, space.axes.map(axis => (axis.least + axis.most) / 2), space.axes.map(_.width / 2))
+      case cma: SearchMethod.CmaEs =>
+        Course.Adapted(evolution.get.start(space.shares(space.defaults), cma.startSize))
+      case _: SearchMethod.Racing => Course.Raced(0, Vector.empty)
+    SearchState(course, Vector.empty, Vector.empty, 0)
+
+  /** One step on.
+    *
+    * @param state
+    *   not done
+    * @param atMost
+    *   episodes that the step flies, about. How a search is cut into steps does not change how it ends.
+    */
+  def step(state: SearchState, evaluator: Evaluator, atMost: Int): SearchState =
+    require(!state.isDone, "the search is done")
+    val (candidates, episodes) = round(state.course)
+    val batch   = candidates.slice(state.results.size, state.results.size + (atMost / episodes.size).max(1))
+    val results = state.results ++ evaluator.tallies(batch, episodes)
+    val flown   = state.flown + batch.size.toLong * episodes.size
+    if results.size < candidates.size then state.copy(results = results, flown = flown)
+    else
+      val (course, leaders) =
+        after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
+      SearchState(course, Vector.empty, leaders, flown)
+
+  /** The round's candidates, and the episodes that each flies. */
+  private def round(course: Course): (Vector[Vector[Double]], Range) = course match
+    case Course.Listed(next) =>
+      val numbers = Vector.range(next, (next + MostListed).min(listed))
+      val fields  = method match
+        case SearchMethod.Grid(perAxis, _) => numbers.map(space.gridAt(perAxis, _))
+        case _                             => numbers.map(space.randomAt(seed, _))
+      (fields, 0 until method.episodes)
+    case Course.Drawn(generation, means, deviations) =>
+      (drawn(generation, means, deviations), 0 until method.episodes)
+    case Course.Adapted(state)      => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
+    case Course.Raced(0, _)         => (randomField, 0 until method.episodes)
+    case Course.Raced(round, field) =>
+      val flown = field.head.tally.count
+      (field.map(_.candidate), flown until 2 * flown)
+    case Course.PlayOff(candidates) => (candidates, PlayOffFrom until PlayOffFrom + playOffEpisodes)
+    case Course.Ended               => throw IllegalStateException("no round after the end")
+
+  private def listed: Long = method match
+    case SearchMethod.Grid(perAxis, _)      => space.gridSize(perAxis)
+    case SearchMethod.Random(candidates, _) => candidates.toLong
+    case _                                  => 0
+
+  private def randomField: Vector[Vector[Double]] = method match
+    case SearchMethod.Racing(candidates, _) => space.random(candidates, seed)
+    case _                                  => Vector.empty
+
+  private def after(course: Course, before: Vector[Scored], seen: Vector[Scored]): (Course, Vector[Scored]) =
+    lazy val leaders = ranked(before ++ seen).distinctBy(_.candidate).take(MostLeaders)
+    (course, method) match
+      case (Course.Listed(next), _) =>
+        val behind = next + seen.size
+        (if behind < listed then Course.Listed(behind) else playOff(leaders, None), leaders)
+      case (Course.Drawn(generation, means, deviations), entropy: SearchMethod.CrossEntropy) =>
+        val elites        = eliteOf(entropy)
+        val chosen        = ranked(seen).take(elites).map(_.candidate)
+        val newMeans      = means.indices.toVector.map(axis => chosen.map(_(axis)).sum / elites)
+        val newDeviations = means.indices.toVector.map: axis =>
+          math.sqrt(chosen.map(c => (c(axis) - newMeans(axis)) * (c(axis) - newMeans(axis))).sum / elites)
+        val (nextMeans, nextDeviations) =
+          (blend(means, newMeans, entropy.smoothing), blend(deviations, newDeviations, entropy.smoothing))
+        val next =
+          if generation + 1 < entropy.generations then Course.Drawn(generation + 1, nextMeans, nextDeviations)
+          else playOff(leaders, Some(space.clamp(nextMeans)))
+        (next, leaders)
+      case (Course.Adapted(state), cma: SearchMethod.CmaEs) =>
+        val next = evolution.get.next(state, evolution.get.sample(state), seen.map(cost))
+        val goOn = next.generation < cma.generations && next.spread > LeastSpread
+        (if goOn then Course.Adapted(next) else playOff(leaders, Some(space.at(next.mean))), leaders)
+      case (Course.Raced(round, field), _) =>
+        val standing =
+          ranked(if round == 0 then seen
+          else field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally)))
+        val names = standing.take(MostLeaders).map(_.candidate).toSet
+        val ahead =
+          (standing.take(
+            MostLeaders
+          ) ++ before.filterNot(scored => names(scored.candidate))).take(MostLeaders)
+        val next =
+          if standing.size == 1 then playOff(ahead, None)
+          else Course.Raced(round + 1, standing.take((standing.size + 1) / 2))
+        (next, ahead)
+      case _ => (Course.Ended, ranked(seen))
+
+  private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
+    Course.PlayOff((leaders.map(_.candidate) ++ centre :+ space.defaults).distinct)
+
+  /** Small is good; what is no number is worst. */
+  private def cost(scored: Scored): Double =
+    val cost = direction.sign * scored.tally.mean
+    if cost.isNaN then Double.PositiveInfinity else cost
+
+  private def ranked(all: Vector[Scored]): Vector[Scored] = all.sortBy(cost)
+
+  private def drawn(
+      generation: Int,
+      means: Vector[Double],
+      deviations: Vector[Double]
+  ): Vector[Vector[Double]] =
+    val population = method match
+      case entropy: SearchMethod.CrossEntropy => entropy.population
+      case _                                  => 0
+    val source = SplitMix64(SplitMix64.seedOf(seed, generation))
+    Vector.fill(population):
+      space.clamp(means.zip(deviations).map: (mean, deviation) =>
+        mean + deviation * NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12)))
+
 object Search:
+  /** Candidates that meet in the play-off, besides the distribution's centre and the defaults. */
+  val MostLeaders = 16
 
-  /** Evaluates all candidates on all episodes; best first. */
-  def all(objective: Objective, candidates: Vector[Vector[Double]], episodes: Int): Vector[Scored] =
-    require(episodes > 0, s"episodes must be positive, got $episodes")
-    candidates
-      .zip(objective.values(candidates, 0 until episodes))
-      .map(Scored(_, _, episodes))
-      .sortBy(_.value)
+  /** The play-off's episodes count from here; a search's own lie below. */
+  val PlayOffFrom: Int = 1 << 24
 
-  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): every candidate flies a few episodes, the better half as
-    * many again, and so on, so that hopeless candidates stop early. The survivors' means cover all their episodes.
+  private val LeastPlayOff = 64
+  private val MostPlayOff  = 4096
+  private val MostListed   = 16384
+  private val LeastSpread  = 1e-6
+
+  /** The whole search at once.
     *
     * @return
-    *   the survivor first, then the others by how far they came, each with what it had flown
+    *   the standings of the play-off, best first
     */
-  def halving(
-      objective: Objective,
-      candidates: Vector[Vector[Double]],
-      firstEpisodes: Int
-  ): Vector[Scored] =
-    require(candidates.nonEmpty, "nothing to choose from")
-
-    def race(field: Vector[Scored], out: Vector[Scored]): Vector[Scored] =
-      if field.size == 1 then field ++ out
-      else
-        val (ahead, behind) = field.splitAt((field.size + 1) / 2)
-        val flown           = ahead.head.episodes
-        val more            = objective.values(ahead.map(_.candidate), flown until 2 * flown)
-        val next            = ahead
-          .zip(more)
-          .map((scored, value) => Scored(scored.candidate, (scored.value + value) / 2, 2 * flown))
-        race(next.sortBy(_.value), behind ++ out)
-
-    race(all(objective, candidates, firstEpisodes), Vector.empty)
-
-  /** The cross-entropy method (Rubinstein, Kroese, 2004) with independent normal distributions, cut to the space: each
-    * generation is drawn around the elite of the one before. Every generation meets the same episodes.
-    *
-    * @param elite
-    *   share of a generation that makes the next, above 0 to 1
-    * @param smoothing
-    *   weight of the new mean and spread against the old, above 0 to 1
-    * @return
-    *   the best candidate seen
-    */
-  def crossEntropy(
-      objective: Objective,
+  def run(
       space: SearchSpace,
-      population: Int,
-      generations: Int,
-      episodes: Int,
+      method: SearchMethod,
+      direction: Direction,
       seed: Long,
-      elite: Double = 0.2,
-      smoothing: Double = 0.8
-  ): Scored =
-    require(elite > 0 && elite <= 1 && smoothing > 0 && smoothing <= 1, s"elite $elite, smoothing $smoothing")
-    val elites = (population * elite).round.toInt.max(2)
-    require(population >= elites, s"a population of $population has no elite of $elites")
+      evaluator: Evaluator
+  ): Vector[Scored] =
+    val search = Search(space, method, direction, seed)
+    Iterator
+      .iterate(search.start)(search.step(_, evaluator, Int.MaxValue))
+      .find(_.isDone)
+      .get
+      .leaders
 
-    def evolve(
-        generation: Int,
-        means: Vector[Double],
-        spreads: Vector[Double],
-        best: Option[Scored]
-    ): Scored =
-      if generation == generations then best.get
-      else
-        val source     = SplitMix64(SplitMix64.seedOf(seed, generation))
-        val candidates = Vector.fill(population):
-          space.clamp(means.zip(spreads).map((mean, spread) => mean + spread * normal(source)))
-        val ranked      = all(objective, candidates, episodes)
-        val chosen      = ranked.take(elites).map(_.candidate)
-        val eliteMeans  = means.indices.toVector.map(axis => chosen.map(_(axis)).sum / elites)
-        val eliteSpread = means.indices.toVector.map: axis =>
-          math.sqrt(chosen.map(c => (c(axis) - eliteMeans(axis)) * (c(axis) - eliteMeans(axis))).sum / elites)
-        evolve(
-          generation + 1,
-          blend(means, eliteMeans, smoothing),
-          blend(spreads, eliteSpread, smoothing),
-          Some(best.filter(_.value <= ranked.head.value).getOrElse(ranked.head))
-        )
-
-    require(generations > 0, s"generations must be positive, got $generations")
-    val centre = space.axes.map(axis => (axis.least + axis.most) / 2)
-    val spread = space.axes.map(axis => (axis.most - axis.least) / 2)
-    evolve(0, centre, spread, None)
-
-  private def normal(source: SplitMix64): Double =
-    NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))
+  private def eliteOf(entropy: SearchMethod.CrossEntropy): Int =
+    (entropy.population * entropy.elite).round.toInt.max(2).min(entropy.population)
 
   private def blend(old: Vector[Double], fresh: Vector[Double], weight: Double): Vector[Double] =
     old.zip(fresh).map((o, f) => (1 - weight) * o + weight * f)

@@ -43,6 +43,9 @@ enum LatencyDistribution:
         case Vector((p0, t0), (p1, t1)) => (p1 - p0) * (t0 + t1) / 2
       Span.ofMillis(pieces.sum)
 
+  /** The 99 % quantile less the median. */
+  def jitter: Span = quantile(0.99) - quantile(0.5)
+
 object LatencyDistribution:
 
   /** The distribution of measured round trips in ms, at least one, in any order: the least at 0, the largest at 1,

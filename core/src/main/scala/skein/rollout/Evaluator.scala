@@ -1,0 +1,101 @@
+package skein.rollout
+
+import skein.policy.{Policy, PolicyFamily, Role}
+
+/** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that their
+  * differences are their own.
+  */
+trait Evaluator:
+
+  /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's tally
+    * depends on the candidate and the episodes alone, to the bit, whatever else the call holds.
+    *
+    * @param episodes
+    *   numbers of the episodes, at least one
+    */
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally]
+
+/** Flies a family's candidates against one opponent in [[DuelBatch]].
+  *
+  * @param role
+  *   of the candidates
+  * @param opponent
+  *   of the other role
+  * @param seed
+  *   of the delays
+  */
+final class DuelEvaluator(
+    batch: DuelBatch,
+    durationS: Double,
+    family: PolicyFamily,
+    role: Role,
+    opponent: Policy,
+    link: DelayTable,
+    objective: Objective,
+    seed: Long
+) extends Evaluator:
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    val policies = candidates.map(family.policy).toArray
+    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
+    val outcomes = batch.fly(Worlds(policies, keys), objective.captureRadiusM)
+    Vector.tabulate(policies.length): candidate =>
+      Tally.of(keys.length): episode =>
+        objective.value(outcomes, candidate * keys.length + episode, role, durationS)
+
+  /** The candidate does not enter the key: all meet the same delays. */
+  private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
+    def size: Int                    = policies.length * keys.length
+    def key(world: Int): Int         = keys(world % keys.length)
+    def link(world: Int): DelayTable = DuelEvaluator.this.link
+    def pursuer(world: Int): Policy = if role == Role.Pursuer then policies(world / keys.length) else opponent
+    def evader(world: Int): Policy  = if role == Role.Evader then policies(world / keys.length) else opponent
+
+/** Judges by any function of a trajectory, by the scalar reference, on the calling thread.
+  *
+  * @param duel
+  *   of a candidate
+  */
+final class TrajectoryEvaluator(
+    duel: Vector[Double] => Duel,
+    timing: LoopTiming,
+    link: DelayTable,
+    model: VelocityResponse,
+    seed: Long
+)(value: Trajectory => Double)
+    extends Evaluator:
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    candidates.map: candidate =>
+      val rollout = Rollout(duel(candidate), timing, link, model)
+      val values  = episodes.map: episode =>
+        val path    = Trajectory.Builder()
+        val outcome = rollout.fly(WorldRandom.key(seed, 0, episode), onScore = path)
+        value(path.result(outcome))
+      Tally.of(values.size)(values)
+
+/** An episode as it was flown: positions, m, once a period.
+  *
+  * @param evader
+  *   north and east at each time
+  */
+final case class Trajectory(
+    timesS: Vector[Double],
+    evader: Vector[(Double, Double)],
+    pursuer: Vector[(Double, Double)],
+    outcome: Outcome
+):
+  def distancesM: Vector[Double] = evader.zip(pursuer).map((e, p) => math.hypot(e._1 - p._1, e._2 - p._2))
+
+object Trajectory:
+  private[rollout] final class Builder extends Rollout.Listener:
+    private val times           = Vector.newBuilder[Double]
+    private val evader, pursuer = Vector.newBuilder[(Double, Double)]
+
+    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit =
+      times += timeS
+      evader += ((evaderX, evaderY))
+      pursuer += ((pursuerX, pursuerY))
+
+    def result(outcome: Outcome): Trajectory =
+      Trajectory(times.result(), evader.result(), pursuer.result(), outcome)
