@@ -73,12 +73,27 @@ lazy val app = project
     executableScriptName := "skein",
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
     // A class-data archive, made at the first run, halves the start-up time; beside an agent it must be allowed.
+    // It belongs to one set of modules. The JVM remarks on an incubator module in the first line of its standard
+    // error, before any option or code of ours can prevent it: that line is taken out, and the rest passes as it comes.
     bashScriptExtraDefines ++= Seq(
       s"""addJava "-javaagent:$$lib_dir/${organization.value}.${(vtimeAgent / Compile / packageBin).value.getName}"""",
       """addJava "-XX:+UnlockDiagnosticVMOptions"""",
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
-      """addJava "-XX:SharedArchiveFile=${app_home}/../skein.jsa"""",
+      """case "${1:-}" in""",
+      """  search | budget | plan)""",
+      """    addJava "--add-modules=jdk.incubator.vector"""",
+      """    addJava "-XX:SharedArchiveFile=${app_home}/../skein-vector.jsa"""",
+      """    exec 2> >(""",
+      """      trap '' INT""",
+      """      if IFS= read -r first && [ "$first" != "WARNING: Using incubator modules: jdk.incubator.vector" ]; then""",
+      """        printf '%s\n' "$first" >&2""",
+      """      fi""",
+      """      exec cat >&2""",
+      """    )""",
+      """    ;;""",
+      """  *) addJava "-XX:SharedArchiveFile=${app_home}/../skein.jsa" ;;""",
+      """esac""",
       """addJava "-Xlog:disable""""
     )
   )
