@@ -32,7 +32,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite:
       else untilItHolds(measure, tries - 1)(holds)
 
   test("tasks start when they are due: never before, and half of them within 1 ms"):
-    val random                         = SplitMix64(1)
+    val random                          = SplitMix64(1)
     def latesUs(): Future[Vector[Long]] =
       Future
         .traverse(Vector.fill(500)(1.millisecond * (1 + random.nextInt(1000)))): delay =>
