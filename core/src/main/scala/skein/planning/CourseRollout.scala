@@ -1,0 +1,145 @@
+package skein.planning
+
+import skein.vehicle.LagModel
+
+/** Flies one course in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
+  * plan is told to others.
+  *
+  * Velocities follow commands with a first-order lag, v' = (gain · command − v) / lag, integrated exactly over each
+  * step, in which the command stands: the heading has turned at the step's beginning.
+  */
+final class CourseRollout(situation: Situation, objective: Objective, dtS: Double):
+  import CourseRollout.*
+
+  /** What a course comes to. */
+  def fly(course: Course): Flown =
+    val own      = Flyer(situation.own, situation.response, dtS)
+    val steps    = course.steps
+    val (xs, ys) = (Array.ofDim[Double](steps), Array.ofDim[Double](steps))
+    val before   = Array.ofDim[Double](steps) // the heading commanded before the step
+    var heading  = situation.headingRad
+    var cost     = 0.0
+    var breaches = Vector.empty[Breached]
+    for step <- 0 until steps do
+      val (turnRate, speed) = (course.turnRates(step).toDouble, course.speeds(step).toDouble)
+      before(step) = heading
+      heading += turnRate * (if step == 0 then situation.sinceDecisionS else dtS)
+      own.fly(speed * math.cos(heading), speed * math.sin(heading))
+      xs(step) = own.x
+      ys(step) = own.y
+      val slow = speed - objective.cruiseSpeed
+      cost += (turnRate * turnRate * objective.turning + slow * slow * objective.speedChange) * dtS
+      val beyond = objective.geofence.beyond(own.x, own.y)
+      if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
+      if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
+      for (other, index) <- situation.others.zipWithIndex do
+        val distance = math.hypot(own.x - other.x(step), own.y - other.y(step))
+        val missing  = objective.separation.clearance((step + 1) * dtS) - distance
+        if missing > 0 then cost += missing * missing * objective.separation.price * dtS
+        if distance < objective.separation.minimum then
+          breaches :+= Breached.TooNear(step, index, distance)
+        val short = objective.separation.minimum + Guard - distance
+        if short > 0 then cost += Breach * (1 + short)
+    for behaviour <- situation.behaviours do
+      cost += behaviour.weight * distanceCost(behaviour.target, own, xs, ys, before)
+    Flown(PredictedTrack(IArray.from(xs), IArray.from(ys)), cost, breaches)
+
+  private def distanceCost(
+      target: Target,
+      own: Flyer,
+      xs: Array[Double],
+      ys: Array[Double],
+      before: Array[Double]
+  ): Double =
+    val steps                = xs.length
+    val lagS                 = situation.response.lagS
+    val (tx, ty)             = (Array.ofDim[Double](steps), Array.ofDim[Double](steps))
+    val (carriedX, carriedY) = target match
+      case evader: Target.Evader =>
+        val flyer = Flyer(evader.motion, evader.response, dtS)
+        for step <- 0 until steps do
+          val (px, py) =
+            if step == 0 then (situation.own.x, situation.own.y) else (xs(step - 1), ys(step - 1))
+          val (u, w) = evade(flyer.x - px, flyer.y - py, before(step), evader.turningRadius)
+          flyer.fly(evader.speed * u, evader.speed * w)
+          tx(step) = flyer.x
+          ty(step) = flyer.y
+        (flyer.vx * evader.response.lagS, flyer.vy * evader.response.lagS)
+      case along: Target.Along =>
+        for step <- 0 until steps do
+          tx(step) = along.track.x(step)
+          ty(step) = along.track.y(step)
+        (along.track.carriedX(lagS, dtS), along.track.carriedY(lagS, dtS))
+    val distances = (0 until steps).map(step => math.hypot(tx(step) - xs(step), ty(step) - ys(step)))
+    val least     = distances.min
+    val end       = math.hypot(
+      tx(steps - 1) + carriedX - xs(steps - 1) - own.vx * lagS,
+      ty(steps - 1) + carriedY - ys(steps - 1) - own.vy * lagS
+    )
+    distances.sum * dtS * objective.distance + least * objective.closest + end * objective.carried -
+      (if least < objective.captureRadius then objective.capture else 0)
+
+object CourseRollout:
+  /** What one step costs that breaks a hard limit. */
+  val Breach = 1000.0
+
+  /** Within which hard limits count as broken already when candidates are priced, m: so that what floats find within
+    * them is so in doubles.
+    */
+  val Guard = 0.01
+
+  /** Added to squares of lengths before the root, m². */
+  private[planning] val Tiny = 1e-12
+
+  /** The direction in which [[skein.policy.PaperEvader]] flees, as a unit vector, world NED.
+    *
+    * @param dx
+    *   the evader's place minus the pursuer's
+    */
+  private def evade(dx: Double, dy: Double, headingRad: Double, radius: Double): (Double, Double) =
+    val (c, s)              = (math.cos(headingRad), math.sin(headingRad))
+    val (ahead, right)      = (dx * c + dy * s, dy * c - dx * s)
+    def inCircle(y: Double) = ahead * ahead + y * y < radius * radius
+    val (u, w)              =
+      if inCircle(right - radius) then (ahead, right + radius)
+      else if inCircle(right + radius) then (ahead, right - radius)
+      else if ahead * ahead + right * right < 4 * radius * radius then (-right, ahead)
+      else (ahead, right)
+    val length = math.sqrt(u * u + w * w + Tiny)
+    ((u * c - w * s) / length, (u * s + w * c) / length)
+
+  private final class Flyer(start: Motion, response: LagModel, dtS: Double):
+    var x             = start.x
+    var y             = start.y
+    var vx            = start.vx
+    var vy            = start.vy
+    private val left  = math.exp(-dtS / response.lagS)
+    private val glide = response.lagS * (1 - left)
+
+    def fly(commandedX: Double, commandedY: Double): Unit =
+      val (wantedX, wantedY) = (response.gain * commandedX, response.gain * commandedY)
+      x += wantedX * dtS + (vx - wantedX) * glide
+      y += wantedY * dtS + (vy - wantedY) * glide
+      vx = wantedX + (vx - wantedX) * left
+      vy = wantedY + (vy - wantedY) * left
+
+/** @param track
+  *   of the vehicle itself
+  * @param breaches
+  *   of hard limits
+  */
+final case class Flown(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
+
+/** A hard limit broken at the end of a step. */
+enum Breached:
+  def step: Int
+
+  /** @param metres
+    *   outside
+    */
+  case Fence(step: Int, metres: Double)
+
+  /** @param other
+    *   which of the vehicles to keep apart from
+    */
+  case TooNear(step: Int, other: Int, metres: Double)

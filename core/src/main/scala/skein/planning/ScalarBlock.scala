@@ -1,0 +1,60 @@
+package skein.planning
+
+/** A block of candidates flown one after the other, where the JVM has no vector module: the same candidates as the
+  * kernel's, some fifty times slower.
+  */
+private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
+  private val size = CandidateBlock.Size
+
+  val turnRates, speeds, turnSums, speedSums = Array.ofDim[Float](steps * size)
+  val costs, weightSums                      = Array.ofDim[Float](size)
+
+  private var rollout: Option[CourseRollout] = None
+  private var limits: Option[Limits]         = None
+
+  def situate(situation: Situation, objective: Objective, dtS: Double): Unit =
+    rollout = Some(CourseRollout(situation, objective, dtS))
+    limits = Some(objective.limits)
+
+  def draw(keys: Array[Int], search: Search, stepsPerKnot: Int): Unit =
+    for
+      bounds <- limits
+      i      <- 0 until size
+      step   <- 0 until steps
+    do
+      val knot  = step / stepsPerKnot
+      val speed = within(
+        Math.fma(Draws.normal(keys(i), 2 * knot + 1), search.speedSds(step), search.speedMeans(step)),
+        bounds.minSpeed.toFloat,
+        bounds.maxSpeed.toFloat
+      )
+      val limit = math.min(speed * bounds.curvature.toFloat, bounds.maxTurnRate.toFloat)
+      val turn  = Math.fma(Draws.normal(keys(i), 2 * knot), search.turnSds(step), search.turnMeans(step))
+      turnRates(step * size + i) = within(turn, -limit, limit)
+      speeds(step * size + i) = speed
+
+  private def within(value: Float, least: Float, most: Float): Float = math.min(math.max(value, least), most)
+
+  def fly(): Unit =
+    for
+      way <- rollout
+      i   <- 0 until size
+    do costs(i) = way.fly(course(i)).cost.toFloat
+
+  private def course(i: Int): Course =
+    Course(
+      IArray.tabulate(steps)(step => turnRates(step * size + i)),
+      IArray.tabulate(steps)(step => speeds(step * size + i))
+    )
+
+  def forget(): Unit =
+    for sums <- Seq(turnSums, speedSums, weightSums) do java.util.Arrays.fill(sums, 0f)
+
+  def weigh(base: Float, temperature: Float): Unit =
+    for i <- 0 until size do
+      val exponent = math.min(math.max((base - costs(i)) / temperature, -80f), 20f)
+      val weight   = math.exp(exponent).toFloat
+      weightSums(i) += weight
+      for at <- i until steps * size by size do
+        turnSums(at) += weight * turnRates(at)
+        speedSums(at) += weight * speeds(at)

@@ -1,0 +1,89 @@
+package skein.planning
+
+import skein.policy.PaperEvader
+import skein.vehicle.LagModel
+
+/** Where a vehicle is and how it moves, horizontally: m and m/s, world NED. */
+final case class Motion(x: Double, y: Double, vx: Double, vy: Double)
+
+/** Where somebody will be at the end of each step of the horizon, m, world NED: x north, y east. */
+final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
+  require(xs.length == ys.length, s"a track has as many x as y, came ${xs.length} and ${ys.length}")
+
+  def steps: Int           = xs.length
+  def x(step: Int): Double = xs(step)
+  def y(step: Int): Double = ys(step)
+
+  /** How far its momentum carries it beyond its end, m: its last velocity for a lag's time. */
+  def carriedX(lagS: Double, dtS: Double): Double = last(xs) * lagS / dtS
+  def carriedY(lagS: Double, dtS: Double): Double = last(ys) * lagS / dtS
+
+  private def last(values: IArray[Double]): Double =
+    if steps < 2 then 0 else values(steps - 1) - values(steps - 2)
+
+object PredictedTrack:
+
+  /** Who goes on with the velocity that they have. */
+  def straight(from: Motion, steps: Int, dtS: Double): PredictedTrack =
+    PredictedTrack(
+      IArray.tabulate(steps)(step => from.x + from.vx * dtS * (step + 1)),
+      IArray.tabulate(steps)(step => from.y + from.vy * dtS * (step + 1))
+    )
+
+  /** Who keeps the speed and goes on turning.
+    *
+    * @param turnRateRadPerS
+    *   from north towards east
+    */
+  def turning(from: Motion, turnRateRadPerS: Double, steps: Int, dtS: Double): PredictedTrack =
+    if math.abs(turnRateRadPerS) < 1e-6 then straight(from, steps, dtS)
+    else
+      val angles = IArray.tabulate(steps)(step => turnRateRadPerS * dtS * (step + 1))
+      PredictedTrack(
+        angles.map(a => from.x + (from.vx * math.sin(a) - from.vy * (1 - math.cos(a))) / turnRateRadPerS),
+        angles.map(a => from.y + (from.vx * (1 - math.cos(a)) + from.vy * math.sin(a)) / turnRateRadPerS)
+      )
+
+  def standing(x: Double, y: Double, steps: Int): PredictedTrack =
+    PredictedTrack(IArray.fill(steps)(x), IArray.fill(steps)(y))
+
+/** What a vehicle is to come close to. */
+enum Target:
+  /** The paper's evader ([[skein.policy.PaperEvader]]), which answers to the headings commanded to this vehicle: at each
+    * step it knows the one before.
+    *
+    * @param speed
+    *   that it commands, m/s
+    */
+  case Evader(motion: Motion, response: LagModel, speed: Double, turningRadius: Double)
+
+  /** Somebody or some place whose way does not depend on this vehicle. */
+  case Along(track: PredictedTrack)
+
+object Target:
+  def paperEvader(motion: Motion, response: LagModel, speed: Double, policy: PaperEvader): Target =
+    Evader(motion, response, speed, policy.turningRadiusM)
+
+/** One way in which the target may behave, and how much it counts. */
+final case class Behaviour(target: Target, weight: Double = 1)
+
+/** What a plan is made upon: the joint state at the moment at which the planned command will act.
+  *
+  * @param headingRad
+  *   commanded last to this vehicle
+  * @param sinceDecisionS
+  *   time since then: as long the first step's turn lasts
+  * @param behaviours
+  *   of the target, the same for all candidates, which makes their costs comparable
+  * @param others
+  *   vehicles to keep apart from
+  */
+final case class Situation(
+    own: Motion,
+    headingRad: Double,
+    sinceDecisionS: Double,
+    response: LagModel,
+    behaviours: Vector[Behaviour],
+    others: Vector[PredictedTrack] = Vector.empty
+):
+  require(sinceDecisionS >= 0, s"time since the last decision must not be negative, came $sinceDecisionS s")

@@ -1,0 +1,115 @@
+package skein.planning
+
+import skein.signal.SplitMix64
+import skein.vehicle.LagModel
+
+class PlanKernelSuite extends munit.FunSuite:
+  private val size                = CandidateBlock.Size
+  private val (steps, dtS, knots) = (24, 0.1, 3)
+
+  private val evader    = new Target.Evader(Motion(9, 4, -2, 3), LagModel(2.6, 0.916), 5, 8)
+  private val track     = new Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, steps, dtS))
+  private val objective = Objective(
+    Limits(4, 10, 1.25, 6),
+    closest = 0.7,
+    capture = 3,
+    captureRadius = 4,
+    turning = 0.2,
+    speedChange = 0.05,
+    cruiseSpeed = 8
+  )
+  private val search = Search(
+    IArray.tabulate(steps)(0.02f * _),
+    IArray.tabulate(steps)(step => 0.5f + 0.01f * step),
+    IArray.fill(steps)(8f),
+    IArray.fill(steps)(2f)
+  )
+
+  private def situation(behaviours: Behaviour*): Situation =
+    Situation(Motion(1, 2, 6, 1), 0.4, 0.13, LagModel(2.45, 0.857), behaviours.toVector)
+
+  private val others = Vector(
+    PredictedTrack.straight(Motion(6, 5, -1, 0.5), steps, dtS),
+    PredictedTrack.straight(Motion(-3, 2, 3, 0), steps, dtS)
+  )
+
+  private def flown(block: CandidateBlock, situation: Situation, objective: Objective): CandidateBlock =
+    val keys = SplitMix64(5)
+    block.situate(situation, objective, dtS)
+    block.draw(Array.fill(size)(keys.nextLong().toInt), search, knots)
+    block.fly()
+    block
+
+  /** The closest approaches at which a candidate is captured in floats and not in doubles, or breaches a limit, are
+    * left out: there the cost jumps.
+    */
+  private def assertAgree(situation: Situation, objective: Objective)(using munit.Location): Unit =
+    val kernel = flown(PlanKernel(steps), situation, objective)
+    val scalar = flown(ScalarBlock(steps), situation, objective)
+    assertEquals(kernel.turnRates.toSeq, scalar.turnRates.toSeq)
+    assertEquals(kernel.speeds.toSeq, scalar.speeds.toSeq)
+    val off = (0 until size).map(i => (kernel.costs(i) - scalar.costs(i)).abs / (1 + scalar.costs(i).abs))
+    assert(off.count(_ < 2e-5) >= size - 2, s"off by ${off.sorted.takeRight(5)}")
+
+  test("kernel and scalar reference agree on a pursuit of the paper's evader"):
+    assertAgree(situation(Behaviour(evader)), objective)
+
+  test("kernel and scalar reference agree on following a track"):
+    assertAgree(situation(Behaviour(track)), objective)
+
+  test("kernel and scalar reference agree on several behaviours, each by its weight"):
+    val closer = evader.copy(motion = Motion(4, 3, 1, 1))
+    assertAgree(situation(Behaviour(evader, 0.5), Behaviour(track, 0.3), Behaviour(closer, 0.2)), objective)
+
+  test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):
+    val narrow =
+      objective.copy(separation = Separation(minimum = 1.5, margin = 2), geofence = Geofence(-20, 14, -4, 9))
+    val busy   = situation(Behaviour(track)).copy(others = others)
+    val scalar = flown(ScalarBlock(steps), busy, narrow)
+    assert(scalar.costs.count(_ > 1000) > 10, "some candidates should breach a limit")
+    assert(scalar.costs.count(_ < 1000) > 10, "some candidates should not")
+    assertAgree(busy, narrow)
+
+  test("a candidate that the kernel finds within the hard limits is so in doubles"):
+    val narrow =
+      objective.copy(separation = Separation(minimum = 1.5, margin = 0), geofence = Geofence(-20, 14, -4, 9))
+    val busy   = situation(Behaviour(track)).copy(others = others)
+    val kernel = flown(PlanKernel(steps), busy, narrow)
+    val check  = CourseRollout(busy, narrow, dtS)
+    for i <- 0 until size if kernel.costs(i) < 900 do
+      val course = Course(
+        IArray.tabulate(steps)(step => kernel.turnRates(step * size + i)),
+        IArray.tabulate(steps)(step => kernel.speeds(step * size + i))
+      )
+      assertEquals(check.fly(course).breaches, Vector.empty)
+
+  test("weighted sums are those of the scalar reference"):
+    val kernel = flown(PlanKernel(steps), situation(Behaviour(evader)), objective)
+    val scalar = flown(ScalarBlock(steps), situation(Behaviour(evader)), objective)
+    for block <- Seq(kernel, scalar) do
+      block.forget()
+      block.weigh(block.costs.min, 2f)
+      block.weigh(block.costs.min, 5f)
+    for
+      (ours, reference) <- Seq(
+        kernel.weightSums -> scalar.weightSums,
+        kernel.turnSums   -> scalar.turnSums,
+        kernel.speedSums  -> scalar.speedSums
+      )
+      at <- ours.indices
+    do assertEqualsDouble(ours(at), reference(at), 1e-3 * (0.01 + reference(at).abs))
+
+  test("drawn candidates are within the limits, differ, and use the whole of them"):
+    val block = flown(PlanKernel(steps), situation(Behaviour(evader)), objective)
+    for at <- block.turnRates.indices do
+      val speed = block.speeds(at)
+      assert(speed >= 4 && speed <= 10, s"speed $speed")
+      assert(block.turnRates(at).abs <= objective.limits.turnRateAt(speed) * (1 + 1e-6), s"turns at $at")
+    assert(block.turnRates.distinct.length > size * steps / knots / 2)
+    assert(block.turnRates.max > 0.9 && block.turnRates.min < -0.9)
+
+  test("normal draws have mean 0 and variance 1"):
+    val drawn = (1 to 20000).map(Draws.normal(7, _).toDouble)
+    val mean  = drawn.sum / drawn.size
+    assertEqualsDouble(mean, 0, 0.03)
+    assertEqualsDouble(drawn.map(value => (value - mean) * (value - mean)).sum / drawn.size, 1, 0.03)
