@@ -15,11 +15,12 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.rollout.LaneMath;
-import skein.rollout.WorldRandom;
+import skein.rollout.LaneRandom;
+import skein.vehicle.ReducedModel;
 
 /**
- * Flies many candidate courses of one vehicle at once and says what each costs; {@link
- * CourseRollout} is its scalar reference, {@code PlanKernelSuite} holds the two together. The
+ * Flies many candidate manoeuvres of one vehicle at once and says what each costs; {@link
+ * ManoeuvreRollout} is its scalar reference, {@code PlanKernelSuite} holds the two together. The
  * vehicle's own way does not depend on what its opponent does, so it is flown once and every
  * behaviour of the opponent is flown against it.
  *
@@ -32,10 +33,16 @@ final class PlanKernel implements CandidateBlock {
   private static final FloatVector SIN_7 = constant(-1f / 5040);
   private static final FloatVector COS_2 = constant(-0.5f), COS_4 = constant(1f / 24);
   private static final FloatVector COS_6 = constant(-1f / 720);
+
+  // (1 − e^(−a)) / a = 1 − a/2 + a²/6 − …, whose next term is below 7e-6 for a up to 0.5.
+  private static final FloatVector GLIDE_1 = constant(-1f / 2), GLIDE_2 = constant(1f / 6);
+  private static final FloatVector GLIDE_3 = constant(-1f / 24), GLIDE_4 = constant(1f / 120);
+  private static final FloatVector GLIDE_5 = constant(-1f / 720);
+
   private static final FloatVector ONE_AND_A_HALF = constant(1.5f), HALF = constant(0.5f);
-  private static final FloatVector TINY = constant((float) CourseRollout.Tiny());
-  private static final FloatVector BREACH = constant((float) CourseRollout.Breach());
-  private static final FloatVector GUARD = constant((float) CourseRollout.Guard());
+  private static final FloatVector TINY = constant((float) ManoeuvreRollout.Tiny());
+  private static final FloatVector BREACH = constant((float) ManoeuvreRollout.Breach());
+  private static final FloatVector GUARD = constant((float) ManoeuvreRollout.Guard());
   private static final FloatVector FAR = constant(1e9f);
   private static final FloatVector LEAST_EXPONENT = constant(-80f), MOST_EXPONENT = constant(20f);
 
@@ -147,7 +154,7 @@ final class PlanKernel implements CandidateBlock {
   }
 
   private void noise(int[] keys, int place, float[] into) {
-    WorldRandom.upperBits(keys, place, 0, bits, SIZE);
+    LaneRandom.upperBits(keys, place, 0, bits, SIZE);
     for (int i = 0; i < SIZE; i += LANES) {
       IntVector drawn = IntVector.fromArray(INTS, bits, i);
       IntVector pairs = drawn.and(BYTES).add(drawn.lanewise(LSHR, 8).and(BYTES));
@@ -196,14 +203,18 @@ final class PlanKernel implements CandidateBlock {
     }
   }
 
-  /** Flies the vehicle itself; the velocity is integrated exactly over each step. */
+  /**
+   * Flies the vehicle itself: {@link ManoeuvreRollout} has the formulas. Its velocity decays by
+   * e^(−a) in a step, a = (1 / lag + drag · speed) · dt.
+   */
   private void steer() {
     Motion own = situation.own();
-    float lag = (float) situation.response().lagS();
-    double left = Math.exp(-dtS / situation.response().lagS());
-    FloatVector gain = constant((float) situation.response().gain());
-    FloatVector dt = constant(dtS), decay = constant((float) left);
-    FloatVector glide = constant((float) (situation.response().lagS() * (1 - left)));
+    ReducedModel model = situation.response();
+    float lag = (float) model.lagS();
+    FloatVector gain = constant((float) model.gain());
+    FloatVector dt = constant(dtS), perLag = constant((float) (dtS / model.lagS()));
+    FloatVector drag = constant((float) (model.dragPerM() * dtS));
+    FloatVector brake = constant((float) (model.dragPerM() * model.lagS()));
     FloatVector startVx = constant((float) own.vx()), startVy = constant((float) own.vy());
     FloatVector startCos = constant((float) Math.cos(situation.headingRad()));
     FloatVector startSin = constant((float) Math.sin(situation.headingRad()));
@@ -226,7 +237,13 @@ final class PlanKernel implements CandidateBlock {
         FloatVector unit = ONE_AND_A_HALF.sub(length);
         c = turned.mul(unit);
         s = s.mul(unit);
-        FloatVector speed = FloatVector.fromArray(SPECIES, speeds, at).mul(gain);
+        FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
+        FloatVector a = pace.fma(drag, perLag);
+        FloatVector slide = a.fma(GLIDE_5, GLIDE_4).fma(a, GLIDE_3).fma(a, GLIDE_2).fma(a, GLIDE_1);
+        FloatVector glided = slide.fma(a, ONE);
+        FloatVector decay = ONE.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector speed =
+            FloatVector.fromArray(SPECIES, speeds, at).mul(gain).div(pace.fma(brake, ONE));
         FloatVector wantedX = speed.mul(c), wantedY = speed.mul(s);
         FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
         px = offX.fma(glide, wantedX.fma(dt, px));
@@ -242,7 +259,7 @@ final class PlanKernel implements CandidateBlock {
     }
   }
 
-  /** What the course costs by itself: effort, and leaving the geofence. */
+  /** What the manoeuvre costs by itself: effort, and leaving the geofence. */
   private void bound() {
     Geofence fence = objective.geofence();
     FloatVector south = constant(within(fence.minNorth() - originX));
@@ -276,7 +293,7 @@ final class PlanKernel implements CandidateBlock {
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
     Separation separation = objective.separation();
-    FloatVector least = constant((float) (separation.minimum() + CourseRollout.Guard()));
+    FloatVector least = constant((float) (separation.minimum() + ManoeuvreRollout.Guard()));
     FloatVector price = constant((float) separation.price() * dtS);
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
@@ -302,17 +319,18 @@ final class PlanKernel implements CandidateBlock {
 
   /** The paper's evader, which knows the heading commanded before this step's. */
   private void evade(Target.Evader evader) {
-    double left = Math.exp(-dtS / evader.response().lagS());
-    FloatVector dt = constant(dtS), decay = constant((float) left);
-    FloatVector glide = constant((float) (evader.response().lagS() * (1 - left)));
-    FloatVector pace = constant((float) (evader.speed() * evader.response().gain()));
+    ReducedModel model = evader.response();
+    FloatVector dt = constant(dtS), perLag = constant((float) (dtS / model.lagS()));
+    FloatVector drag = constant((float) (model.dragPerM() * dtS));
+    FloatVector brake = constant((float) (model.dragPerM() * model.lagS()));
+    FloatVector commanded = constant((float) (evader.speed() * model.gain()));
     FloatVector radius = constant((float) evader.turningRadius());
     FloatVector circle = radius.mul(radius), near = circle.mul(4f);
     FloatVector startX = constant((float) (evader.motion().x() - originX));
     FloatVector startY = constant((float) (evader.motion().y() - originY));
     FloatVector startVx = constant((float) evader.motion().vx());
     FloatVector startVy = constant((float) evader.motion().vy());
-    float lag = (float) evader.response().lagS();
+    float lag = (float) model.lagS();
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector tx = startX, ty = startY, vx = startVx, vy = startVy, px = ZERO, py = ZERO;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
@@ -327,7 +345,13 @@ final class PlanKernel implements CandidateBlock {
         VectorMask<Float> isNear = right.fma(right, square).compare(LT, near);
         FloatVector u = ahead.blend(right.neg(), isNear).blend(ahead, inLeft).blend(ahead, inRight);
         FloatVector w = right.blend(ahead, isNear).blend(inner, inLeft).blend(outer, inRight);
-        FloatVector scale = pace.div(u.fma(u, w.fma(w, TINY)).sqrt());
+        FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
+        FloatVector a = pace.fma(drag, perLag);
+        FloatVector slide = a.fma(GLIDE_5, GLIDE_4).fma(a, GLIDE_3).fma(a, GLIDE_2).fma(a, GLIDE_1);
+        FloatVector glided = slide.fma(a, ONE);
+        FloatVector decay = ONE.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector length = u.fma(u, w.fma(w, TINY)).sqrt();
+        FloatVector scale = commanded.div(length.mul(pace.fma(brake, ONE)));
         FloatVector wantedX = u.mul(c).sub(w.mul(s)).mul(scale);
         FloatVector wantedY = u.mul(s).add(w.mul(c)).mul(scale);
         FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);

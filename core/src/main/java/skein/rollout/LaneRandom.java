@@ -8,7 +8,7 @@ import static skein.rollout.LaneMath.LANES;
 import jdk.incubator.vector.IntVector;
 
 /** {@link WorldRandom} of many worlds at a time. Apart from it, so that it runs without vectors. */
-final class LaneRandom {
+public final class LaneRandom {
   private LaneRandom() {}
 
   private static final IntVector MULTIPLIER_1 =
@@ -21,7 +21,7 @@ final class LaneRandom {
    *
    * @param count a multiple of the lane count
    */
-  static void upperBits(int[] keys, int place, int drop, int[] into, int count) {
+  public static void upperBits(int[] keys, int place, int drop, int[] into, int count) {
     int offset = place * WorldRandom.STRIDE;
     for (int i = 0; i < count; i += LANES) {
       IntVector x = IntVector.fromArray(INTS, keys, i).add(offset);

@@ -1,6 +1,6 @@
 package skein.planning
 
-/** A block of candidate courses that are drawn, flown and priced together. Mutable; one per thread. Arrays hold step
+/** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays hold step
   * after step: the action of candidate i in step h is at h · SIZE + i.
   */
 private[planning] trait CandidateBlock:
@@ -10,7 +10,7 @@ private[planning] trait CandidateBlock:
   /** Of each candidate, after [[fly]]. */
   def costs: Array[Float]
 
-  /** What all courses from now on are flown in, and what they are to achieve. */
+  /** What all manoeuvres from now on are flown in, and what they are to achieve. */
   def situate(situation: Situation, objective: Objective, dtS: Double): Unit
 
   /** Draws all candidates, within the limits.

@@ -54,7 +54,7 @@ final case class Separation(minimum: Double, margin: Double = 1, growth: Double 
   /** Within which coming nearer costs, m. */
   def clearance(aheadS: Double): Double = minimum + margin + growth * aheadS
 
-/** What a course costs; costs are in metres, so that weights compare. Of the distance to the target it takes the mean
+/** What a manoeuvre costs; costs are in metres, so that weights compare. Of the distance to the target it takes the mean
   * over the time flown times its length, the least, and, at the end of the horizon, the distance to which momentum
   * would carry the two: with velocities that lag, a place is known only with the place that its velocity leads to.
   *

@@ -1,8 +1,9 @@
 package skein.planning
 
 import skein.rollout.WorldRandom
+import skein.vehicle.ReducedModel
 
-/** How better courses are looked for. */
+/** How better manoeuvres are looked for. */
 enum Method:
   /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the mean of all
     * candidates, each weighted by e^(−cost / temperature).
@@ -47,7 +48,7 @@ final case class PlannerSettings(
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size
 
-/** Plans courses, any time: a plan is improved slice by slice, and its course is at every moment the best found. Equal
+/** Plans manoeuvres, any time: a plan is improved slice by slice, and its manoeuvre is at every moment the best found. Equal
   * plans, situations and streams give equal plans, to the last bit, on every machine.
   *
   * Holds the memory for a block of candidates: one per thread.
@@ -73,20 +74,20 @@ final class Planner private[planning] (
   private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
 
   /** Before anything was planned: straight on. */
-  val start: Plan = around(Course.straight(cruise, steps))
+  val start: Plan = around(Manoeuvre.straight(cruise, steps))
 
   /** The plan to begin with when time has passed: what is left of the last, to be tried anew. */
-  def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.course.shifted(elapsedS, dtS))
+  def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
 
-  private def around(course: Course): Plan =
+  private def around(manoeuvre: Manoeuvre): Plan =
     val speedSds = if limits.minSpeed == limits.maxSpeed then 0f else speedSd.toFloat
     Plan(
-      course,
+      manoeuvre,
       Float.PositiveInfinity,
       Search(
-        course.turnRates,
+        manoeuvre.turnRates,
         IArray.fill(steps)(turnSd.toFloat),
-        course.speeds,
+        manoeuvre.speeds,
         IArray.fill(steps)(speedSds)
       ),
       0,
@@ -99,10 +100,11 @@ final class Planner private[planning] (
     *   of random numbers: a plan improved with another stream meets other candidates
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
+    Planner.checkPlannable(situation.response, dtS)
     block.situate(situation, objective, dtS)
     block.forget()
     java.util.Arrays.fill(eliteCosts, Float.PositiveInfinity)
-    var best     = plan.course
+    var best     = plan.manoeuvre
     var bestCost = plan.cost
     var base     = 0f
     for number <- 0 until blocksPerSlice do
@@ -115,7 +117,7 @@ final class Planner private[planning] (
       val least = cheapest
       if block.costs(least) < bestCost then
         bestCost = block.costs(least)
-        best = courseAt(least)
+        best = manoeuvreAt(least)
       method match
         case Method.PathIntegral(temperature) => block.weigh(base, temperature.toFloat)
         case _: Method.CrossEntropy           => gatherElites()
@@ -125,23 +127,23 @@ final class Planner private[planning] (
     Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
 
   /** Courses that are always tried: the search's mean, the best, and what a pilot would think of first. */
-  private def known(plan: Plan): Vector[Course] =
-    val (speed, limit) = (plan.course.speeds(0).toDouble, limits.turnRateAt(plan.course.speeds(0)))
+  private def known(plan: Plan): Vector[Manoeuvre] =
+    val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))
     Vector(
-      Course(plan.search.turnMeans, plan.search.speedMeans),
-      plan.course,
-      Course.steady(limit, speed, steps),
-      Course.steady(-limit, speed, steps),
-      Course.steady(0, speed, steps),
-      Course.steady(0, limits.minSpeed, steps),
-      Course.steady(0, limits.maxSpeed, steps)
+      Manoeuvre(plan.search.turnMeans, plan.search.speedMeans),
+      plan.manoeuvre,
+      Manoeuvre.steady(limit, speed, steps),
+      Manoeuvre.steady(-limit, speed, steps),
+      Manoeuvre.steady(0, speed, steps),
+      Manoeuvre.steady(0, limits.minSpeed, steps),
+      Manoeuvre.steady(0, limits.maxSpeed, steps)
     )
 
-  private def put(course: Course, i: Int): Unit =
+  private def put(manoeuvre: Manoeuvre, i: Int): Unit =
     for step <- 0 until steps do
-      val speed = math.min(math.max(course.speeds(step), limits.minSpeed.toFloat), limits.maxSpeed.toFloat)
+      val speed = math.min(math.max(manoeuvre.speeds(step), limits.minSpeed.toFloat), limits.maxSpeed.toFloat)
       val limit = math.min(speed * limits.curvature.toFloat, limits.maxTurnRate.toFloat)
-      block.turnRates(step * size + i) = math.min(math.max(course.turnRates(step), -limit), limit)
+      block.turnRates(step * size + i) = math.min(math.max(manoeuvre.turnRates(step), -limit), limit)
       block.speeds(step * size + i) = speed
 
   private def cheapest: Int =
@@ -152,8 +154,8 @@ final class Planner private[planning] (
       i += 1
     least
 
-  private def courseAt(i: Int): Course =
-    Course(
+  private def manoeuvreAt(i: Int): Manoeuvre =
+    Manoeuvre(
       IArray.tabulate(steps)(step => block.turnRates(step * size + i)),
       IArray.tabulate(steps)(step => block.speeds(step * size + i))
     )
@@ -212,6 +214,14 @@ final class Planner private[planning] (
 object Planner:
   def apply(settings: PlannerSettings, objective: Objective): Planner =
     new Planner(settings, objective, CandidateBlock(settings.steps))
+
+  private def checkPlannable(model: ReducedModel, dtS: Double): Unit = require(
+    model.turnLagS == model.lagS && model.lagS >= ShortestLag * dtS,
+    s"plans need a vehicle with equal lags of at least $ShortestLag steps of $dtS s, came $model"
+  )
+
+  /** In steps: the kernel's series hold for less decay in a step. */
+  private val ShortestLag = 2.5
 
   /** Whether candidates are flown by lanes; otherwise a deadline meets some fifty times fewer of them. */
   def isFast: Boolean = CandidateBlock.isFast

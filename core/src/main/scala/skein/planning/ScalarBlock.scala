@@ -9,11 +9,11 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
   val turnRates, speeds, turnSums, speedSums = Array.ofDim[Float](steps * size)
   val costs, weightSums                      = Array.ofDim[Float](size)
 
-  private var rollout: Option[CourseRollout] = None
+  private var rollout: Option[ManoeuvreRollout] = None
   private var limits: Option[Limits]         = None
 
   def situate(situation: Situation, objective: Objective, dtS: Double): Unit =
-    rollout = Some(CourseRollout(situation, objective, dtS))
+    rollout = Some(ManoeuvreRollout(situation, objective, dtS))
     limits = Some(objective.limits)
 
   def draw(keys: Array[Int], search: Search, stepsPerKnot: Int): Unit =
@@ -39,10 +39,10 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
     for
       way <- rollout
       i   <- 0 until size
-    do costs(i) = way.fly(course(i)).cost.toFloat
+    do costs(i) = way.fly(manoeuvre(i)).cost.toFloat
 
-  private def course(i: Int): Course =
-    Course(
+  private def manoeuvre(i: Int): Manoeuvre =
+    Manoeuvre(
       IArray.tabulate(steps)(step => turnRates(step * size + i)),
       IArray.tabulate(steps)(step => speeds(step * size + i))
     )

@@ -1,7 +1,7 @@
 package skein.planning
 
 import skein.policy.PaperEvader
-import skein.vehicle.LagModel
+import skein.vehicle.ReducedModel
 
 /** Where a vehicle is and how it moves, horizontally: m and m/s, world NED. */
 final case class Motion(x: Double, y: Double, vx: Double, vy: Double)
@@ -55,20 +55,23 @@ enum Target:
     * @param speed
     *   that it commands, m/s
     */
-  case Evader(motion: Motion, response: LagModel, speed: Double, turningRadius: Double)
+  case Evader(motion: Motion, response: ReducedModel, speed: Double, turningRadius: Double)
 
   /** Somebody or some place whose way does not depend on this vehicle. */
   case Along(track: PredictedTrack)
 
 object Target:
-  def paperEvader(motion: Motion, response: LagModel, speed: Double, policy: PaperEvader): Target =
+  def paperEvader(motion: Motion, response: ReducedModel, speed: Double, policy: PaperEvader): Target =
     Evader(motion, response, speed, policy.turningRadiusM)
 
 /** One way in which the target may behave, and how much it counts. */
 final case class Behaviour(target: Target, weight: Double = 1)
 
-/** What a plan is made upon: the joint state at the moment at which the planned command will act.
+/** What a plan is made upon: the joint state at the moment at which the planned command will act on the vehicle, its
+  * dead time over.
   *
+  * @param response
+  *   of the vehicle; its lags must be equal, and its dead time has no effect here
   * @param headingRad
   *   commanded last to this vehicle
   * @param sinceDecisionS
@@ -82,7 +85,7 @@ final case class Situation(
     own: Motion,
     headingRad: Double,
     sinceDecisionS: Double,
-    response: LagModel,
+    response: ReducedModel,
     behaviours: Vector[Behaviour],
     others: Vector[PredictedTrack] = Vector.empty
 ):

@@ -1,13 +1,13 @@
 package skein.planning
 
 import skein.signal.SplitMix64
-import skein.vehicle.LagModel
+import skein.vehicle.{ReducedFlight, ReducedModel}
 
 class PlanKernelSuite extends munit.FunSuite:
   private val size                = CandidateBlock.Size
   private val (steps, dtS, knots) = (24, 0.1, 3)
 
-  private val evader    = new Target.Evader(Motion(9, 4, -2, 3), LagModel(2.6, 0.916), 5, 8)
+  private val evader    = new Target.Evader(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 8)
   private val track     = new Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, steps, dtS))
   private val objective = Objective(
     Limits(4, 10, 1.25, 6),
@@ -26,7 +26,7 @@ class PlanKernelSuite extends munit.FunSuite:
   )
 
   private def situation(behaviours: Behaviour*): Situation =
-    Situation(Motion(1, 2, 6, 1), 0.4, 0.13, LagModel(2.45, 0.857), behaviours.toVector)
+    Situation(Motion(1, 2, 6, 1), 0.4, 0.13, ReducedModel.AirSim, behaviours.toVector)
 
   private val others = Vector(
     PredictedTrack.straight(Motion(6, 5, -1, 0.5), steps, dtS),
@@ -63,7 +63,7 @@ class PlanKernelSuite extends munit.FunSuite:
 
   test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):
     val narrow =
-      objective.copy(separation = Separation(minimum = 1.5, margin = 2), geofence = Geofence(-20, 14, -4, 9))
+      objective.copy(separation = Separation(minimum = 1.5, margin = 2), geofence = Geofence(-20, 16, -6, 12))
     val busy   = situation(Behaviour(track)).copy(others = others)
     val scalar = flown(ScalarBlock(steps), busy, narrow)
     assert(scalar.costs.count(_ > 1000) > 10, "some candidates should breach a limit")
@@ -72,16 +72,16 @@ class PlanKernelSuite extends munit.FunSuite:
 
   test("a candidate that the kernel finds within the hard limits is so in doubles"):
     val narrow =
-      objective.copy(separation = Separation(minimum = 1.5, margin = 0), geofence = Geofence(-20, 14, -4, 9))
+      objective.copy(separation = Separation(minimum = 1.5, margin = 0), geofence = Geofence(-20, 16, -6, 12))
     val busy   = situation(Behaviour(track)).copy(others = others)
     val kernel = flown(PlanKernel(steps), busy, narrow)
-    val check  = CourseRollout(busy, narrow, dtS)
+    val check  = ManoeuvreRollout(busy, narrow, dtS)
     for i <- 0 until size if kernel.costs(i) < 900 do
-      val course = Course(
+      val manoeuvre = Manoeuvre(
         IArray.tabulate(steps)(step => kernel.turnRates(step * size + i)),
         IArray.tabulate(steps)(step => kernel.speeds(step * size + i))
       )
-      assertEquals(check.fly(course).breaches, Vector.empty)
+      assertEquals(check.fly(manoeuvre).breaches, Vector.empty)
 
   test("weighted sums are those of the scalar reference"):
     val kernel = flown(PlanKernel(steps), situation(Behaviour(evader)), objective)
@@ -107,6 +107,21 @@ class PlanKernelSuite extends munit.FunSuite:
       assert(block.turnRates(at).abs <= objective.limits.turnRateAt(speed) * (1 + 1e-6), s"turns at $at")
     assert(block.turnRates.distinct.length > size * steps / knots / 2)
     assert(block.turnRates.max > 0.9 && block.turnRates.min < -0.9)
+
+  test("a manoeuvre is flown as the reduced model flies it"):
+    val model     = ReducedModel.AirSim
+    val manoeuvre = Manoeuvre(IArray.tabulate(steps)(0.05f * _), IArray.tabulate(steps)(4 + 0.2f * _))
+    val flown     = ManoeuvreRollout(situation(Behaviour(track)), objective, dtS).fly(manoeuvre).track
+    val flight    = ReducedFlight(model)
+    flight.start(0, 1, 2, 6, 1)
+    var heading = 0.4
+    for step <- 0 until steps do
+      heading += manoeuvre.turnRates(step) * (if step == 0 then 0.13 else dtS)
+      val speed = manoeuvre.speeds(step)
+      flight.act(step * dtS, speed * math.cos(heading), speed * math.sin(heading))
+      flight.advance((step + 1) * dtS)
+      assertEqualsDouble(flown.x(step), flight.x, 1e-9)
+      assertEqualsDouble(flown.y(step), flight.y, 1e-9)
 
   test("normal draws have mean 0 and variance 1"):
     val drawn = (1 to 20000).map(Draws.normal(7, _).toDouble)

@@ -1,13 +1,13 @@
 package skein.planning
 
 import skein.policy.PaperEvader
-import skein.vehicle.LagModel
+import skein.vehicle.ReducedModel
 
 class PlannerSuite extends munit.FunSuite:
-  private val response  = LagModel(2.45, 0.857)
+  private val response  = ReducedModel.AirSim
   private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
   private val evader    =
-    Target.paperEvader(Motion(15, 3, 4, 0), LagModel(2.6, 0.916), speed = 5, PaperEvader())
+    Target.paperEvader(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, PaperEvader())
   private val pursuit = Situation(Motion(0, 0, 8, 0), 0, 0.1, response, Vector(Behaviour(evader)))
 
   private val methods = Seq(
@@ -18,8 +18,8 @@ class PlannerSuite extends munit.FunSuite:
   private def improved(planner: Planner, situation: Situation, slices: Int, stream: Long = 1): Plan =
     Iterator.iterate(planner.start)(planner.improve(_, situation, stream)).drop(slices).next()
 
-  private def costs(course: Course, situation: Situation, planner: Planner): Double =
-    CourseRollout(situation, planner.objective, planner.settings.dtS).fly(course).cost
+  private def costs(manoeuvre: Manoeuvre, situation: Situation, planner: Planner): Double =
+    ManoeuvreRollout(situation, planner.objective, planner.settings.dtS).fly(manoeuvre).cost
 
   for (name, method) <- methods do
     val settings = PlannerSettings(method = method)
@@ -29,25 +29,25 @@ class PlannerSuite extends munit.FunSuite:
         improved(Planner(settings, objective), pursuit, 5),
         improved(Planner(settings, objective), pursuit, 5)
       )
-      assertEquals(one.course.turnRates.toSeq, other.course.turnRates.toSeq)
+      assertEquals(one.manoeuvre.turnRates.toSeq, other.manoeuvre.turnRates.toSeq)
       assertEquals(one.cost, other.cost)
       assertEquals(one.candidates, 5L * settings.sliceCandidates)
 
     test(s"$name: another stream meets other candidates"):
       val planner = Planner(settings, objective)
       assertNotEquals(
-        improved(planner, pursuit, 1, stream = 1).course.turnRates.toSeq,
-        improved(planner, pursuit, 1, stream = 2).course.turnRates.toSeq
+        improved(planner, pursuit, 1, stream = 1).manoeuvre.turnRates.toSeq,
+        improved(planner, pursuit, 1, stream = 2).manoeuvre.turnRates.toSeq
       )
 
-    test(s"$name: slices never make a plan worse, and what it costs is what its course costs"):
+    test(s"$name: slices never make a plan worse, and what it costs is what its manoeuvre costs"):
       val planner = Planner(settings, objective)
       val plans   = Iterator.iterate(planner.start)(planner.improve(_, pursuit, 3)).slice(1, 8).toVector
       for (before, after) <- plans.zip(plans.drop(1)) do assert(after.cost <= before.cost)
-      assertEqualsDouble(plans.last.cost, costs(plans.last.course, pursuit, planner), 1e-3)
-      assert(plans.last.cost < costs(planner.start.course, pursuit, planner))
+      assertEqualsDouble(plans.last.cost, costs(plans.last.manoeuvre, pursuit, planner), 1e-3)
+      assert(plans.last.cost < costs(planner.start.manoeuvre, pursuit, planner))
 
-    test(s"$name: ten slices find a course at least as good as 30,000 random ones"):
+    test(s"$name: ten slices find a manoeuvre at least as good as 30,000 random ones"):
       val planner  = Planner(settings, objective)
       val blind    = Planner(settings.copy(blocksPerSlice = 256), objective)
       val found    = improved(planner, pursuit, 10)
@@ -58,8 +58,8 @@ class PlannerSuite extends munit.FunSuite:
       val planner = Planner(settings, objective)
       val plan    = improved(planner, pursuit, 10)
       val flown   = pursuit.copy(own = Motion(0.8, 0, 8, 0))
-      val warm    = costs(planner.resumed(plan, 0.1).course, flown, planner)
-      assert(warm < costs(planner.start.course, flown, planner))
+      val warm    = costs(planner.resumed(plan, 0.1).manoeuvre, flown, planner)
+      assert(warm < costs(planner.start.manoeuvre, flown, planner))
 
   test("a plan keeps the turning circle and flies round what it must keep apart from"):
     val separation = Separation(minimum = 2, margin = 1)
@@ -72,18 +72,18 @@ class PlannerSuite extends munit.FunSuite:
       Motion(0, 0, 5, 0),
       0,
       0.1,
-      LagModel(1, 0.95),
+      ReducedModel.lag(0.95, 1, 0),
       Vector(Behaviour(Target.Along(goal))),
       Vector(crossing, PredictedTrack.standing(9, -3.5, settings.steps))
     )
     val plan  = improved(planner, situation, 10)
-    val flown = CourseRollout(situation, objective, settings.dtS).fly(plan.course)
+    val flown = ManoeuvreRollout(situation, objective, settings.dtS).fly(plan.manoeuvre)
     assertEquals(flown.breaches, Vector.empty)
-    val straight = CourseRollout(situation, objective, settings.dtS).fly(planner.start.course)
+    val straight = ManoeuvreRollout(situation, objective, settings.dtS).fly(planner.start.manoeuvre)
     assert(straight.breaches.nonEmpty, "straight on it would collide")
     for step <- 0 until settings.steps do
-      val limit = objective.limits.turnRateAt(plan.course.speeds(step))
-      assert(plan.course.turnRates(step).abs <= limit * (1 + 1e-6))
+      val limit = objective.limits.turnRateAt(plan.manoeuvre.speeds(step))
+      assert(plan.manoeuvre.turnRates(step).abs <= limit * (1 + 1e-6))
 
   test("a plan turns back from the geofence"):
     val fenced    = objective.copy(geofence = Geofence(-50, 20, -50, 50))
@@ -93,7 +93,7 @@ class PlannerSuite extends munit.FunSuite:
     val situation =
       pursuit.copy(behaviours = Vector(Behaviour(Target.Along(outside))), own = Motion(0, 0, 4, 0))
     val plan = improved(planner, situation, 10)
-    assertEquals(CourseRollout(situation, fenced, settings.dtS).fly(plan.course).breaches, Vector.empty)
+    assertEquals(ManoeuvreRollout(situation, fenced, settings.dtS).fly(plan.manoeuvre).breaches, Vector.empty)
 
   test("without the vector module the same candidates are flown one after the other"):
     val settings = PlannerSettings(blocksPerSlice = 2)
@@ -108,8 +108,8 @@ class PlannerSuite extends munit.FunSuite:
     assertEquals(short.orBetter(long).cost, better.cost)
     assertEquals(short.orBetter(long).candidates, short.candidates + long.candidates)
 
-  test("a course shifted by a part of a step is met in between"):
-    val course = Course(IArray(0f, 1f, 2f), IArray(5f, 5f, 5f))
-    assertEquals(course.shifted(0.05, 0.1).turnRates.toSeq, Seq(0.5f, 1.5f, 2f))
-    assertEquals(course.shifted(0.1, 0.1).turnRates.toSeq, Seq(1f, 2f, 2f))
-    assertEquals(course.shifted(7, 0.1).turnRates.toSeq, Seq(2f, 2f, 2f))
+  test("a manoeuvre shifted by a part of a step is met in between"):
+    val manoeuvre = Manoeuvre(IArray(0f, 1f, 2f), IArray(5f, 5f, 5f))
+    assertEquals(manoeuvre.shifted(0.05, 0.1).turnRates.toSeq, Seq(0.5f, 1.5f, 2f))
+    assertEquals(manoeuvre.shifted(0.1, 0.1).turnRates.toSeq, Seq(1f, 2f, 2f))
+    assertEquals(manoeuvre.shifted(7, 0.1).turnRates.toSeq, Seq(2f, 2f, 2f))

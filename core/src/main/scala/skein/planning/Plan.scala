@@ -1,20 +1,20 @@
 package skein.planning
 
 /** A sequence of actions: the turn rate, rad/s, and the commanded speed, m/s, of each step. */
-final case class Course(turnRates: IArray[Float], speeds: IArray[Float]):
+final case class Manoeuvre(turnRates: IArray[Float], speeds: IArray[Float]):
   require(turnRates.length == speeds.length, "a turn rate and a speed per step")
 
   def steps: Int = turnRates.length
 
   /** What is left of it when time has passed; its end is held. Steps are met in parts: actions are interpolated. */
-  def shifted(elapsedS: Double, dtS: Double): Course =
-    Course(Course.shifted(turnRates, elapsedS / dtS), Course.shifted(speeds, elapsedS / dtS))
+  def shifted(elapsedS: Double, dtS: Double): Manoeuvre =
+    Manoeuvre(Manoeuvre.shifted(turnRates, elapsedS / dtS), Manoeuvre.shifted(speeds, elapsedS / dtS))
 
-object Course:
-  def straight(speed: Double, steps: Int): Course = steady(0, speed, steps)
+object Manoeuvre:
+  def straight(speed: Double, steps: Int): Manoeuvre = steady(0, speed, steps)
 
-  def steady(turnRate: Double, speed: Double, steps: Int): Course =
-    Course(IArray.fill(steps)(turnRate.toFloat), IArray.fill(steps)(speed.toFloat))
+  def steady(turnRate: Double, speed: Double, steps: Int): Manoeuvre =
+    Manoeuvre(IArray.fill(steps)(turnRate.toFloat), IArray.fill(steps)(speed.toFloat))
 
   private[planning] def shifted(values: IArray[Float], by: Double): IArray[Float] =
     val last  = values.length - 1
@@ -38,16 +38,16 @@ final case class Search(
     speedSds: IArray[Float]
 )
 
-/** The best course found so far, and where to look for better ones. Immutable.
+/** The best manoeuvre found so far, and where to look for better ones. Immutable.
   *
   * @param cost
-  *   infinite while the course was not tried in this situation
+  *   infinite while the manoeuvre was not tried in this situation
   * @param slices
   *   searched so far
   * @param candidates
   *   tried so far
   */
-final case class Plan(course: Course, cost: Float, search: Search, slices: Int, candidates: Long):
+final case class Plan(manoeuvre: Manoeuvre, cost: Float, search: Search, slices: Int, candidates: Long):
 
   /** What `other` found, where that is better; on a tie this one. Counts what both have tried. */
   def orBetter(other: Plan): Plan =

@@ -1,27 +1,28 @@
 package skein.planning
 
-import skein.vehicle.LagModel
+import skein.vehicle.ReducedModel
 
-/** Flies one course in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
+/** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
   * plan is told to others.
   *
-  * Velocities follow commands with a first-order lag, v' = (gain · command − v) / lag, integrated exactly over each
-  * step, in which the command stands: the heading has turned at the step's beginning.
+  * Velocities follow commands as [[skein.vehicle.ReducedModel]] says, a piece per step and alike in all directions:
+  * v' = (gain · command − v) / lag − drag · s · v with the speed s at the step's beginning, integrated exactly over the
+  * step, in which the command stands: the heading has turned at its beginning.
   */
-final class CourseRollout(situation: Situation, objective: Objective, dtS: Double):
-  import CourseRollout.*
+final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Double):
+  import ManoeuvreRollout.*
 
-  /** What a course comes to. */
-  def fly(course: Course): Flown =
+  /** What a manoeuvre comes to. */
+  def fly(manoeuvre: Manoeuvre): Flown =
     val own      = Flyer(situation.own, situation.response, dtS)
-    val steps    = course.steps
+    val steps    = manoeuvre.steps
     val (xs, ys) = (Array.ofDim[Double](steps), Array.ofDim[Double](steps))
     val before   = Array.ofDim[Double](steps) // the heading commanded before the step
     var heading  = situation.headingRad
     var cost     = 0.0
     var breaches = Vector.empty[Breached]
     for step <- 0 until steps do
-      val (turnRate, speed) = (course.turnRates(step).toDouble, course.speeds(step).toDouble)
+      val (turnRate, speed) = (manoeuvre.turnRates(step).toDouble, manoeuvre.speeds(step).toDouble)
       before(step) = heading
       heading += turnRate * (if step == 0 then situation.sinceDecisionS else dtS)
       own.fly(speed * math.cos(heading), speed * math.sin(heading))
@@ -79,7 +80,7 @@ final class CourseRollout(situation: Situation, objective: Objective, dtS: Doubl
     distances.sum * dtS * objective.distance + least * objective.closest + end * objective.carried -
       (if least < objective.captureRadius then objective.capture else 0)
 
-object CourseRollout:
+object ManoeuvreRollout:
   /** What one step costs that breaks a hard limit. */
   val Breach = 1000.0
 
@@ -108,16 +109,18 @@ object CourseRollout:
     val length = math.sqrt(u * u + w * w + Tiny)
     ((u * c - w * s) / length, (u * s + w * c) / length)
 
-  private final class Flyer(start: Motion, response: LagModel, dtS: Double):
-    var x             = start.x
-    var y             = start.y
-    var vx            = start.vx
-    var vy            = start.vy
-    private val left  = math.exp(-dtS / response.lagS)
-    private val glide = response.lagS * (1 - left)
+  private final class Flyer(start: Motion, response: ReducedModel, dtS: Double):
+    var x  = start.x
+    var y  = start.y
+    var vx = start.vx
+    var vy = start.vy
 
     def fly(commandedX: Double, commandedY: Double): Unit =
-      val (wantedX, wantedY) = (response.gain * commandedX, response.gain * commandedY)
+      val rate               = 1 / response.lagS + response.dragPerM * math.hypot(vx, vy)
+      val left               = math.exp(-rate * dtS)
+      val glide              = (1 - left) / rate
+      val reached            = response.gain / (response.lagS * rate)
+      val (wantedX, wantedY) = (reached * commandedX, reached * commandedY)
       x += wantedX * dtS + (vx - wantedX) * glide
       y += wantedY * dtS + (vy - wantedY) * glide
       vx = wantedX + (vx - wantedX) * left
