@@ -8,8 +8,13 @@ import scala.concurrent.duration.FiniteDuration
 import skein.loop.LoopKind
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, VehicleModel}
 
-/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network. */
+/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
+  *
+  * @param model
+  *   by which `predictive` predicts; absent: the whole quadrotor
+  */
 final case class FlySettings(
     loops: List[LoopKind],
     links: List[LatencyProfile],
@@ -17,8 +22,12 @@ final case class FlySettings(
     period: Span,
     seed: Long,
     pairs: Int,
-    asPublished: Boolean
+    asPublished: Boolean,
+    model: Option[ReducedModel] = None
 ) derives ConfigReader:
+
+  /** By which `predictive` carries the readings of a vehicle forward. */
+  def vehicleModel: VehicleModel[?] = model.fold(QuadrotorModel.AirSim)(ReducedVehicleModel(_))
 
   /** The flights, the truth first. Their links' seeds differ, so that no two flights meet the same delays. */
   def plans: Vector[FlightPlan] =
@@ -77,6 +86,9 @@ object FlySettings:
 
   private given ConfigReader[Span] =
     ConfigReader[FiniteDuration].map(duration => Span.ofNanos(duration.toNanos))
+
+  /** A model file's path. */
+  private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 
