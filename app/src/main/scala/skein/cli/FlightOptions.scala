@@ -5,6 +5,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import skein.experiment.FlySettings
+import skein.policy.TeamScenario
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
@@ -20,14 +21,14 @@ final case class FlightOptions(
     period: Option[String],
     @arg(doc = "of every random choice")
     seed: Option[Long],
+    @arg(doc = "duel, surround, formation or crossing")
+    scenario: Option[String],
+    @arg(doc = "of a surround, formation or crossing")
+    vehicles: Option[Int],
     @arg(doc = "duels side by side, two vehicles each")
     pairs: Option[Int],
     @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
     asPublished: Flag,
-    @arg(doc =
-      "a model file of `skein identify` by which `predictive` predicts; without it, the whole quadrotor"
-    )
-    model: Option[String],
     @arg(doc = "a HOCON file with settings of skein.fly")
     config: Option[String]
 ):
@@ -41,16 +42,16 @@ final case class FlightOptions(
 
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
-    Seq(
+    (Seq(
       "loops"        -> strings(loop),
       "links"        -> strings(link),
       "duration"     -> duration,
       "period"       -> period,
       "seed"         -> seed,
+      "scenario"     -> scenario,
       "pairs"        -> pairs,
-      "model"        -> model,
       "as-published" -> Option.when(asPublished.value)(true)
-    ).foldLeft(ConfigFactory.empty):
+    ) ++ TeamScenario.names.map(name => s"$name.vehicles" -> vehicles)).foldLeft(ConfigFactory.empty):
       case (config, (key, Some(value))) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
       case (config, _) => config

@@ -11,7 +11,6 @@ object Main:
     LatencyCommand,
     ReportCommand,
     ExportCommand,
-    IdentifyCommand,
     ReplayCommand,
     TortureCommand
   )

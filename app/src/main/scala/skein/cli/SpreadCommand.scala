@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{ParserForClass, arg}
 import skein.experiment.VirtualFlights
-import skein.report.{FlightSummary, SpreadTable}
+import skein.report.{FlightSummary, SpreadTable, TeamFlights, TeamTables}
 
 /** Options of `./skein spread`. */
 final case class SpreadOptions(
@@ -32,4 +32,8 @@ object SpreadCommand
         if count % (plans.size / 20).max(1) == 0 then
           Console.err.println(s"$count of ${plans.size} flights have landed")
         FlightSummary.of(flight.recorder.recording)
-    yield Console.out.println(SpreadTable.of(flown).render)
+      duels = flown.filter(_.team.isEmpty)
+      teams = TeamFlights.of(flown)
+    yield
+      if duels.nonEmpty then Console.out.println(SpreadTable.of(duels).render)
+      teams.foreach(flights => Console.out.println(TeamTables.spread(flights).render))

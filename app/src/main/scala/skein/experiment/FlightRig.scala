@@ -50,7 +50,7 @@ final class FlightRigs(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  val scenario: Scenario = Scenario.duels(settings.pairs, settings.asPublished)
+  val scenario: Scenario = settings.agents
 
   /** What a recording of this flight begins with. */
   def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
@@ -63,7 +63,7 @@ final class FlightRigs(
       settings.duration,
       clockKind,
       simulator.fold("built-in")(_.toString),
-      if settings.asPublished then "duel, as published" else "duel",
+      if settings.asPublished then s"${settings.scenario}, as published" else settings.scenario,
       FlightRigs.version,
       clock.now()
     ),
@@ -92,7 +92,7 @@ final class FlightRigs(
         )
         _ <- client.ping()
       yield
-        val timely       = LoopSettings.every(settings.period).copy(model = _ => settings.vehicleModel)
+        val timely       = LoopSettings.every(settings.period)
         val loopSettings = if settings.asPublished then timely.asPublished else timely
         val team         = Team(scenario, crafts, clock, watch, loopSettings)
         val startedAt    = clock.now()

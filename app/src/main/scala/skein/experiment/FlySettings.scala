@@ -6,14 +6,18 @@ import pureconfig.*
 import pureconfig.error.CannotConvert
 import scala.concurrent.duration.FiniteDuration
 import skein.loop.LoopKind
+import skein.policy.{Scenario, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
-  * @param model
-  *   by which `predictive` predicts; absent: the whole quadrotor
+  * @param pairs
+  *   duels side by side
+  * @param asPublished
+  *   of the duel alone
+  * @param scenario
+  *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -23,11 +27,17 @@ final case class FlySettings(
     seed: Long,
     pairs: Int,
     asPublished: Boolean,
-    model: Option[ReducedModel] = None
+    scenario: String = FlySettings.Duel,
+    surround: TeamScenario.Surround = TeamScenario.Surround(),
+    formation: TeamScenario.Formation = TeamScenario.Formation(),
+    crossing: TeamScenario.Crossing = TeamScenario.Crossing()
 ) derives ConfigReader:
 
-  /** By which `predictive` carries the readings of a vehicle forward. */
-  def vehicleModel: VehicleModel[?] = model.fold(QuadrotorModel.AirSim)(ReducedVehicleModel(_))
+  /** Absent for the duel. */
+  def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
+
+  /** Who flies. */
+  def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished))(_.scenario)
 
   /** The flights, the truth first. Their links' seeds differ, so that no two flights meet the same delays. */
   def plans: Vector[FlightPlan] =
@@ -54,6 +64,7 @@ final case class FlightPlan(id: String, loop: LoopKind, link: LatencyProfile, se
       copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
 
 object FlySettings:
+  val Duel = "duel"
 
   /** Reads `skein.fly`.
     *
@@ -80,15 +91,27 @@ object FlySettings:
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
       Option.when(
         settings.pairs < 1 || settings.pairs > 50
-      )(s"pairs: expected 1 to 50, came ${settings.pairs}")
-    ).flatten
+      )(s"pairs: expected 1 to 50, came ${settings.pairs}"),
+      Option.when(settings.scenario != Duel && settings.team.isEmpty)(
+        s"scenario: expected $Duel or one of ${TeamScenario.names.mkString(", ")}, came '${settings.scenario}'"
+      ),
+      Option.when(settings.scenario != Duel && settings.asPublished)(
+        s"as-published: expected with the scenario $Duel, came with '${settings.scenario}'"
+      )
+    ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys)
     Either.cond(mistakes.isEmpty, settings, mistakes.mkString("skein.fly.", "\nskein.fly.", ""))
+
+  /** A mistake that begins with a setting's name, by its key in the configuration. */
+  private def inKeys(mistake: String): String =
+    val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
+    name.replaceAll("([A-Z])", "-$1").toLowerCase + rest
+
+  private given ConfigReader[TeamScenario.Surround]  = ConfigReader.derived
+  private given ConfigReader[TeamScenario.Formation] = ConfigReader.derived
+  private given ConfigReader[TeamScenario.Crossing]  = ConfigReader.derived
 
   private given ConfigReader[Span] =
     ConfigReader[FiniteDuration].map(duration => Span.ofNanos(duration.toNanos))
-
-  /** A model file's path. */
-  private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 

@@ -1,27 +1,24 @@
 package skein.experiment
 
-import scala.util.Try
 import skein.loop.LoopKind
-import skein.policy.Scenario
+import skein.policy.{Scenario, TeamScenario}
 import skein.record.{Parameter, Recording}
 import skein.signal.LatencyProfile
-import skein.vehicle.ReducedModel
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  def scenario: Scenario = Scenario.duels(settings.pairs, settings.asPublished)
+  def scenario: Scenario = settings.agents
 
 object RecordedPlan:
   private val Pairs       = "pairs"
   private val AsPublished = "asPublished"
-  private val Model       = "model"
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings): Seq[Parameter] =
-    Seq(
-      Parameter(Pairs, settings.pairs.toString),
-      Parameter(AsPublished, settings.asPublished.toString)
-    ) ++ settings.model.map(model => Parameter(Model, textOf(model)))
+    settings.team match
+      case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
+      case None       =>
+        Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
 
   /** Reads it back.
     *
@@ -37,34 +34,26 @@ object RecordedPlan:
         case None        => Left(s"the recording has no parameter '$name'")
         case Some(value) => parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
 
+    def flown(settings: FlySettings): Either[String, FlySettings] =
+      if TeamScenario.names.contains(flight.scenario) then
+        TeamScenario
+          .of(flight.scenario, recording.heading.parametersOf(flight.scenario))
+          .map: team =>
+            val named = settings.copy(scenario = flight.scenario)
+            team match
+              case surround: TeamScenario.Surround   => named.copy(surround = surround)
+              case formation: TeamScenario.Formation => named.copy(formation = formation)
+              case crossing: TeamScenario.Crossing   => named.copy(crossing = crossing)
+      else
+        for
+          pairs       <- parameter(Pairs, "a number from 1")(_.toIntOption.filter(_ > 0))
+          asPublished <- parameter(AsPublished, "true or false")(_.toBooleanOption)
+        yield settings.copy(pairs = pairs, asPublished = asPublished)
+
     for
-      pairs       <- parameter(Pairs, "a number from 1")(_.toIntOption.filter(_ > 0))
-      asPublished <- parameter(AsPublished, "true or false")(_.toBooleanOption)
-      model       <- parameters.get(Model) match
-        case None    => Right(None)
-        case Some(_) => parameter(Model, "five numbers")(modelOf).map(Some(_))
-      loop <- LoopKind.parse(flight.loop)
-      link <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-    yield RecordedPlan(
-      FlySettings(
-        List(loop),
-        List(link),
-        flight.duration,
-        flight.period,
-        flight.seed,
-        pairs,
-        asPublished,
-        model
-      ),
-      FlightPlan(flight.id, loop, link, flight.seed)
-    )
-
-  /** Gain, lag, dead time, lag across, drag. A double's shortest text reads back as the same double. */
-  private def textOf(model: ReducedModel): String =
-    Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
-
-  private def modelOf(text: String): Option[ReducedModel] =
-    text.split(' ').map(_.toDoubleOption) match
-      case Array(Some(gain), Some(lag), Some(deadTime), Some(turnLag), Some(drag)) =>
-        Try(ReducedModel(gain, lag, deadTime, turnLag, drag)).toOption
-      case _ => None
+      loop     <- LoopKind.parse(flight.loop)
+      link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      settings <- flown(
+        FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, 1, false)
+      )
+    yield RecordedPlan(settings, FlightPlan(flight.id, loop, link, flight.seed))

@@ -14,7 +14,10 @@ final case class Figure(name: String, title: String, caption: String, drawing: D
 object Figure:
 
   /** The pictures that the flights give; those without anything to show are left out. */
-  def all(set: FlightSet): Vector[Figure] = Vector(
+  def all(set: FlightSet): Vector[Figure] =
+    duels(set.duels) ++ set.teams.flatMap(ofTeam) ++ ofDecisions(set)
+
+  private def duels(set: FlightSet): Vector[Figure] = Vector(
     TrajectoryFigure(set).map: drawing =>
       Figure(
         "trajectories",
@@ -30,7 +33,25 @@ object Figure:
         "Horizontal distance between pursuer and evader at equal instants of the simulator's clock. Right of each " +
           "panel, mean and range over the last 10 s: ours as coloured discs, the paper's as black diamonds.",
         drawing
-      ),
+      )
+  ).flatten
+
+  private def ofTeam(flown: TeamFlights): Vector[Figure] = Vector(
+    Figure(
+      s"${flown.scenario}-trajectories",
+      s"${flown.scenario.capitalize}: trajectories",
+      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends.",
+      TeamFigure.trajectories(flown)
+    ),
+    Figure(
+      s"${flown.scenario}-measure",
+      s"${flown.scenario.capitalize}: ${flown.flights.head.result.curveName}",
+      "At equal instants of the simulator's clock, one panel per link, the paused truth in each.",
+      TeamFigure.measure(flown)
+    )
+  )
+
+  private def ofDecisions(set: FlightSet): Vector[Figure] = Vector(
     ObservationFigure(set).map: drawing =>
       Figure(
         "observations",

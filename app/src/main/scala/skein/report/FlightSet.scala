@@ -16,6 +16,13 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** The flight that the others are measured against. */
   val truth: Option[FlightSummary] = flights.find(_.flight.loop == "paused")
 
+  /** Duels alone. */
+  def duels: FlightSet =
+    new FlightSet(flights.filter(_.team.isEmpty), twins.filter(_.live.team.isEmpty))
+
+  /** Teams' flights by scenario. */
+  val teams: Vector[TeamFlights] = TeamFlights.of(flights)
+
   /** Mean distance of the last 10 s against the truth's, as a share of the truth's; absent for the truth itself. */
   def deviation(flight: FlightSummary): Option[Double] =
     for

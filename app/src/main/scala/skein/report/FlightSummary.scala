@@ -10,7 +10,9 @@ import skein.units.*
   * @param roundTripsMs
   *   of the link's own samples where there are any, else of the readings
   * @param distance
-  *   between the first pursuer and the first evader; absent if they were not both seen
+  *   in a duel, between the first pursuer and the first evader; absent if they were not both seen
+  * @param team
+  *   absent for a duel
   */
 final case class FlightSummary(
     flight: Flight,
@@ -22,10 +24,23 @@ final case class FlightSummary(
     decisions: Int,
     commands: Int,
     events: Map[EventKind, Int],
-    aborted: Option[String]
+    aborted: Option[String],
+    team: Option[TeamResult] = None
 ):
   /** Time flown on the simulator's clock, s. */
-  def flownS: Double = distance.fold(0.0)(_.points.last._1)
+  def flownS: Double =
+    team.map(_.curve.last._1).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
+
+  /** What stands for the flight when it is compared with others, m: of a duel the mean distance over the last 10 s, of a
+    * team its first measure.
+    */
+  def headlineM: Option[Double] = team match
+    case Some(result) => result.measures.head.value
+    case None         => distance.map(_.lastTenSeconds.mean)
+
+  /** The paper's flight of this loop over this link; it published duels alone. */
+  def published: Option[Published.Flight] =
+    if team.isDefined then None else Published.flight(flight.loop, flight.link)
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)
 
@@ -45,11 +60,12 @@ object FlightSummary:
 
   def of(recording: Recording): FlightSummary =
     val tracks = Track.of(recording)
+    val team   = TeamResult.of(recording, tracks)
     FlightSummary(
       recording.flight,
       tracks,
       for
-        pursuer <- tracks.find(_.role == "pursuer")
+        pursuer <- tracks.find(_.role == "pursuer") if team.isEmpty
         evader  <- tracks.find(_.role == "evader")
         curve   <- DistanceCurve.between(pursuer, evader)
       yield curve,
@@ -59,7 +75,8 @@ object FlightSummary:
       recording.decisions.size,
       recording.commands.size,
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
-      recording.events.find(_.kind == EventKind.Aborted).map(_.detail)
+      recording.events.find(_.kind == EventKind.Aborted).map(_.detail),
+      team
     )
 
   private def roles(recording: Recording): Vector[RoleSummary] =

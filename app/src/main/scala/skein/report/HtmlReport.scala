@@ -21,7 +21,16 @@ object HtmlReport:
       body(
         h1(heading(set)),
         p(cls := "lead", abstractOf(set)),
-        section(h2("Results"), table(SummaryTables.distances(set)), p(cls := "note", resultsNote)),
+        Option.when(set.duels.flights.nonEmpty)(
+          section(h2("Results"), table(SummaryTables.distances(set.duels)), p(cls := "note", resultsNote))
+        ),
+        set.teams.map(flown =>
+          section(
+            h2(s"Results: ${flown.scenario}"),
+            table(TeamTables.flights(flown)),
+            p(cls := "note", TeamTables.note(flown.flights.head.result.scenario))
+          )
+        ),
         figures.filterNot(_.name == TwinFigure.name).map(figureOf),
         twins(set, figures),
         section(

@@ -3,7 +3,7 @@ package skein.report
 import skein.plot.*
 
 /** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the evader's
-  * decisions and a pale one for the pursuer's. Black diamonds are the paper's means; in the charts of ages,
+  * decisions and a pale one for the pursuer's, or by a team's roles. Black diamonds are the paper's means; in the charts of ages,
   * outlines are the true ages.
   */
 object ObservationFigure:
@@ -16,7 +16,10 @@ object ObservationFigure:
   def apply(set: FlightSet): Option[Drawing] =
     val flights = set.flights.filter(_.roles.nonEmpty)
     Option.when(flights.nonEmpty):
-      Drawing.stacked(Drawing.grid(Observation.values.toVector.map(panel(_, flights)), columns = 2), legend)
+      Drawing.stacked(
+        Drawing.grid(Observation.values.toVector.map(panel(_, flights)), columns = 2),
+        legend(flights)
+      )
 
   private def panel(observation: Observation, flights: Vector[FlightSummary]): Drawing =
     val bars    = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
@@ -67,7 +70,7 @@ object ObservationFigure:
   )
 
   private def bar(observation: Observation, summary: FlightSummary, role: RoleSummary): Bar =
-    val published = Published.flight(summary.flight.loop, summary.flight.link)
+    val published = summary.published
     val trueAge   = observation match
       case Observation.OwnAge      => role.ownTrueAgeMs
       case Observation.OpponentAge => role.opponentTrueAgeMs
@@ -102,12 +105,13 @@ object ObservationFigure:
           left + widthOf(one).max(44) + (if one.flight.link == next.flight.link then loopGap else linkGap)
       .toVector
 
-  private def legend: Drawing =
-    val grey = Colour(0x666666)
-    Legend(
-      46,
-      Legend.box("deciding for the evader", grey),
-      Legend.box("for the pursuer", grey.tinted(palePart)),
+  private def legend(flights: Vector[FlightSummary]): Drawing =
+    val grey             = Colour(0x666666)
+    def role(place: Int) = flights.flatMap(_.roles.lift(place)).map(_.role).distinct.mkString(", ")
+    val full             = Legend.box(s"deciding for the ${role(0)}", grey)
+    val pale             =
+      Option.when(role(1).nonEmpty)(Legend.box(s"for the ${role(1)}", grey.tinted(palePart)))
+    val items = Seq(full) ++ pale ++ Seq(
       Legend.Item("paper", 8, at => Vector(Looks.diamond(at.moved(4, 0)))),
       Legend.Item(
         "true age, by the simulator's clock",
@@ -115,5 +119,6 @@ object ObservationFigure:
         at => Vector(Shape.outline(at.x, at.y - 6, at.x + 12, at.y + 6, trueAgeLine(grey)))
       )
     )
+    Legend(46, items*)
 
   private def trueAgeLine(colour: Colour): Stroke = Stroke(colour, 0.9, Vector(2.5, 1.8))

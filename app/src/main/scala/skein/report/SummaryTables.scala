@@ -26,7 +26,7 @@ object SummaryTables:
               set.deviation(summary).fold("")(share => s"${signed(share * 100)} %")
             )
           case None => Vector("0", "", "", "", "", "", "")
-        val paper = Published.flight(summary.flight.loop, summary.flight.link).flatMap(_.distance) match
+        val paper = summary.published.flatMap(_.distance) match
           case Some(published) =>
             Vector(
               fixed(published.mean, 2),
@@ -49,7 +49,7 @@ object SummaryTables:
         summary <- set.flights
         role    <- summary.roles
       yield
-        val published = Published.flight(summary.flight.loop, summary.flight.link).map(_.observedMs)
+        val published = summary.published.map(_.observedMs)
         val observed  = Observation.values.toVector.flatMap: observation =>
           Vector(
             role.observedMs.get(observation).fold(""): ms =>
@@ -73,17 +73,18 @@ object SummaryTables:
           kinds.map(summary.count(_).toString)
     )
 
-  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, evader's
-    * and pursuer's, and how far apart they converged.
+  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
+    * role, and how far apart they converged.
     */
   def twins(set: FlightSet): TextTable =
+    val columns = Twin.columns(set.twins)
     TextTable(
-      Vector("<loop", "<link", "seed", "<virtual") ++ Twin.columns.map(_._3) ++
+      Vector("<loop", "<link", "seed", "<virtual") ++ columns.map(_._3) ++
         Vector("live m", "virtual m", "difference", "<flown otherwise"),
       set.twins.map: twin =>
         val flight = twin.live.flight
         Vector(flight.loop, flight.link, flight.seed.toString, twin.seeds) ++
-          Twin.columns.map((role, quantity, _) =>
+          columns.map((role, quantity, _) =>
             twin.find(role, quantity).fold("")(one => fixed(one.distance, 2))
           ) ++
           twin.converged.fold(Vector("", ""))((live, virtual) => Vector(fixed(live, 2), fixed(virtual, 2))) ++
@@ -92,10 +93,18 @@ object SummaryTables:
 
   /** All of them, for the terminal. */
   def text(set: FlightSet): String =
-    (Vector(
-      "Distance between pursuer and evader, ours and the paper's",
-      distances(set).render,
-      "",
+    val duels =
+      if set.duels.flights.isEmpty then Vector.empty
+      else
+        Vector("Distance between pursuer and evader, ours and the paper's", distances(set.duels).render, "")
+    val teams = set.teams.flatMap(flown =>
+      Vector(
+        s"${flown.scenario.capitalize}: ${TeamTables.note(flown.flights.head.result.scenario)}",
+        TeamTables.flights(flown).render,
+        ""
+      )
+    )
+    (duels ++ teams ++ Vector(
       "What the decisions were made on, ms: mean/p50/p99, ages by arrival as published; true ages by the simulator's clock",
       observations(set).render,
       "",
@@ -106,8 +115,8 @@ object SummaryTables:
 
   /** How to read [[twins]]. */
   val twinsNote: String =
-    "Kolmogorov-Smirnov distance between live and virtual decisions (evader's, pursuer's) of the age of the own data and " +
-      "of the time since the own last move; mean distance of the last 10 s"
+    "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data and " +
+      "of the time since the own last move; mean distance of the last 10 s, or a team's first measure"
 
   def ofRole(published: (evader: Double, pursuer: Double), role: String): Double =
     if role == "pursuer" then published.pursuer else published.evader

@@ -23,12 +23,12 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
   def find(role: String, quantity: String): Option[Compared] =
     compared.find(one => one.role == role && one.quantity == quantity)
 
-  /** Mean distances over the last 10 s, m: live, and the twins' mean. */
+  /** What stands for the flights, m (see [[FlightSummary.headlineM]]): live, and the twins' mean. */
   def converged: Option[(Double, Double)] =
     for
-      ours   <- live.distance
-      theirs <- Distribution.of(virtual.flatMap(_.distance).map(_.lastTenSeconds.mean))
-    yield (ours.lastTenSeconds.mean, theirs.mean)
+      ours   <- live.headlineM
+      theirs <- Distribution.of(virtual.flatMap(_.headlineM))
+    yield (ours, theirs.mean)
 
   /** How much further apart the live flight ended, as a share of the twins' distance. */
   def difference: Option[Double] = converged.map((ours, theirs) => ours / theirs - 1)
@@ -69,10 +69,10 @@ object Twin:
   )
 
   /** Roles and quantities, in the order in which they are shown, and a short name of each. */
-  val columns: Vector[(String, String, String)] =
+  def columns(twins: Vector[Twin]): Vector[(String, String, String)] =
     for
       (quantity, short) <- Vector(Age -> "age", SinceMove -> "move")
-      role              <- Vector("evader", "pursuer")
+      role              <- twins.flatMap(_.live.roles).map(_.role).distinct.sorted
     yield (role, quantity, s"KS $short ${role.head}.")
 
   /** Pairs every live flight with the virtual flights of its loop and link, if there are any. */

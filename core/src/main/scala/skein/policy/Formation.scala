@@ -17,12 +17,15 @@ final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Dou
 
 /** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is, the second
   * to the right; it turns as the leader moves along, and the slot's velocity follows from both: the leader's velocity
-  * plus turn rate × offset, so that the outer vehicles of a turn fly faster and the inner ones slower.
+  * plus turn rate × offset, so that the outer vehicles of a turn fly faster and the inner ones slower. What a vehicle
+  * that lags loses in a turn is commanded on top: lag × turn rate × the slot's velocity.
   *
   * @param aheadM
   *   of the slot before the leader
   * @param rightM
   *   of the slot to the right of the leader
+  * @param lagS
+  *   time constant with which vehicles follow their commands
   */
 final case class KeepSlot(
     leader: Int,
@@ -30,6 +33,7 @@ final case class KeepSlot(
     aheadM: Double,
     rightM: Double,
     mostMps: Double,
+    lagS: Double,
     pursuit: Pursuit = Pursuit()
 ) extends TeamPolicy:
 
@@ -41,23 +45,25 @@ final case class KeepSlot(
     val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
     // How fast the place on the circuit moves when the leader flies beside it.
     val (nearNorth, nearEast) = circuit.point(place)
-    val toTheRightM = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
-    val curvature   = circuit.curvaturePerM(place)
-    val alongMps    = seen.northMps(leader) * cos + seen.eastMps(leader) * sin
-    val turnRadps   = alongMps * curvature / (1 - curvature * toTheRightM).max(KeepSlot.LeastShare)
+    val toTheRightM  = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
+    val curvature    = circuit.curvaturePerM(place)
+    val alongMps     = seen.northMps(leader) * cos + seen.eastMps(leader) * sin
+    val turnRadps    = alongMps * curvature / (1 - curvature * toTheRightM).max(KeepSlot.LeastShare)
+    val slotNorthMps = seen.northMps(leader) - turnRadps * eastOffset
+    val slotEastMps  = seen.eastMps(leader) + turnRadps * northOffset
     Course.of(
       pursuit.along(
         seen.northM(leader) + northOffset,
-        seen.northMps(leader) - turnRadps * eastOffset,
+        slotNorthMps,
         seen.northM(self),
         seen.northMps(self)
-      ),
+      ) - lagS * turnRadps * slotEastMps,
       pursuit.along(
         seen.eastM(leader) + eastOffset,
-        seen.eastMps(leader) + turnRadps * northOffset,
+        slotEastMps,
         seen.eastM(self),
         seen.eastMps(self)
-      ),
+      ) + lagS * turnRadps * slotNorthMps,
       mostMps,
       seen.headingRad
     )

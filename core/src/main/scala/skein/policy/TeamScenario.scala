@@ -69,6 +69,8 @@ object TeamScenario:
     *   of the circuit; its half turns have the radius `radiusM`
     * @param mostMps
     *   the fastest a follower is commanded
+    * @param lagS
+    *   time constant with which vehicles follow their commands; AirSim's at low altitude take about 1.5 s
     */
   final case class Formation(
       vehicles: Int = 5,
@@ -77,6 +79,7 @@ object TeamScenario:
       mostMps: Double = 10,
       straightM: Double = 50,
       radiusM: Double = 20,
+      lagS: Double = 1.5,
       altitudeM: Double = 5
   ) extends TeamScenario
 
@@ -100,14 +103,14 @@ object TeamScenario:
   final case class Crossing(
       vehicles: Int = 20,
       streams: Int = 4,
-      spacingM: Double = 10,
+      spacingM: Double = 6,
       entryM: Double = 25,
       laneM: Double = 4,
-      cruiseMps: Double = 5,
-      mostMps: Double = 8,
+      cruiseMps: Double = 8,
+      mostMps: Double = 10,
       minimumM: Double = 2,
-      marginM: Double = 1.5,
-      horizonS: Double = 4,
+      marginM: Double = 1,
+      horizonS: Double = 3,
       altitudeM: Double = 5
   ) extends TeamScenario
 
@@ -116,7 +119,7 @@ object TeamScenario:
 
   val names: Seq[String] = Seq("surround", "formation", "crossing")
 
-  private val MayBeZero = Set("laneM", "marginM", "straightM")
+  private val MayBeZero = Set("laneM", "marginM", "straightM", "lagS")
 
   /** Reads settings back.
     *
@@ -170,7 +173,7 @@ object TeamScenario:
 
   private def formation(settings: Formation): Scenario =
     val track  = circuit(settings)
-    val ahead  = settings.leaderMps * LagS
+    val ahead  = settings.leaderMps * settings.lagS
     val leader = agent(
       "Leader",
       Role.Leader,
@@ -182,7 +185,7 @@ object TeamScenario:
       LeadOnCircuit(track, settings.leaderMps, ahead)
     )
     Scenario(leader +: slots(settings).zipWithIndex.map: (slot, follower) =>
-      val policy = KeepSlot(0, track, slot._1, slot._2, settings.mostMps)
+      val policy = KeepSlot(0, track, slot._1, slot._2, settings.mostMps, settings.lagS)
       agent(
         s"Follower${follower + 1}",
         Role.Follower,
@@ -234,9 +237,6 @@ object TeamScenario:
   private def onLane(crossing: Crossing, headingRad: Double, alongM: Double): (Double, Double) =
     val (cos, sin) = (math.cos(headingRad), math.sin(headingRad))
     (alongM * cos - crossing.laneM * sin, alongM * sin + crossing.laneM * cos)
-
-  /** About as long as AirSim's vehicle takes to follow a command at low altitude, s. */
-  private val LagS = 1.5
 
   private def agent(
       name: String,

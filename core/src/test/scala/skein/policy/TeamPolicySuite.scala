@@ -80,19 +80,33 @@ class TeamPolicySuite extends munit.FunSuite:
     )
 
   test("a formation has no error on the straight"):
-    val formation = TeamScenario.Formation(straightM = 500)
+    val formation = TeamScenario.Formation(straightM = 500, lagS = 0.8)
     val flight    = TeamFlight(formation.scenario, lagS = 0.8)
     flight.fly(60)()
     assert(slotErrorsM(formation, flight).max < 0.01, slotErrorsM(formation, flight))
 
   test("a formation turns with its leader"):
-    val formation = TeamScenario.Formation(straightM = 0, radiusM = 30)
+    val formation = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = 0)
     val flight    = TeamFlight(formation.scenario, lagS = 0, stepS = 0.01)
     var worst     = 0.0
     flight.fly(10)()
     flight.fly(40)({ worst = worst.max(slotErrorsM(formation, flight).max) })
     // Without turn rate × offset in the slot's velocity it would be 0.6 m.
     assert(worst < 0.15, s"$worst m")
+
+  test("a formation of vehicles that lag turns with its leader when it knows by how much they do"):
+    def worstM(lagS: Double) =
+      val formation = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = lagS)
+      val scenario  = formation.scenario
+      // The leader flies the same way in both.
+      val leader = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = 1.5).scenario.agents.head
+      val flight = TeamFlight(Scenario(leader +: scenario.agents.tail), lagS = 1.5, stepS = 0.01)
+      var worst  = 0.0
+      flight.fly(30)()
+      flight.fly(20)({ worst = worst.max(slotErrorsM(formation, flight).max) })
+      worst
+    assert(worstM(1.5) < 0.2, s"${worstM(1.5)} m")
+    assert(worstM(0) > 0.5, s"${worstM(0)} m")
 
   private def headOn(sideM: Double, lagS: Double): TeamFlight =
     def one(name: String, north: Double, east: Double, heading: Double) = Agent(
