@@ -29,6 +29,10 @@ final case class FlightOptions(
     pairs: Option[Int],
     @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
     asPublished: Flag,
+    @arg(doc =
+      "a model file of `skein identify` by which `predictive` predicts; without it, the whole quadrotor"
+    )
+    model: Option[String],
     @arg(doc = "a HOCON file with settings of skein.fly")
     config: Option[String]
 ):
@@ -50,6 +54,7 @@ final case class FlightOptions(
       "seed"         -> seed,
       "scenario"     -> scenario,
       "pairs"        -> pairs,
+      "model"        -> model,
       "as-published" -> Option.when(asPublished.value)(true)
     ) ++ TeamScenario.names.map(name => s"$name.vehicles" -> vehicles)).foldLeft(ConfigFactory.empty):
       case (config, (key, Some(value))) =>

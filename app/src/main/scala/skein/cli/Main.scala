@@ -11,6 +11,7 @@ object Main:
     LatencyCommand,
     ReportCommand,
     ExportCommand,
+    IdentifyCommand,
     ReplayCommand,
     TortureCommand
   )

@@ -92,7 +92,7 @@ final class FlightRigs(
         )
         _ <- client.ping()
       yield
-        val timely       = LoopSettings.every(settings.period)
+        val timely       = LoopSettings.every(settings.period).copy(model = _ => settings.vehicleModel)
         val loopSettings = if settings.asPublished then timely.asPublished else timely
         val team         = Team(scenario, crafts, clock, watch, loopSettings)
         val startedAt    = clock.now()

@@ -9,6 +9,7 @@ import skein.loop.LoopKind
 import skein.policy.{Scenario, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
@@ -18,6 +19,8 @@ import skein.units.*
   *   of the duel alone
   * @param scenario
   *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
+  * @param model
+  *   by which `predictive` predicts; absent: the whole quadrotor
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -30,7 +33,8 @@ final case class FlySettings(
     scenario: String = FlySettings.Duel,
     surround: TeamScenario.Surround = TeamScenario.Surround(),
     formation: TeamScenario.Formation = TeamScenario.Formation(),
-    crossing: TeamScenario.Crossing = TeamScenario.Crossing()
+    crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
+    model: Option[ReducedModel] = None
 ) derives ConfigReader:
 
   /** Absent for the duel. */
@@ -38,6 +42,9 @@ final case class FlySettings(
 
   /** Who flies. */
   def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished))(_.scenario)
+
+  /** By which `predictive` carries the readings of a vehicle forward. */
+  def vehicleModel: VehicleModel[?] = model.fold(QuadrotorModel.AirSim)(ReducedVehicleModel(_))
 
   /** The flights, the truth first. Their links' seeds differ, so that no two flights meet the same delays. */
   def plans: Vector[FlightPlan] =
@@ -112,6 +119,9 @@ object FlySettings:
 
   private given ConfigReader[Span] =
     ConfigReader[FiniteDuration].map(duration => Span.ofNanos(duration.toNanos))
+
+  /** A model file's path. */
+  private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 

@@ -1,9 +1,11 @@
 package skein.experiment
 
+import scala.util.Try
 import skein.loop.LoopKind
 import skein.policy.{Scenario, TeamScenario}
 import skein.record.{Parameter, Recording}
 import skein.signal.LatencyProfile
+import skein.vehicle.ReducedModel
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
@@ -12,13 +14,15 @@ final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
 object RecordedPlan:
   private val Pairs       = "pairs"
   private val AsPublished = "asPublished"
+  private val Model       = "model"
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings): Seq[Parameter] =
-    settings.team match
+    val scenario = settings.team match
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
         Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
+    scenario ++ settings.model.map(model => Parameter(Model, textOf(model)))
 
   /** Reads it back.
     *
@@ -51,9 +55,22 @@ object RecordedPlan:
         yield settings.copy(pairs = pairs, asPublished = asPublished)
 
     for
-      loop     <- LoopKind.parse(flight.loop)
-      link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      loop  <- LoopKind.parse(flight.loop)
+      link  <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      model <- parameters.get(Model) match
+        case None    => Right(None)
+        case Some(_) => parameter(Model, "five numbers")(modelOf).map(Some(_))
       settings <- flown(
         FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, 1, false)
       )
-    yield RecordedPlan(settings, FlightPlan(flight.id, loop, link, flight.seed))
+    yield RecordedPlan(settings.copy(model = model), FlightPlan(flight.id, loop, link, flight.seed))
+
+  /** Gain, lag, dead time, lag across, drag. A double's shortest text reads back as the same double. */
+  private def textOf(model: ReducedModel): String =
+    Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
+
+  private def modelOf(text: String): Option[ReducedModel] =
+    text.split(' ').map(_.toDoubleOption) match
+      case Array(Some(gain), Some(lag), Some(deadTime), Some(turnLag), Some(drag)) =>
+        Try(ReducedModel(gain, lag, deadTime, turnLag, drag)).toOption
+      case _ => None

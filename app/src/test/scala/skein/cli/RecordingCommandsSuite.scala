@@ -1,12 +1,23 @@
 package skein.cli
 
+import com.typesafe.config.ConfigFactory
 import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
 import scala.util.Using
+import skein.experiment.{FlySettings, ModelFile, VirtualFlights}
+import skein.identify.Structure
+import skein.loop.LoopKind
 import skein.record.{MemoryRecorder, Recording}
 import skein.report.SyntheticFlight
+import skein.rollout.Reduced
+import skein.signal.LatencyProfile
+import skein.units.Span
+import skein.vehicle.{ReducedModel, ReducedVehicleModel}
 
 class RecordingCommandsSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 2.minutes
+
   private val recordings = FunFixture[Path](
     _ =>
       val folder = Files.createTempDirectory("flights")
@@ -36,6 +47,52 @@ class RecordingCommandsSuite extends munit.FunSuite:
     assertEquals((status, err), (0, ""))
     assert(text.linesIterator.exists(line => line.startsWith("stream") && line.contains("vpn")), text)
     assert(Files.exists(folder.resolve("report/report.html")))
+
+  private val flown = FunFixture[Path](
+    _ =>
+      val folder   = Files.createTempDirectory("flown")
+      val settings = FlySettings(
+        List(LoopKind.Stream),
+        List(LatencyProfile.vpn),
+        Span.ofSeconds(32),
+        Span.ofMillis(100),
+        seed = 5,
+        pairs = 1,
+        asPublished = false
+      )
+      assert(VirtualFlights.fly(settings, settings.plans, folder)((_, _) => ()).isRight)
+      folder
+    ,
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
+    folder =>
+      val (status, text, err) = run(IdentifyCommand, folder.resolve("stream-vpn.duckdb").toString)
+      assertEquals(status, 0, err)
+      assert(text.contains("position p50 m") && text.contains("drag-and-turn"), text)
+      assert(Files.size(folder.resolve("model.svg")) > 10000)
+      val file  = ModelFile.read(folder.resolve("model.conf").toString).fold(fail(_), identity)
+      val named = ReducedModel.AirSim
+      assertEquals(file.use, Structure.Drag)
+      assertEqualsDouble(file.model.gain, named.gain, 0.1, file.toString)
+      assertEqualsDouble(file.model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
+      assertEqualsDouble(file.model.deadTimeS, named.deadTimeS, 0.04, file.toString)
+      assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
+      val flags = ConfigFactory.parseString(s"skein.fly.model = \"${folder.resolve("model.conf")}\"")
+      val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
+      assertEquals(read.map(_.vehicleModel), Right(ReducedVehicleModel(file.model)))
+
+  recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
+    val broken =
+      Files.writeString(folder.resolve("broken.conf"), "skein.model { use = drag, drag { gain.value = 1 } }")
+    val (status, _, err) = run(SpreadCommand, "--seeds", "1", "--model", broken.toString)
+    assertEquals(status, 1)
+    assert(err.contains("lag-s"), err)
+    val (unfit, _, reason) = run(IdentifyCommand, folder.resolve("paused-none.duckdb").toString)
+    assertEquals(unfit, 1)
+    assert(reason.contains("expected"), reason)
 
   recordings.test("report without --out writes beside the first recording"): folder =>
     assertEquals(run(ReportCommand, folder.resolve("stream-vpn.duckdb").toString)._1, 0)

@@ -7,6 +7,7 @@ import skein.policy.Scenario
 import skein.record.*
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.ReducedModel
 
 /** Run = run = replay, for every loop. */
 class ReplaySimulation extends munit.FunSuite:
@@ -45,6 +46,15 @@ class ReplaySimulation extends munit.FunSuite:
     "every loop decides the same when it is flown again, and when its recording is decided upon again"
   ): folder =>
     check(settings, folder)
+
+  folder.test("so does a predictive flight by a reduced model, which the recording holds"): folder =>
+    check(
+      settings.copy(
+        loops = List(LoopKind.Predictive),
+        model = Some(ReducedModel.AirSim.copy(gain = 0.987654321))
+      ),
+      folder
+    )
 
   folder.test("so does a team of eight, as published, over a link of another kind"): folder =>
     val link =

@@ -10,7 +10,7 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
   val costs, weightSums                      = Array.ofDim[Float](size)
 
   private var rollout: Option[ManoeuvreRollout] = None
-  private var limits: Option[Limits]         = None
+  private var limits: Option[Limits]            = None
 
   def situate(situation: Situation, objective: Objective, dtS: Double): Unit =
     rollout = Some(ManoeuvreRollout(situation, objective, dtS))

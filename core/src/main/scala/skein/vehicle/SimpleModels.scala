@@ -3,36 +3,6 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Follows a velocity setpoint with a first-order lag, horizontally; the altitude stays. The velocity v tends towards
-  * gain · setpoint with time constant lag: v(t) = g·u + (v₀ − g·u)·e^(−t/τ), exact for any span. Setpoints that are no
-  * velocities are taken as "stand still".
-  *
-  * @param lagS
-  *   τ
-  * @param gain
-  *   g, reached over commanded speed
-  */
-final case class LagModel(lagS: Double, gain: Double) extends VehicleModel[Kinematics]:
-  require(lagS > 0, s"the lag must be positive, came $lagS s")
-
-  def start(seen: Kinematics): Kinematics = seen
-
-  def advanced(state: Kinematics, setpoint: Setpoint, span: Span): Kinematics =
-    val goal =
-      if setpoint.horizontal == HorizontalMode.Velocity then
-        Vector3(gain * setpoint.first, gain * setpoint.second, state.velocityNed.z)
-      else Vector3(0, 0, state.velocityNed.z)
-    val left   = math.exp(-span.toSeconds / lagS)
-    val excess = state.velocityNed - goal
-    state.copy(
-      positionNed = state.positionNed + goal * span.toSeconds + excess * (lagS * (1 - left)),
-      velocityNed = goal + excess * left
-    )
-
-  def corrected(state: Kinematics, seen: Kinematics, sinceSeen: Span): Kinematics = seen
-
-  def kinematics(state: Kinematics): Kinematics = state
-
 /** Goes on as it was seen, for vehicles whose commands are unknown. */
 object ConstantVelocity extends VehicleModel[Kinematics]:
   def start(seen: Kinematics): Kinematics = seen

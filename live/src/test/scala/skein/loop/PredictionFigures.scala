@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.signal.LatencyProfile
-import skein.vehicle.{ConstantTurn, ConstantVelocity, LagModel}
+import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel, ReducedVehicleModel}
 
 /** Prints how far loops and models deviate from the paused truth over the links.
   *
@@ -20,14 +20,21 @@ import skein.vehicle.{ConstantTurn, ConstantVelocity, LagModel}
     ("constant:400ms, 6 moves in flight", VirtualDuel.constant(400), many),
     ("vpn, 6 moves in flight", LatencyProfile.vpn, many)
   )
+  val identified = ReducedModel.AirSim
   for (name, link, settings) <- links do
     println(name)
     report("stream", LoopKind.Stream, link, settings)
     report("predictive", LoopKind.Predictive, link, settings)
     for (model, description) <- Seq(
-        (LagModel(2.6, 0.87), "reduced"),
-        (LagModel(2.6 * 1.2, 0.87), "reduced, lag +20 %"),
-        (LagModel(2.6, 0.87 * 1.2), "reduced, gain +20 %"),
+        (ReducedVehicleModel(identified), "reduced"),
+        (
+          ReducedVehicleModel(identified.copy(
+            lagS = 1.2 * identified.lagS,
+            turnLagS = 1.2 * identified.turnLagS
+          )),
+          "reduced, lag +20 %"
+        ),
+        (ReducedVehicleModel(identified.copy(gain = 1.2 * identified.gain)), "reduced, gain +20 %"),
         (ConstantVelocity, "constant velocity"),
         (ConstantTurn, "constant turn")
       )

@@ -1,0 +1,118 @@
+package skein.experiment
+
+import com.typesafe.config.{Config, ConfigException, ConfigFactory}
+import skein.identify.*
+import skein.rollout.Reduced
+import skein.vehicle.ReducedModel
+
+/** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how well.
+  *
+  * @param use
+  *   which of them to fly by
+  */
+final case class ModelFile(use: Structure, models: Map[Structure, ReducedModel]):
+
+  /** The model to predict and simulate by. */
+  def model: ReducedModel = models(use)
+
+  /** The three-parameter model, for what flies no other. */
+  def reduced: Option[Reduced] =
+    models.get(Structure.Lag).map(lag => Reduced(lag.gain, lag.lagS, lag.deadTimeS))
+
+object ModelFile:
+
+  /** Where a fit came from.
+    *
+    * @param recordings
+    *   files, each with what was flown
+    */
+  final case class Provenance(
+      recordings: Vector[String],
+      vehicles: Vector[String],
+      horizonS: Double,
+      version: String
+  )
+
+  /** The text of a file. */
+  def render(use: Structure, fits: Vector[Fit], from: Provenance): String =
+    val sections = fits.map: fit =>
+      val found      = fit.identification
+      val parameters = found.parameters.map: parameter =>
+        val bound = if parameter.atBound then "  # at its bound: not identified" else ""
+        s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+      val errors = fit.againstQuadrotor.map: error =>
+        s"    { horizon = ${number(error.horizonS)} s, position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
+      s"""  ${found.structure.label} {
+         |${parameters.mkString("\n")}
+         |    predictions = ${found.predictions}
+         |    velocity-rms-mps = ${number(found.velocityRmsMps)}
+         |    position-rms-m = ${number(found.positionRmsM)}
+         |    against-quadrotor = [
+         |${errors.map("  " + _).mkString("\n")}
+         |    ]
+         |  }""".stripMargin
+    s"""# A reduced model of how horizontal velocity follows its command, fitted by `skein identify`.
+       |# least and most: 95 % intervals by the sandwich estimator over blocks of ${number(
+        Identification.BlockS
+      )} s of flight.
+       |skein.model {
+       |  # Which of the structures below to fly by.
+       |  use = ${use.label}
+       |
+       |  version = ${quoted(from.version)}
+       |  horizon = ${number(from.horizonS)} s
+       |  recordings = [
+       |${from.recordings.map("    " + quoted(_)).mkString("\n")}
+       |  ]
+       |  vehicles = [
+       |${from.vehicles.map("    " + quoted(_)).mkString("\n")}
+       |  ]
+       |
+       |${sections.mkString("\n\n")}
+       |}
+       |""".stripMargin
+
+  /** Reads a file.
+    *
+    * @return
+    *   or what is wrong, with the line
+    */
+  def read(path: String): Either[String, ModelFile] = TextFile.read(path).flatMap(parse(_, path))
+
+  private[experiment] def parse(text: String, path: String): Either[String, ModelFile] =
+    try
+      val section = ConfigFactory.parseString(text).resolve().getConfig("skein.model")
+      for
+        use <- Structure.parse(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
+        models = Structure.values.filter(found => section.hasPath(found.label)).map: structure =>
+          structure -> structure.model(values(section.getConfig(structure.label), structure))
+        _ <- Either.cond(
+          models.exists(_._1 == use),
+          (),
+          s"$path: use = ${use.label}, but there is no section ${use.label}"
+        )
+      yield ModelFile(use, models.toMap)
+    catch
+      case wrong: ConfigException          => Left(s"$path is no model file: ${wrong.getMessage}")
+      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
+
+  private def values(section: Config, structure: Structure): Array[Double] =
+    structure.parameters.map(name => section.getDouble(s"$name.value")).toArray
+
+  private def number(value: Double): String =
+    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
+
+  private def quoted(text: String): String = com.typesafe.config.ConfigUtil.quoteString(text)
+
+/** A fitted structure and how far it is off over the horizons.
+  *
+  * @param againstQuadrotor
+  *   against the built-in quadrotor under the same commands
+  * @param againstReadings
+  *   against the recordings themselves
+  */
+final case class Fit(
+    identification: Identification,
+    againstQuadrotor: Vector[HorizonError],
+    againstReadings: Vector[HorizonError]
+)
