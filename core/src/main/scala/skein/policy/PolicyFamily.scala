@@ -53,8 +53,60 @@ object PolicyFamily:
     parameters => PaperEvader(parameters(0))
   )
 
+  private val turnRate = Axis("turnRateRadPerS", 0.2, 3.0, 1.0)
+
+  val purePursuit: PolicyFamily = PolicyFamily(
+    "pure-pursuit",
+    "heads for where the opponent is",
+    Set(Role.Pursuer),
+    SearchSpace(Vector(turnRate)),
+    parameters => PurePursuit(parameters(0))
+  )
+
+  val proportionalNavigation: PolicyFamily = PolicyFamily(
+    "proportional-navigation",
+    "turns a multiple as fast as the line of sight",
+    Set(Role.Pursuer),
+    SearchSpace(Vector(Axis("gain", 1.0, 8.0, 3.0), turnRate)),
+    parameters => ProportionalNavigation(parameters(0), parameters(1))
+  )
+
+  val leadPursuit: PolicyFamily = PolicyFamily(
+    "lead-pursuit",
+    "heads for where it would meet the opponent",
+    Set(Role.Pursuer),
+    SearchSpace(Vector(Axis("speedRatio", 0.05, 0.95, 0.5), Axis("lead", 0.0, 2.0, 1.0), turnRate)),
+    parameters => LeadPursuit(parameters(0), parameters(1), parameters(2))
+  )
+
+  val chauffeurEvader: PolicyFamily = PolicyFamily(
+    "chauffeur-evader",
+    "runs along the line on which the chase will end; dodges near the pursuer",
+    Set(Role.Evader),
+    SearchSpace(
+      Vector(
+        Axis("turningRadiusM", 1.0, 24.0, 8.0),
+        Axis("speedRatio", 0.05, 0.95, 0.5),
+        Axis("dodgeM", 0.0, 30.0, 8.0)
+      )
+    ),
+    parameters => ChauffeurEvader(parameters(0), parameters(1), parameters(2))
+  )
+
+  /** Networks of one shape, named `neural:8x8` by their hidden layers; the default's weights are all zero: straight on. */
+  def neural(shape: NeuralShape): PolicyFamily = PolicyFamily(
+    s"$NeuralPrefix${shape.hidden.mkString("x")}",
+    s"a neural network with hidden layers of $shape",
+    Set(Role.Pursuer, Role.Evader),
+    SearchSpace(shape.names.map(Axis(_, -3.0, 3.0)) :+ turnRate),
+    parameters => NeuralPolicy(shape, parameters.init, parameters.last)
+  )
+
+  private val NeuralPrefix = "neural:"
+
   /** All that have a fixed number of parameters, in the order in which they are listed to people. */
-  val all: Vector[PolicyFamily] = Vector(paperPursuer, paperEvader)
+  val all: Vector[PolicyFamily] =
+    Vector(paperPursuer, purePursuit, proportionalNavigation, leadPursuit, paperEvader, chauffeurEvader)
 
   /** The family of this name.
     *
@@ -62,6 +114,10 @@ object PolicyFamily:
     *   or what was expected
     */
   def parse(text: String): Either[String, PolicyFamily] =
-    all
-      .find(_.name == text)
-      .toRight(s"expected a family of policies (${all.map(_.name).mkString(", ")}), came '$text'")
+    if text.startsWith(NeuralPrefix) then NeuralShape.parse(text.stripPrefix(NeuralPrefix)).map(neural)
+    else
+      all
+        .find(_.name == text)
+        .toRight(
+          s"expected a family of policies (${all.map(_.name).mkString(", ")}, or ${NeuralPrefix}8x8), came '$text'"
+        )
