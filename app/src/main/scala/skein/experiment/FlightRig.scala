@@ -73,22 +73,28 @@ final class FlightRigs(
     RecordedPlan.parameters(settings)
   )
 
-  /** Prepares and starts a flight.
+  /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
     *
     * @return
     *   or why it cannot be flown
     */
   def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightRig]] =
+    val opened   = Opened()
     val starting =
       for
         server <- serve()
-        address = server.fold(simulator.get)(_.address)
+        address = server.fold(simulator.get)(opened.closing(_)(_.close()).address)
         ready <- prepare(address)
         proxy <- between(plan, address)
         watch  = Watch(recorder)
-        client = fly(plan, proxy.fold(address)(_.address), watch)
+        client = opened.closing(
+          fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), watch)
+        )(_.close())
         crafts = ready.zipWithIndex.map((vehicle, index) =>
-          MultirotorCraft(Multirotor(client, vehicle.name, vehicle.originNed, index))
+          MultirotorCraft(
+            Multirotor(client, vehicle.name, vehicle.originNed, index),
+            lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+          )
         )
         _ <- client.ping()
       yield
@@ -98,14 +104,10 @@ final class FlightRigs(
         val startedAt    = clock.now()
         val flight       =
           Flight.start(plan.loop, team, AirSimStepper(client), settings.duration, clock, watch)
-        def shutDown() =
-          for
-            _ <- client.close()
-            _ <- proxy.fold(Future.successful(Done))(_.close())
-            _ <- server.fold(Future.successful(Done))(_.close())
-          yield Done
-        Right(FlightRig(plan, flight, watch, startedAt, clock, () => shutDown()))
-    starting.recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
+        Right(FlightRig(plan, flight, watch, startedAt, clock, () => opened.close()))
+    starting
+      .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
+      .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
 
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)

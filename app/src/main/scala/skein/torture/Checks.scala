@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.Outcome
+import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, Recording}
 import skein.units.*
 
@@ -17,7 +17,8 @@ object Checks:
       unaccounted(seen),
       unbounded(seen),
       outOfControl(seen),
-      restless(seen)
+      restless(seen),
+      standingStill(seen)
     ).flatten
 
   /** The moves that arrived must be among those sent, in the order in which they were sent. */
@@ -42,9 +43,10 @@ object Checks:
     for (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if craft.commands.most > MostOutstanding
     yield s"$vehicle: ${craft.commands.most} commands were outstanding at once"
 
+  /** While the simulator stands still no time passes between commands. */
   private def tooFast(seen: Evidence): Vector[String] =
     for
-      (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
+      (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if seen.ordeal.loop != LoopKind.Paused
       (one, next)      <- craft.sendings.zip(craft.sendings.drop(1)).find: (one, next) =>
         next.at.since(one.at) < seen.minCommandInterval
     yield f"$vehicle: two commands within ${next.at.since(one.at).toMillis}%.3f ms, at ${ms(seen, one.at)}"
@@ -56,19 +58,22 @@ object Checks:
         (what, count)    <- Seq("read" -> craft.reads, "command" -> craft.commands)
         if count.begun != count.ended
       yield s"$vehicle: ${count.begun} $what calls began, ${count.ended} ended"
-    calls ++ Option.when(
+    calls ++ Option.when(seen.steps.begun != seen.steps.ended)(
+      s"${seen.steps.begun} calls of the stepper began, ${seen.steps.ended} ended"
+    ) ++ Option.when(
       seen.stats.pending != 0
     )(s"the client has ${seen.stats.pending} calls that never ended")
 
   /** What began is what ended, in the client's books, the crafts' and the recording. */
   private def unaccounted(seen: Evidence): Vector[String] =
-    val called  = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong
+    val called = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong +
+      seen.steps.begun + seen.signsAskedFor
     val stats   = seen.stats
     val written = stats.sent - stats.sentAgain
     Vector(
       Option.when(
         stats.called != called
-      )(s"the crafts were called $called times, the client ${stats.called}"),
+      )(s"the client was to be called $called times, and was ${stats.called} times"),
       Option.when(written > stats.called)(s"$written calls were written of ${stats.called}"),
       Option.when(written < stats.answered + stats.refused + stats.lost)(
         s"${stats.answered} answered, ${stats.refused} refused and ${stats.lost} lost of $written that were written"
@@ -105,7 +110,7 @@ object Checks:
     case _                 => true
 
   private def unbounded(seen: Evidence): Vector[String] =
-    val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding)
+    val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
     val flown   = seen.endedAt.since(seen.startedAt).toSeconds + 1
     val rows    = Recorded.rows(seen.recording)
     val each    = if seen.ordeal.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
@@ -120,10 +125,13 @@ object Checks:
       Option.when(rows > allowed)(f"$rows rows were recorded; $allowed%.0f are many for this flight")
     ).flatten
 
-  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that goes on. */
+  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that goes on. The
+    * paused truth does not: it ends at the first error.
+    */
   private def outOfControl(seen: Evidence): Vector[String] =
     val due = seen.calmFrom + Ordeal.ResumesWithin
-    if seen.outcome != Outcome.Completed || seen.endedAt < due then Vector.empty
+    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.ordeal.loop == LoopKind.Paused then
+      Vector.empty
     else
       seen.vehicles.flatMap: vehicle =>
         val decided = seen.recording.decisions.exists(decision =>
@@ -152,10 +160,21 @@ object Checks:
     for (vehicle, drift) <- seen.vehicles.zip(seen.drifts) if drift.value > Hovering.value
     yield f"$vehicle flies on after the end: ${drift.value}%.1f m in ${Evidence.Watched.toSeconds}%.0f s (${seen.outcome})"
 
+  /** A flight that ended in trouble may have told the simulator in vain; it has tried for a while. */
+  private def standingStill(seen: Evidence): Vector[String] =
+    Option
+      .when(seen.leftPaused && seen.endedAt >= seen.calmFrom + Ordeal.ResumesWithin)(
+        s"the simulator was left standing still (${seen.outcome})"
+      )
+      .toVector
+
   private def ms(seen: Evidence, at: Instant): String = f"${at.since(seen.startedAt).toMillis}%.1f ms"
 
   /** The move that flies and the one that replaces it. */
   private val MostOutstanding = 2
+
+  /** Asked for when an answer is missed. */
+  private val SignsOfLife = 1
 
   /** After a connection was lost, its last moves may be at the simulator still when those of the next one come. */
   private val MostUnanswered = 4

@@ -19,6 +19,12 @@ import skein.units.*
   *   after the client was closed
   * @param drifts
   *   how far each vehicle got within [[Evidence.Watched]], some time after the end
+  * @param steps
+  *   calls that let the simulator's time run in steps
+  * @param signsAskedFor
+  *   how often vehicles were asked for a sign of life
+  * @param leftPaused
+  *   whether the simulator stood still some time after the end
   */
 final case class Evidence(
     ordeal: Ordeal,
@@ -35,7 +41,10 @@ final case class Evidence(
     settings: RpcSettings,
     stats: RpcStats,
     recording: Recording,
-    drifts: Vector[Metres]
+    drifts: Vector[Metres],
+    steps: CallCount,
+    signsAskedFor: Int,
+    leftPaused: Boolean
 ):
   def calmFrom: Instant = startedAt + ordeal.calmFrom
 

@@ -51,6 +51,9 @@ final class Operator(
             .groundTruth()
             .map(_.fold(error => throw IllegalStateException(error.message), _.positionNed))
 
+  def isPaused(): Future[Boolean] =
+    asking(_.isPaused().map(_.fold(error => throw IllegalStateException(error.message), identity)))
+
   def stop(): Future[Done] = server.fold(Future.successful(Done))(_.close())
 
   private def asking[A](question: AirSimClient => Future[A]): Future[A] =

@@ -67,6 +67,8 @@ final case class Ordeal(
   *   something is added that is no MessagePack
   * @param refused
   *   a move is asked for under a name that the simulator does not know
+  * @param lost
+  *   an answer never comes, though its connection lives
   */
 final case class Meddling(
     late: Double = 0,
@@ -75,7 +77,8 @@ final case class Meddling(
     nonsense: Double = 0,
     stray: Double = 0,
     garbage: Double = 0,
-    refused: Double = 0
+    refused: Double = 0,
+    lost: Double = 0
 )
 
 object Meddling:
@@ -94,7 +97,9 @@ enum Disk:
   case Fails(at: Span)
 
 object Ordeal:
-  /** In which control resumes once nothing more goes wrong. */
+  /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost on a
+    * connection that lives holds control for 1.3 s at most (see [[skein.experiment.MultirotorCraft]]).
+    */
   val ResumesWithin: Span = Span.ofSeconds(3)
 
   /** What each flight has at its end to show that control has resumed, and goes on. */
@@ -111,7 +116,15 @@ object Ordeal:
       duration >= Shortest,
       s"a flight of ${duration.toSeconds} s is too short: ${Shortest.toSeconds} s at least"
     )
-    Draw(SplitMix64(SplitMix64.seedOf(seed, 0)), seed, duration).ordeal
+    val drawn = Draw(SplitMix64(SplitMix64.seedOf(seed, 0)), seed, duration).ordeal
+    val added = SplitMix64(SplitMix64.seedOf(seed, 1))
+    val loses = drawn.copy(meddling =
+      if added.nextDouble() < 0.3 then drawn.meddling.copy(lost = 0.2 * added.nextDouble())
+      else drawn.meddling
+    )
+    if added.nextDouble() < 0.1 then
+      loses.copy(loop = LoopKind.Paused, pairs = drawn.pairs.min(2), asPublished = false)
+    else loses
 
   private final class Draw(random: SplitMix64, seed: Long, duration: Span):
     private val calmFrom = duration - Calm

@@ -11,7 +11,7 @@ import skein.experiment.*
 import skein.link.*
 import skein.loop.*
 import skein.policy.Scenario
-import skein.record.{Flight as FlightRow, Heading, MemoryRecorder}
+import skein.record.{Event, EventKind, Flight as FlightRow, Heading, MemoryRecorder}
 import skein.rpc.RpcClient
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -75,15 +75,17 @@ object TortureFlight:
     def fly(): Future[Evidence] =
       for
         vehicles <- operator.start(clockJump = Span.Zero)
-        crafts = vehicles.zipWithIndex.map: (vehicle, index) =>
-          WatchedCraft(
-            MultirotorCraft(Multirotor(client, vehicle.name, vehicle.originNed, index)),
-            clock
+        multirotors = vehicles.zipWithIndex.map: (vehicle, index) =>
+          MultirotorCraft(
+            Multirotor(client, vehicle.name, vehicle.originNed, index),
+            lost => recorder.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
+        crafts       = multirotors.map(WatchedCraft(_, clock))
+        stepper      = WatchedStepper(AirSimStepper(client))
         loopSettings = if ordeal.asPublished then LoopSettings().asPublished else LoopSettings()
         team         = Team(scenario, crafts, clock, recorder, loopSettings)
         flight       =
-          Flight.start(ordeal.loop, team, AirSimStepper(client), ordeal.duration, clock, recorder)
+          Flight.start(ordeal.loop, team, stepper, ordeal.duration, clock, recorder)
         _         = ordeal.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
         restarted = Future.traverse(ordeal.restarts)(restart =>
           at(restart.at)(operator.restart(restart))
@@ -98,6 +100,7 @@ object TortureFlight:
         before <- operator.positions(vehicles)
         _      <- after(Evidence.Watched.toDuration, system.scheduler)(Future.unit)
         later  <- operator.positions(vehicles)
+        paused <- operator.isPaused()
         _      <- operator.stop()
       yield Evidence(
         ordeal,
@@ -114,7 +117,10 @@ object TortureFlight:
         settings,
         rpc.stats,
         memory.recording,
-        before.zip(later).map((from, to) => Metres((to - from).norm))
+        before.zip(later).map((from, to) => Metres((to - from).norm)),
+        stepper.calls,
+        multirotors.map(_.signsAskedFor).sum,
+        paused
       )
 
     private var mostPending = 0L

@@ -3,7 +3,7 @@ package skein.torture
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.Clock
-import skein.loop.Craft
+import skein.loop.{Craft, Stepper}
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -29,6 +29,14 @@ final class WatchedCraft(craft: Craft, clock: Clock)(using ExecutionContext) ext
   def hover(): Future[Either[RpcError, Boolean]] =
     hovers += 1
     commands.count(craft.hover())
+
+/** A stepper that counts its calls. */
+final class WatchedStepper(stepper: Stepper)(using ExecutionContext) extends Stepper:
+  val calls = CallCount()
+
+  def pause(): Future[Either[RpcError, Unit]]                 = calls.count(stepper.pause())
+  def resume(): Future[Either[RpcError, Unit]]                = calls.count(stepper.resume())
+  def continueFor(span: Span): Future[Either[RpcError, Unit]] = calls.count(stepper.continueFor(span))
 
 /** Calls begun and ended. */
 final class CallCount:

@@ -85,7 +85,8 @@ final class Wiretap(
         else Future.successful(frame)
 
   private def mischief(id: Long, reply: ByteString): Vector[ByteString] =
-    if meddles(meddling.doubled) then Vector(reply, reply)
+    if meddles(meddling.lost) then Vector.empty
+    else if meddles(meddling.doubled) then Vector(reply, reply)
     else if meddles(meddling.nonsense) then Vector(encoded(Arr(Int32(1), number(id), Null, Str("nonsense"))))
     else if meddles(meddling.garbage) then Vector(ByteString(0xc1), reply)
     else if meddles(meddling.stray) then

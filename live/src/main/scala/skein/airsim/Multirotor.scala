@@ -116,6 +116,10 @@ final class Multirotor(
   /** Ends the move under way, with false. */
   def cancelLastTask(): Future[Either[RpcError, Unit]] = tell("cancelLastTask")
 
+  /** Answers when every command sent before has reached the simulator: it travels behind them, on their connection. */
+  def reached(): Future[Either[RpcError, Unit]] =
+    client.rpc.call("ping", Seq(), once.copy(key = Some(connectionKey))).map(_.map(_ => ()))
+
   // ---- moves
 
   /** Climbs by 2 m. AirSim stops half a metre short and answers false. */
@@ -151,14 +155,17 @@ final class Multirotor(
     *   m/s; its third component is ignored
     * @param down
     *   altitude goal, world NED
+    * @param withdrawn
+    *   when it completes, the answer is waited for no longer
     */
   def moveByVelocityZ(
       velocityNed: Vector3,
       down: Metres,
       duration: Span,
-      yaw: Yaw = Yaw.Still
+      yaw: Yaw = Yaw.Still,
+      withdrawn: Option[Future[?]] = None
   ): Future[Either[RpcError, Boolean]] =
-    byVelocity("moveByVelocityZ", velocityNed.x, velocityNed.y, ownDown(down), duration, yaw)
+    byVelocity("moveByVelocityZ", velocityNed.x, velocityNed.y, ownDown(down), duration, yaw, withdrawn)
 
   /** Like [[moveByVelocity]], in the frame that has the vehicle's heading at the start of the move. */
   def moveByVelocityBodyFrame(
@@ -242,17 +249,18 @@ final class Multirotor(
 
   // ---- helpers
 
-  private def byVelocity(method: String, x: Double, y: Double, third: Double, duration: Span, yaw: Yaw) =
-    move(
-      method,
-      duration,
-      real(x),
-      real(y),
-      real(third),
-      seconds(duration),
-      Int32(yaw.drivetrain),
-      writeMsg(yaw.mode)
-    )
+  private def byVelocity(
+      method: String,
+      x: Double,
+      y: Double,
+      third: Double,
+      duration: Span,
+      yaw: Yaw,
+      withdrawn: Option[Future[?]] = None
+  ): Future[Either[RpcError, Boolean]] =
+    val params =
+      Seq(real(x), real(y), real(third), seconds(duration), Int32(yaw.drivetrain), writeMsg(yaw.mode))
+    call(method, params, moving(duration).copy(withdrawn = withdrawn))
 
   protected def attitude(
       method: String,
@@ -268,7 +276,9 @@ final class Multirotor(
     Seq(real(speed.value), seconds(timeout), Int32(yaw.drivetrain), writeMsg(yaw.mode)) ++ lookahead.params
 
   private def move(method: String, lasts: Span, params: Msg*): Future[Either[RpcError, Boolean]] =
-    call(method, params, once.copy(timeout = client.timeout + lasts, key = Some(connectionKey)))
+    call(method, params, moving(lasts))
+
+  private def moving(lasts: Span) = once.copy(timeout = client.timeout + lasts, key = Some(connectionKey))
 
   private def get[A: Reader](method: String): Future[Either[RpcError, A]] = call(method, Seq(), getter)
 

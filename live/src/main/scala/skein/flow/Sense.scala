@@ -35,9 +35,19 @@ object Sense:
   def every[E, A](period: Span, offset: Span = Span.Zero, window: Int = 4, early: Early = Early.Overtakes)(
       ask: () => Future[Either[E, A]]
   )(onSkip: Either[E, A] => Unit, onMissed: Int => Unit): Source[A, Cancellable] =
-    val questions = Source
-      .tick(offset.toDuration, period.toDuration, 1)
-      .conflate(_ + _)
+    at(
+      Source.tick(offset.toDuration, period.toDuration, 1).conflate(_ + _),
+      window,
+      early
+    )(ask)(onSkip, onMissed)
+
+  /** The same at each element of `ticks`, which says how many questions were due since the last one, as [[Metronome]]
+    * does. Completes when `ticks` has completed and what was asked is answered.
+    */
+  def at[E, A, M](ticks: Source[Int, M], window: Int = 4, early: Early = Early.Overtakes)(
+      ask: () => Future[Either[E, A]]
+  )(onSkip: Either[E, A] => Unit, onMissed: Int => Unit): Source[A, M] =
+    val questions = ticks
       .map(ticks => if ticks > 1 then onMissed(ticks - 1))
       .zipWithIndex
       .map(_._2)

@@ -1,8 +1,10 @@
 package skein.loop
 
 import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.Future
 import scala.util.{Failure, Success}
 import skein.link.Clock
 import skein.record.*
@@ -13,79 +15,114 @@ import skein.units.*
   * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
   * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
-  * against the simulator's clock.
+  * against the simulator's clock. However it ends, the vehicles are told to hover and the simulator is let run again;
+  * both are tried up to [[PausedLoop.LastAttempts]] times.
   */
 object PausedLoop:
 
   def apply(team: Team, stepper: Stepper, steps: Long, clock: Clock, stopped: () => Boolean)(using
-      ExecutionContext
+      ActorSystem
   ): RunnableGraph[Future[Done]] =
+    val flight = PausedFlight(team, stepper, steps, clock, stopped)
     Source
-      .unfoldAsync(Step(
-        0,
-        team.vehicles.map(team.start).toVector,
-        Picture.empty(team.vehicles.size),
-        Vector.empty
-      )): step =>
-        if step.number == steps || stopped() then land(team, stepper, step)
-        else fly(team, stepper, clock, step)
+      .unfoldAsync(flight.start)(flight.next)
       .toMat(Sink.ignore)(Keep.right)
+      .mapMaterializedValue(flight.landed)
 
-  /** @param unanswered
-    *   the moves of the step before, which end when this step's replace them
-    */
-  private case class Step(
-      number: Long,
-      memories: Vector[Memory],
-      picture: Picture,
-      unanswered: Vector[Future[Either[RpcError, Boolean]]]
-  )
+  /** How often vehicles and simulator are told at the end, at most. */
+  val LastAttempts = 20
 
-  private def fly(team: Team, stepper: Stepper, clock: Clock, step: Step)(using
-      ExecutionContext
-  ): Future[Option[(Step, Done)]] =
-    for
-      _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
-      readings <- orFail(team.readAll())
-      now     = readings(0).state.validAt
-      picture =
-        readings.foldLeft(step.picture)((seen, reading) => seen.withReading(reading._1, timeless(reading._2)))
-      _       = verifyStep(team, step, now)
-      decided =
-        team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
-      moves =
-        for (vehicle, (_, decision)) <- team.vehicles.toVector.zip(decided)
-        yield send(team, clock, vehicle, decision, picture)
-      // A move has reached the simulator when the one that it replaces has ended.
-      _ <- Future.sequence(step.unanswered)
-      _ <- orFail(stepper.continueFor(team.settings.period))
-    yield
-      val moved = team.vehicles.zip(decided).foldLeft(picture):
-        case (seen, (vehicle, (_, decision))) =>
-          seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now, decision.speed))
-      Some((Step(step.number + 1, decided.map(_._1), moved, moves), Done))
-
-  /** Ends the last moves and lets the simulator run again. */
-  private def land(team: Team, stepper: Stepper, step: Step)(using ExecutionContext): Future[None.type] =
-    for
-      _ <- team.hoverAll()
-      _ <- Future.sequence(step.unanswered)
-      _ <- orFail(stepper.resume())
-    yield None
+  /** Pause before they are told again. */
+  val TellAgain: Span = Span.ofMillis(500)
 
   /** While the simulator stands still, no time passes between question and answer. */
   private[loop] def timeless(reading: Reading): Reading =
     val at = reading.state.validAt
     reading.copy(state = reading.state.copy(sentAt = at, receivedAt = at))
 
-  private def send(team: Team, clock: Clock, vehicle: Int, decision: Decision, picture: Picture)(using
-      ExecutionContext
-  ): Future[Either[RpcError, Boolean]] =
-    team.record(vehicle, decision, picture)
-    team.sent(vehicle, decision, clock.now())
-    team.move(vehicle, decision).andThen(result => team.ended(vehicle, decision, clock.now(), result))
+private final case class Step(number: Long, memories: Vector[Memory], picture: Picture)
 
-  private def verifyStep(team: Team, step: Step, now: Instant): Unit =
+/** One flight of [[PausedLoop]]. */
+private final class PausedFlight(
+    team: Team,
+    stepper: Stepper,
+    steps: Long,
+    clock: Clock,
+    stopped: () => Boolean
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  // The moves of the newest step, and those of the one before, which they replace.
+  @volatile private var newest, replaced = Vector.empty[Future[Either[RpcError, Boolean]]]
+
+  val start: Step =
+    Step(0, team.vehicles.map(team.start).toVector, Picture.empty(team.vehicles.size))
+
+  def next(step: Step): Future[Option[(Step, Done)]] =
+    if step.number == steps || stopped() then Future.successful(None) else fly(step)
+
+  /** After the last step or an error. */
+  def landed(flown: Future[Done]): Future[Done] =
+    flown.transformWith: ended =>
+      for
+        // To hover is a command, too, and must not be a third one outstanding.
+        _       <- allEnded(replaced)
+        running <- release(PausedLoop.LastAttempts)
+        _       <- allEnded(newest)
+        done    <- running match
+          case Right(())                      => Future.fromTry(ended)
+          case Left(error) if ended.isSuccess => Future.failed(LoopFailed(standsStill(error)))
+          case Left(error)                    =>
+            team.note(EventKind.Aborted, None, standsStill(error))
+            Future.fromTry(ended)
+      yield done
+
+  private def fly(step: Step): Future[Option[(Step, Done)]] =
+    for
+      _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
+      readings <- orFail(team.readAll())
+      now     = readings(0).state.validAt
+      picture =
+        readings.foldLeft(step.picture)((seen, reading) =>
+          seen.withReading(reading._1, PausedLoop.timeless(reading._2))
+        )
+      _       = verifyStep(step, now)
+      decided =
+        team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
+      _ = send(decided.map(_._2), picture)
+      // A move has reached the simulator when the one that it replaces has ended.
+      _ <- Future.traverse(replaced)(orFail)
+      _ <- orFail(stepper.continueFor(team.settings.period))
+    yield
+      val moved = team.vehicles.zip(decided).foldLeft(picture):
+        case (seen, (vehicle, (_, decision))) =>
+          seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now))
+      Some((Step(step.number + 1, decided.map(_._1), moved), Done))
+
+  /** Lets the vehicles hover, which ends the last moves, and the simulator run, until both are certain. */
+  private def release(attempts: Int): Future[Either[RpcError, Unit]] =
+    for
+      hovering <- team.hoverAll()
+      running  <- stepper.resume()
+      certain = running.isRight && hovering.forall:
+        case Right(_) | Left(_: RpcError.Refused) => true
+        case Left(_)                              => false
+      result <-
+        if certain || attempts == 1 then Future.successful(running)
+        else after(PausedLoop.TellAgain.toDuration, system.scheduler)(release(attempts - 1))
+    yield result
+
+  private def send(decisions: Vector[Decision], picture: Picture): Unit =
+    replaced = newest
+    newest = decisions.zipWithIndex.map: (decision, vehicle) =>
+      team.record(vehicle, decision, picture)
+      team.sent(vehicle, decision, clock.now())
+      team.move(vehicle, decision).andThen(result => team.ended(vehicle, decision, clock.now(), result))
+
+  private def allEnded(moves: Vector[Future[?]]): Future[Unit] =
+    Future.traverse(moves)(_.transform(_ => Success(()))).map(_ => ())
+
+  private def verifyStep(step: Step, now: Instant): Unit =
     for before <- step.picture.readings(0) do
       val stepped = now.since(before.state.validAt)
       if stepped != team.settings.period then
@@ -95,11 +132,14 @@ object PausedLoop:
           s"step ${step.number} took ${stepped.toMillis} ms of simulator time instead of ${team.settings.period.toMillis} ms"
         )
 
-  private def orFail[A](call: Future[Either[RpcError, A]])(using ExecutionContext): Future[A] =
+  private def orFail[A](call: Future[Either[RpcError, A]]): Future[A] =
     call.transform:
       case Success(Right(value)) => Success(value)
       case Success(Left(error))  => Failure(LoopFailed(error.message))
       case Failure(error)        => Failure(error)
+
+  private def standsStill(error: RpcError) =
+    s"the simulator could not be let run again and stands still: ${error.message}"
 
 /** Why a loop cannot go on. */
 final class LoopFailed(message: String) extends RuntimeException(message)

@@ -21,11 +21,13 @@ object PredictiveLoop:
       val heard    = builder.add(Merge[Percept](team.vehicles.size))
       val fed      = builder.add(Broadcast[Percept](2))
 
+      val start = team.now
+
       for vehicle <- team.vehicles do
-        StreamLoop.locations(team, vehicle, stop).map(Percept.Read(_, _)) ~> percepts.in(vehicle)
+        StreamLoop.locations(team, vehicle, start, stop).map(Percept.Read(_, _)) ~> percepts.in(vehicle)
         everyone ~> decisions(team, vehicle) ~> team.steer(vehicle) ~> heard.in(vehicle)
 
-      team.due.via(stop.flow) ~> percepts.in(team.vehicles.size)
+      team.due(start).via(stop.flow) ~> percepts.in(team.vehicles.size)
       percepts ~> team.pictureWithForecast ~> everyone
       heard ~> fed ~> team.feedBackAll ~> percepts.preferred
       fed ~> done

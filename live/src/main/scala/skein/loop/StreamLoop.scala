@@ -6,6 +6,7 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import skein.flow.*
 import skein.record.{Decision, EventKind, Reading}
+import skein.units.*
 
 /** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the latest
   * are joined, each vehicle decides at its own pace on the newest picture and is commanded; what was commanded is fed
@@ -22,8 +23,10 @@ object StreamLoop:
       val moves    = builder.add(Merge[Move](team.vehicles.size))
       val fed      = builder.add(Broadcast[Move](2))
 
+      val start = team.now
+
       for vehicle <- team.vehicles do
-        locations(team, vehicle, stop) ~> readings.in(vehicle)
+        locations(team, vehicle, start, stop) ~> readings.in(vehicle)
         everyone ~> pacedDecisions(team, vehicle) ~> team.command(vehicle) ~> moves.in(vehicle)
 
       readings ~> joinLatest(team) ~> percepts.in(0)
@@ -33,11 +36,19 @@ object StreamLoop:
       ClosedShape
     })
 
-  private[loop] def locations(team: Team, vehicle: Int, stop: SharedKillSwitch): Source[(Int, Reading), ?] =
+  /** All vehicles are asked in phase, as far as the settings do not spread them; a phase of chance between them would make
+    * the data of one older than that of the other.
+    */
+  private[loop] def locations(
+      team: Team,
+      vehicle: Int,
+      start: Instant,
+      stop: SharedKillSwitch
+  ): Source[(Int, Reading), ?] =
     val settings = team.settings
     val offset   = settings.spread * vehicle.toLong / team.vehicles.size.toLong
     Sense
-      .every(settings.period, offset, settings.window, settings.early)(() => team.read(vehicle))(
+      .at(team.ticks(start + offset), settings.window, settings.early)(() => team.read(vehicle))(
         onSkip = _.foreach(reading =>
           team.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
         ),

@@ -1,7 +1,7 @@
 package skein.loop
 
 import org.apache.pekko.NotUsed
-import org.apache.pekko.actor.{ActorSystem, Cancellable}
+import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
@@ -84,8 +84,14 @@ final class Team(
       .collect { case Some(sight) => sight }
 
   /** Once a period, in the middle between two questions, everybody is due to decide. */
-  def due: Source[Percept, Cancellable] =
-    Source.tick((settings.period / 2).toDuration, settings.period.toDuration, Percept.Due(vehicles.toSet))
+  def due(start: Instant): Source[Percept, NotUsed] =
+    ticks(start + settings.period / 2).map(_ => Percept.Due(vehicles.toSet))
+
+  /** Once a period from an instant on: how many ticks were due since the last. */
+  def ticks(first: Instant): Source[Int, NotUsed] =
+    Source.fromGraph(Metronome(first, settings.period, clock))
+
+  def now: Instant = clock.now()
 
   /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
     * predictions turned out.

@@ -18,6 +18,9 @@ import upack.Msg
 /** The way into a running lane; from any thread. */
 private[rpc] trait LaneInput:
   def submit(call: Call): Unit
+
+  /** Ends a call that was submitted, unless it has ended. */
+  def withdraw(call: Call): Unit
   def close(): Future[Done]
 
 /** One lane with all its connections in a single stage, hence on one thread at a time: a call costs one hop to that
@@ -59,6 +62,7 @@ private[rpc] final class LaneStage(
     @volatile private var stopped = false
     private val stoppedDone       = Promise[Done]()
     private val wake              = getAsyncCallback[Unit](_ => drain())
+    private val withdrawing       = getAsyncCallback[Call](withdrawNow)
     private val closing           = getAsyncCallback[Unit](_ => completeStage())
 
     // From any thread
@@ -73,6 +77,8 @@ private[rpc] final class LaneStage(
         val _ = inbox.add(call)
         if stopped then cancelInbox()
         else if scheduled.compareAndSet(false, true) then wake.invoke(())
+
+    def withdraw(call: Call): Unit = withdrawing.invoke(call)
 
     def close(): Future[Done] =
       closing.invoke(())
@@ -129,6 +135,10 @@ private[rpc] final class LaneStage(
       while call != null do
         state.submit(call, now)
         call = inbox.poll()
+      settle()
+
+    private def withdrawNow(call: Call): Unit =
+      state.withdraw(call, clock.now())
       settle()
 
     /** After every change: write what may be written, and wake up for the next deadline. */

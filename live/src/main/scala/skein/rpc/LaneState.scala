@@ -138,6 +138,12 @@ private[rpc] final class LaneState(
       fail(call, RpcError.Timeout(call.method, call.options.timeout))
     dispatch()
 
+  /** Ends a call whose answer nobody waits for any longer; one that has ended is left alone. */
+  def withdraw(call: Call, now: Instant): Unit = if !call.ended then
+    leave(call)
+    fail(call, RpcError.Timeout(call.method, now.since(call.calledAt)))
+    dispatch()
+
   /** Ends every call with [[RpcError.Cancelled]]. */
   def close(): Unit =
     for call <- deadlines.asScala.toArray do

@@ -63,9 +63,11 @@ final class RpcClient(
   ): Future[Either[RpcError, Answer[Msg]]] =
     val call = Call(method, params, options, clock.now())
     counters.called.increment()
-    options.lane match
-      case Lane.Control => control.submit(call)
-      case Lane.Bulk    => bulk.submit(call)
+    val lane = options.lane match
+      case Lane.Control => control
+      case Lane.Bulk    => bulk
+    lane.submit(call)
+    options.withdrawn.foreach(_.onComplete(_ => lane.withdraw(call)))
     call.outcome.future
 
   /** Like [[callStamped]], with the result read as an `A`. */

@@ -1,5 +1,6 @@
 package skein.rpc
 
+import scala.concurrent.Future
 import skein.units.*
 
 /** Which connections a call uses. Each lane has its own, so a large reply never delays a small one. */
@@ -26,13 +27,16 @@ enum WhenFull:
   *   may run twice without harm: sent again, a bounded number of times, when its connection is lost
   * @param key
   *   calls with the same key use the same connection and are sent in the order of the calls
+  * @param withdrawn
+  *   when it completes, the answer is waited for no longer: [[RpcError.Timeout]] before the timeout is over
   */
 final case class CallOptions(
     timeout: Span = Span.ofSeconds(5),
     lane: Lane = Lane.Control,
     idempotent: Boolean = false,
     key: Option[Int] = None,
-    whenFull: WhenFull = WhenFull.Refuse
+    whenFull: WhenFull = WhenFull.Refuse,
+    withdrawn: Option[Future[?]] = None
 )
 
 /** The bounds of a client. Windows and queue hold for each lane by itself.

@@ -300,3 +300,25 @@ class LaneStateSuite extends munit.FunSuite:
       l.state.close()
       assertEquals(l.ends.size, calls, s"seed $seed")
       assertEquals(l.counters.snapshot.pending, 0L, s"seed $seed")
+
+  test("a call that is withdrawn ends with a timeout of its own, and its late reply is recognised"):
+    val lane = this.lane(connections = 1, perConnection = 1)
+    lane.open(0)
+    lane.submit("first", at = 0)
+    lane.submit("second", CallOptions(whenFull = WhenFull.Wait), at = 1)
+    val first = lane.sent.find(_.method == "first").get
+    lane.state.withdraw(first, ms(700))
+    assertEquals(lane.error("first"), RpcError.Timeout("first", Span.ofMillis(700)))
+    assertEquals(lane.sentNames, Seq("first", "second"))
+    lane.state.replied(0, Message.Reply(first.id, Null, Null), ms(800))
+    assertEquals(lane.counters.snapshot.late, 1L)
+
+  test("a call that has ended, or waits, can be withdrawn as well"):
+    val lane = this.lane(connections = 1, perConnection = 1)
+    lane.open(0)
+    lane.submit("first", at = 0)
+    lane.submit("waiting", CallOptions(whenFull = WhenFull.Wait), at = 1)
+    val first = lane.sent.head
+    lane.reply("first", Int32(1), at = 20)
+    lane.state.withdraw(first, ms(30))
+    assertEquals(lane.ends("first"), Right(Int32(1)))

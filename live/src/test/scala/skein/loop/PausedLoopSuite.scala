@@ -1,0 +1,118 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.Clock
+import skein.policy.Scenario
+import skein.record.{MemoryRecorder, Samples}
+import skein.rpc.RpcError
+import skein.signal.{Kinematics, LatencyProfile, Stamped}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+class PausedLoopSuite extends munit.FunSuite:
+  private val lost = Left(RpcError.Timeout("lost", Span.ofMillis(500)))
+
+  /** A vehicle whose reading number `failing` fails, and whose first hovers do. */
+  private final class Fragile(craft: Craft, failing: Int, failedHovers: Int) extends Craft:
+    private var reads, hovers = 0
+    var hovering              = false
+
+    def read(): Future[Either[RpcError, Stamped[Kinematics]]] =
+      reads += 1
+      if reads == failing then Future.successful(lost) else craft.read()
+
+    def move(velocityNed: Vector3, down: Metres, duration: Span): Future[Either[RpcError, Boolean]] =
+      hovering = false
+      craft.move(velocityNed, down, duration)
+
+    def hover(): Future[Either[RpcError, Boolean]] =
+      hovers += 1
+      if hovers <= failedHovers then Future.successful(lost)
+      else
+        hovering = true
+        craft.hover()
+
+  /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let run. */
+  private final class FragileStepper(stepper: Stepper, failing: Int, failedResumes: Int) extends Stepper:
+    private var steps, resumes = 0
+    var paused                 = false
+
+    def pause(): Future[Either[RpcError, Unit]] =
+      paused = true
+      stepper.pause()
+
+    def resume(): Future[Either[RpcError, Unit]] =
+      resumes += 1
+      if resumes <= failedResumes then Future.successful(lost)
+      else
+        paused = false
+        stepper.resume()
+
+    def continueFor(span: Span): Future[Either[RpcError, Unit]] =
+      steps += 1
+      if steps == failing then Future.successful(lost) else stepper.continueFor(span)
+
+  private final case class Landed(
+      outcome: Outcome,
+      paused: Boolean,
+      hovering: Vector[Boolean],
+      commands: Int,
+      ends: Int
+  )
+
+  private def fly(
+      failingRead: Int = 0,
+      failingStep: Int = 0,
+      failedHovers: Int = 0,
+      failedResumes: Int = 0
+  ): Landed = VirtualTime
+    .run(seed = 1): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val scenario           = Scenario.duel()
+      val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
+      val stepper            = FragileStepper(world, failingStep, failedResumes)
+      val crafts             = world.crafts.map(Fragile(_, failingRead, failedHovers))
+      val recorder           = MemoryRecorder(Samples.heading)
+      val team               = Team(scenario, crafts, clock, recorder, LoopSettings())
+      Flight
+        .start(LoopKind.Paused, team, stepper, Span.ofSeconds(1), clock, recorder)
+        .outcome
+        .map: outcome =>
+          val recording = recorder.recording
+          Landed(
+            outcome,
+            stepper.paused,
+            crafts.map(_.hovering),
+            recording.commands.size,
+            recording.acknowledgements.size
+          )
+    .value
+
+  private def isReleased(landed: Landed): Unit =
+    assert(!landed.paused, s"the simulator was left standing still: $landed")
+    assertEquals(landed.hovering, Vector(true, true), landed.toString)
+    assertEquals(landed.ends, landed.commands, landed.toString)
+
+  test("after its last step the vehicles hover and the simulator runs"):
+    val landed = fly()
+    assertEquals((landed.outcome, landed.commands), (Outcome.Completed, 20))
+    isReleased(landed)
+
+  test("a flight that fails midway, in a reading or in a step, lets the simulator run, too"):
+    for landed <- Seq(fly(failingRead = 5), fly(failingStep = 5), fly(failingStep = 1)) do
+      landed.outcome match
+        case Outcome.Failed(reason) => assert(reason.contains("no answer"), reason)
+        case other                  => fail(s"expected a failure, came $other")
+      isReleased(landed)
+
+  test("vehicles and simulator are told again until they answer"):
+    isReleased(fly(failedHovers = 3))
+    isReleased(fly(failingRead = 5, failedHovers = 2, failedResumes = 4))
+
+  test("a simulator that never answers again is given up, and the outcome says so"):
+    fly(failedResumes = 999).outcome match
+      case Outcome.Failed(reason) => assert(reason.contains("stands still"), reason)
+      case other                  => fail(s"expected a failure, came $other")
