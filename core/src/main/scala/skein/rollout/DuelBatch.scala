@@ -1,13 +1,14 @@
 package skein.rollout
 
 import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.Policy
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
-  * The paper's policies under `LoopTiming.Stream` with a [[Reduced]] model fly by lanes ([[StreamDuelKernel]]), all else
-  * by the scalar reference ([[Rollout]]). Which of the two flies a world depends on the world alone, so results do not
-  * depend on threads, on a call's other worlds or on their order. One call at a time.
+  * With a [[Reduced]] model the paper's policies fly by lanes: worlds that share episodes under any loop
+  * ([[TimetableKernel]]), other worlds under `LoopTiming.Stream` ([[StreamDuelKernel]]). All else flies by the scalar
+  * reference ([[Rollout]]). Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do
+  * not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param duel
   *   start, speeds and duration; the policies come from the worlds
@@ -20,36 +21,45 @@ final class DuelBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  /** Flies the worlds `from` until `until`, at most `batch` of them; one per thread. */
-  private trait Flyer:
-    def batch: Int
-    def fly(worlds: DuelWorlds, from: Int, until: Int, captureRadiusM: Float, into: DuelOutcomes): Unit
-
-  // The first flyer tells; a class with vectors is not touched where their module is missing.
-  private val lanes: Either[String, (LoopTiming.Stream, Reduced)] =
+  // A class with vectors is not touched where their module is missing.
+  private val lanes: Either[String, Reduced] =
     if ModuleLayer.boot().findModule("jdk.incubator.vector").isEmpty then
       Left("the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector")
     else
-      (timing, model) match
-        case (stream: LoopTiming.Stream, reduced: Reduced) if reduced.lagS > 0 => Right((stream, reduced))
-        case (_: LoopTiming.Stream, _) => Left("the lanes fly only the reduced model with a lag")
-        case _ => Left(s"the lanes fly only the stream loop, not ${timing.productPrefix}")
+      model match
+        case reduced: Reduced if reduced.lagS > 0 => Right(reduced)
+        case _                                    => Left("the lanes fly only the reduced model with a lag")
 
-  private val flyers: Vector[Flyer] = Vector.fill(threads):
-    lanes match
-      case Right((stream, reduced)) => Lanes(stream, reduced)
-      case Left(_)                  => Scalar()
+  /** One per thread. */
+  private final class Worker:
+    val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
+    val alone: DuelFlyer  = (timing, lanes) match
+      case (stream: LoopTiming.Stream, Right(reduced)) => StreamFlyer(duel, stream, reduced, scalar)
+      case _                                           => scalar
+    val together: DuelFlyer = lanes match
+      case Right(reduced) => TimetableFlyer(duel, timing, reduced, timetables, scalar)
+      case _              => scalar
+
+  private val timetables = Timetables(MostTimetables)
+  private val workers    = Vector.fill(threads)(Worker())
 
   /** Which engine flies, and why, in a line for the user. Worlds of other policies than the paper's fly by the scalar
     * engine in any case.
     */
-  val engine: String = lanes match
-    case Right(_)     => s"SIMD, the paper's policies ${LaneMath.LANES} worlds at a time"
-    case Left(reason) => s"scalar: $reason"
+  val engine: String = (lanes, timing) match
+    case (Right(_), _: LoopTiming.Stream) => s"SIMD, the paper's policies ${LaneMath.LANES} worlds at a time"
+    case (Right(_), _)                    =>
+      s"SIMD, the paper's policies ${LaneMath.LANES} candidates of an episode at a time; scalar for single worlds"
+    case (Left(reason), _) => s"scalar: $reason"
 
-  /** Whether worlds of these policies fly by lanes. */
-  def fliesByLanes(pursuer: Policy, evader: Policy): Boolean =
-    lanes.isRight && DuelBatch.parameters(pursuer, evader).isDefined
+  /** Whether worlds of these policies fly by lanes.
+    *
+    * @param shareEpisodes
+    *   see [[DuelWorlds.shareEpisodes]]
+    */
+  def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean = false): Boolean =
+    lanes.isRight && PaperParameters.of(pursuer, evader).isDefined &&
+      (shareEpisodes || timing.isInstanceOf[LoopTiming.Stream])
 
   /** Flies all worlds, unless it is cancelled.
     *
@@ -69,105 +79,75 @@ final class DuelBatch(
     val outcomes = DuelOutcomes(worlds.size)
     val failure  = AtomicReference[Throwable]()
     val next     = AtomicInteger()
-    val batch    = flyers.head.batch
-    val batches  = (worlds.size + batch - 1) / batch
-    var done     = 0
+    val batches  =
+      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, workers.head.together.batch)
+      else WorldBatches.inOrder(worlds.size, workers.head.alone.batch)
+    var done = 0
 
-    def work(flyer: Flyer): Unit =
+    def work(worker: Worker): Unit =
+      val flyer = if worlds.shareEpisodes then worker.together else worker.alone
       var going = true
       while going do
-        // Batches are handed out in order, and every one that was handed out is flown.
-        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches
-        if number >= batches then going = false
+        // Every batch that was handed out is flown.
+        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
+        if number >= batches.count then going = false
         else
-          val from  = number * batch
-          val until = (from + batch).min(worlds.size)
-          flyer.fly(worlds, from, until, captureRadiusM.toFloat, outcomes)
+          val numbers = batches(number)
+          flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
           outcomes.synchronized:
-            done += until - from
+            done += numbers.length
             onProgress(done)
 
-    val workers = flyers
-      .take(batches)
-      .map: flyer =>
-        val worker = Thread(() =>
-          try work(flyer)
+    val flying = workers
+      .take(batches.count)
+      .map: worker =>
+        val thread = Thread(() =>
+          try work(worker)
           catch case thrown: Throwable => failure.compareAndSet(null, thrown): Unit
         )
-        worker.setDaemon(true)
-        worker.setName("skein-duels")
-        worker
-    workers.foreach(_.start())
-    try workers.foreach(_.join())
+        thread.setDaemon(true)
+        thread.setName("skein-duels")
+        thread
+    flying.foreach(_.start())
+    try flying.foreach(_.join())
     catch
       case interrupted: InterruptedException =>
         failure.compareAndSet(null, interrupted): Unit
-        workers.foreach(_.join())
+        flying.foreach(_.join())
     if failure.get != null then throw failure.get
     outcomes.flown = done
     outcomes
 
-  /** By the scalar reference. */
-  private final class Scalar extends Flyer:
-    val batch: Int                                 = 16
-    private var last: (Policy, Policy, DelayTable) = (null, null, null)
-    private var rollout: Rollout                   = null
+  /** Of some 100 kB for a minute each; a search flies the same few episodes again and again. */
+  private inline val MostTimetables = 256
 
-    def fly(worlds: DuelWorlds, from: Int, until: Int, captureRadiusM: Float, into: DuelOutcomes): Unit =
-      for world <- from until until do
-        val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
-        if wanted != last then
-          last = wanted
-          val (pursuer, evader, link) = wanted
-          val own                     =
-            Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
-          rollout = Rollout(own, timing, link, model)
-        into.set(world, rollout.fly(worlds.key(world), captureRadiusM))
+/** Which worlds fly together. */
+private final class WorldBatches(order: Array[Int], starts: Array[Int]):
+  def count: Int = starts.length
 
-  /** By lanes, where a world's policies and link allow. */
-  private final class Lanes(stream: LoopTiming.Stream, reduced: Reduced) extends Flyer:
-    val batch: Int         = StreamDuelKernel.WORLDS
-    private val kernel     = StreamDuelKernel(duel, stream, reduced)
-    private val scalar     = Scalar()
-    private val keys       = Array.ofDim[Int](batch)
-    private val links      = Array.ofDim[DelayTable](batch)
-    private val turnRates  = Array.ofDim[Float](batch)
-    private val radii      = Array.ofDim[Float](batch)
-    private val laneWorlds = Array.ofDim[Int](batch)
+  /** Numbers of the worlds. */
+  def apply(batch: Int): Array[Int] =
+    java.util.Arrays.copyOfRange(
+      order,
+      starts(batch),
+      if batch + 1 < starts.length then starts(batch + 1) else order.length
+    )
 
-    def fly(worlds: DuelWorlds, from: Int, until: Int, captureRadiusM: Float, into: DuelOutcomes): Unit =
-      var filled = 0
-      for world <- from until until do
-        val link = worlds.link(world)
-        DuelBatch.parameters(worlds.pursuer(world), worlds.evader(world)) match
-          case Some((turnRate, radius)) if StreamDuelKernel.canFly(stream, link, reduced) =>
-            laneWorlds(filled) = world
-            keys(filled) = worlds.key(world)
-            links(filled) = link
-            turnRates(filled) = turnRate
-            radii(filled) = radius
-            filled += 1
-          case _ => scalar.fly(worlds, world, world + 1, captureRadiusM, into)
-      if filled > 0 then
-        // Lanes that no world needs fly the last one again.
-        for lane <- filled until batch do
-          keys(lane) = keys(filled - 1)
-          links(lane) = links(filled - 1)
-          turnRates(lane) = turnRates(filled - 1)
-          radii(lane) = radii(filled - 1)
-        kernel.fly(keys, links, turnRates, radii, captureRadiusM)
-        for lane <- 0 until filled do
-          val world = laneWorlds(lane)
-          into.minDistanceM(world) = kernel.minDistance(lane)
-          into.meanDistanceM(world) = kernel.meanDistance(lane)
-          into.meanLast10sM(world) = kernel.meanLast10s(lane)
-          into.captureS(world) = kernel.captureS(lane)
-          into.pursuerEffortRad(world) = kernel.pursuerEffortRad(lane)
-          into.evaderEffortRad(world) = kernel.evaderEffortRad(lane)
+private object WorldBatches:
+  def inOrder(worlds: Int, most: Int): WorldBatches =
+    WorldBatches(Array.range(0, worlds), Array.range(0, worlds, most))
 
-object DuelBatch:
-  /** Turn rate, rad/s, and radius, m, where these are the policies that the kernel knows. */
-  private def parameters(pursuer: Policy, evader: Policy): Option[(Float, Float)] =
-    (pursuer, evader) match
-      case (PaperPursuer(turnRate, None), PaperEvader(radius)) => Some((turnRate.toFloat, radius.toFloat))
-      case _                                                   => None
+  /** A batch has worlds of one key and one link. */
+  def byEpisode(worlds: DuelWorlds, most: Int): WorldBatches =
+    val groups  = java.util.HashMap[(DelayTable, Int), Integer]()
+    val groupOf = Array.tabulate(worlds.size): world =>
+      groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
+    val sizes = Array.ofDim[Int](groups.size)
+    for group <- groupOf do sizes(group) += 1
+    val ends  = sizes.scanLeft(0)(_ + _)
+    val fill  = ends.clone
+    val order = Array.ofDim[Int](worlds.size)
+    for world <- groupOf.indices do
+      order(fill(groupOf(world))) = world
+      fill(groupOf(world)) += 1
+    WorldBatches(order, sizes.indices.flatMap(group => ends(group) until ends(group + 1) by most).toArray)

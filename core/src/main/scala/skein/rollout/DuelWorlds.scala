@@ -10,6 +10,11 @@ import skein.policy.Policy
 trait DuelWorlds:
   def size: Int
 
+  /** Whether many worlds have the same key and the same link, as candidates that meet the same episodes do. Then they
+    * fly together through one [[Timetable]], several times as fast.
+    */
+  def shareEpisodes: Boolean = false
+
   /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same delays. */
   def key(world: Int): Int
   def link(world: Int): DelayTable
@@ -19,7 +24,8 @@ trait DuelWorlds:
 /** What each world came to; see [[Outcome]] for the meanings. One number per world, in metres, seconds and radians.
   *
   * @param flown
-  *   worlds from 0 on that were flown: all, unless the call was cancelled; the others' numbers mean nothing
+  *   how many worlds were flown: all, unless the call was cancelled. The others' smallest distance is 0, as are all
+  *   their numbers.
   */
 final class DuelOutcomes private[rollout] (size: Int):
   val minDistanceM, meanDistanceM, meanLast10sM, captureS, pursuerEffortRad, evaderEffortRad: Array[Float] =

@@ -45,9 +45,10 @@ final class DuelEvaluator(
 
   /** The candidate does not enter the key: all meet the same delays. */
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
-    def size: Int                    = policies.length * keys.length
-    def key(world: Int): Int         = keys(world % keys.length)
-    def link(world: Int): DelayTable = DuelEvaluator.this.link
+    def size: Int                       = policies.length * keys.length
+    override def shareEpisodes: Boolean = true
+    def key(world: Int): Int            = keys(world % keys.length)
+    def link(world: Int): DelayTable    = DuelEvaluator.this.link
     def pursuer(world: Int): Policy = if role == Role.Pursuer then policies(world / keys.length) else opponent
     def evader(world: Int): Policy  = if role == Role.Evader then policies(world / keys.length) else opponent
 
