@@ -19,7 +19,10 @@ import jdk.incubator.vector.VectorMask;
  * loop, many worlds at a time: questions, answers, commands and acknowledgements with sampled
  * delays, order kept, pacing, skipping; vehicles with first-order lag and dead time, exactly
  * integrated between commands. {@link Rollout} with {@code LoopTiming.Stream} and a {@code Reduced}
- * model is its scalar reference; both draw the same delays from a world's key.
+ * model is its scalar reference; both draw the same delays from a world's key. Of its rules the
+ * kernel leaves out what is rare while round trips differ by less than a period: a question and its
+ * answer never overtake those before, a picture waits for the answers of all to one question
+ * however long, and no question fails or is missed.
  *
  * <p>All worlds go through question m together; when its events happen differs by lane. Times are
  * counted from the question, so that floats resolve them. Positions are those at the questions'
@@ -79,7 +82,7 @@ public final class StreamDuelKernel {
   /** What remains of a velocity's error after so many periods. */
   private float[] agedDecay;
 
-  private final FloatVector period, tolerance, lag, dead;
+  private final FloatVector period, interval, minInterval, handover, lag, dead;
   private final FloatVector decayRate, growthRate, periodDecay, periodGain;
 
   private int[] keys;
@@ -89,9 +92,7 @@ public final class StreamDuelKernel {
   private final float[] ahead = new float[WORLDS], right = new float[WORLDS];
 
   /** The pursuer's heading that the evader's controller knows, and its direction. */
-  private final float[] frameHeading = new float[WORLDS];
 
-  private final float[] frameCos = new float[WORLDS], frameSin = new float[WORLDS];
   private final float[] aside = new float[WORLDS];
   private final float[] decay = new float[WORLDS];
   private final int lastSteps;
@@ -184,7 +185,11 @@ public final class StreamDuelKernel {
 
   /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
   public static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
-    return model.lagS() > 0 && longestS(timing, link.maxS(), model) <= MOST_LAGS * model.lagS();
+    return model.lagS() > 0
+        && !timing.decideThenPace()
+        && timing.asking().spreadS() == 0
+        && timing.steering().mostOutstanding() == LoopTiming.MostOutstanding()
+        && longestS(timing, link.maxS(), model) <= MOST_LAGS * model.lagS();
   }
 
   /** The powers of e that a command's response needs stay within what floats can hold. */
@@ -200,7 +205,7 @@ public final class StreamDuelKernel {
 
   /**
    * @param duel start, speeds and duration; its policies are not used
-   * @param timing the period and the tolerance of the pace
+   * @param timing period, interval and steering
    * @param model lag above 0
    */
   public StreamDuelKernel(Duel duel, LoopTiming.Stream timing, Reduced model) {
@@ -210,7 +215,9 @@ public final class StreamDuelKernel {
     this.model = model;
     periodS = (float) timing.periodS();
     period = constant(periodS);
-    tolerance = constant((float) timing.toleranceS());
+    interval = constant((float) (timing.periodS() - timing.toleranceS()));
+    minInterval = constant((float) timing.steering().minIntervalS());
+    handover = constant((float) timing.steering().handoverS());
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     lastSteps = (int) Math.round(10 / timing.periodS());
     lag = constant((float) model.lagS());
@@ -309,12 +316,10 @@ public final class StreamDuelKernel {
       draw(step, Rollout.CommandPlace() + 2 * each.role, each.delay);
       draw(step, Rollout.CommandPlace() + 2 * each.role + 1, each.backDelay);
     }
-    relate(pursuer.cos, pursuer.sin);
+    relate();
     turn(pursuer);
     LaneMath.sinCos(pursuer.newHeading, pursuer.newSin, pursuer.newCos, WORLDS);
-    know(evader, pursuer);
-    relate(frameCos, frameSin);
-    evade(evader);
+    evade(evader, pursuer);
     LaneMath.sinCos(evader.newHeading, evader.newSin, evader.newCos, WORLDS);
     for (Vehicles each : vehicles) {
       command(each, slotOf[0], constant((float) ((steps - step) * timing.periodS())));
@@ -379,10 +384,9 @@ public final class StreamDuelKernel {
    */
   private void due(Vehicles each) {
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector turn = FloatVector.fromArray(SPECIES, each.turnAt, i).sub(tolerance);
       FloatVector at =
           FloatVector.fromArray(SPECIES, pictureAt, i)
-              .max(turn)
+              .max(FloatVector.fromArray(SPECIES, each.turnAt, i))
               .max(FloatVector.fromArray(SPECIES, each.freeAt, i));
       at.blend(NEVER, at.compare(GT, FloatVector.fromArray(SPECIES, nextPictureAt, i)))
           .intoArray(each.decideAt, i);
@@ -390,7 +394,7 @@ public final class StreamDuelKernel {
   }
 
   /** The evader as the answers show it, in a frame at the pursuer. */
-  private void relate(float[] cos, float[] sin) {
+  private void relate() {
     Vehicles evader = vehicles[EVADER], pursuer = vehicles[PURSUER];
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector x =
@@ -399,8 +403,8 @@ public final class StreamDuelKernel {
       FloatVector y =
           FloatVector.fromArray(SPECIES, evader.seenY, i)
               .sub(FloatVector.fromArray(SPECIES, pursuer.seenY, i));
-      FloatVector c = FloatVector.fromArray(SPECIES, cos, i),
-          s = FloatVector.fromArray(SPECIES, sin, i);
+      FloatVector c = FloatVector.fromArray(SPECIES, pursuer.cos, i),
+          s = FloatVector.fromArray(SPECIES, pursuer.sin, i);
       x.fma(c, y.mul(s)).intoArray(ahead, i);
       y.fma(c, x.mul(s).neg()).intoArray(right, i);
     }
@@ -426,28 +430,8 @@ public final class StreamDuelKernel {
     }
   }
 
-  /**
-   * The pursuer's heading that the evader's controller knows: the new one where it was sent before.
-   */
-  private void know(Vehicles evader, Vehicles pursuer) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      VectorMask<Float> before =
-          FloatVector.fromArray(SPECIES, pursuer.decideAt, i)
-              .compare(LT, FloatVector.fromArray(SPECIES, evader.decideAt, i));
-      FloatVector.fromArray(SPECIES, pursuer.heading, i)
-          .blend(FloatVector.fromArray(SPECIES, pursuer.newHeading, i), before)
-          .intoArray(frameHeading, i);
-      FloatVector.fromArray(SPECIES, pursuer.cos, i)
-          .blend(FloatVector.fromArray(SPECIES, pursuer.newCos, i), before)
-          .intoArray(frameCos, i);
-      FloatVector.fromArray(SPECIES, pursuer.sin, i)
-          .blend(FloatVector.fromArray(SPECIES, pursuer.newSin, i), before)
-          .intoArray(frameSin, i);
-    }
-  }
-
   /** {@code PaperEvader}. */
-  private void evade(Vehicles evader) {
+  private void evade(Vehicles evader, Vehicles pursuer) {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
           y = FloatVector.fromArray(SPECIES, right, i),
@@ -460,7 +444,7 @@ public final class StreamDuelKernel {
       VectorMask<Float> breakAway = distance.compare(LT, rSquare).andNot(inLeft.or(inRight));
       y.blend(toLeft, inLeft).blend(toRight, inRight).intoArray(right, i);
       ZERO.blend(HALF_PI, breakAway)
-          .add(FloatVector.fromArray(SPECIES, frameHeading, i))
+          .add(FloatVector.fromArray(SPECIES, pursuer.heading, i))
           .intoArray(aside, i);
     }
     LaneMath.atan2(right, ahead, evader.newHeading, WORLDS);
@@ -497,12 +481,19 @@ public final class StreamDuelKernel {
       // The command before is acknowledged when this one has replaced it; the very first replaces
       // none.
       FloatVector free = FloatVector.fromArray(SPECIES, each.freeAt, i);
-      free.max(reaches.add(FloatVector.fromArray(SPECIES, each.backDelay, i)))
-          .blend(free, before.compare(LT, LONG_AGO).or(skip))
+      FloatVector soonest = at.add(minInterval);
+      reaches
+          .add(FloatVector.fromArray(SPECIES, each.backDelay, i))
+          .add(handover)
+          .max(free)
+          .max(soonest)
+          .blend(soonest, before.compare(LT, LONG_AGO))
+          .blend(free, skip)
           .intoArray(each.freeAt, i);
       reaches.blend(before, skip).intoArray(each.commandAt, i);
-      FloatVector turn = FloatVector.fromArray(SPECIES, each.turnAt, i);
-      turn.max(at).add(period).blend(turn, skip).intoArray(each.turnAt, i);
+      at.add(interval)
+          .blend(FloatVector.fromArray(SPECIES, each.turnAt, i), skip)
+          .intoArray(each.turnAt, i);
       at.blend(FloatVector.fromArray(SPECIES, each.decidedAt, i), skip)
           .intoArray(each.decidedAt, i);
       FloatVector newHeading = FloatVector.fromArray(SPECIES, each.newHeading, i);

@@ -1,18 +1,24 @@
 package skein.rollout
 
-import skein.signal.LatencyDistribution
+import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.*
 
 /** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits choose one.
+  * Successive messages are independent.
   *
   * @param delaysS
   *   ascending, s: half of the round trip's quantile in the middle of each 1024th
   */
-final class DelayTable private (val delaysS: Array[Float]):
+final class DelayTable private (val delaysS: Array[Float]) extends Delays:
+  private val delaysNs = delaysS.map(s => Span.ofSeconds(s).toNanos)
+
   /** The delay that these random bits choose, s. */
   def delayS(bits: Int): Float = delaysS(bits >>> DelayTable.Drop)
 
   def maxS: Float = delaysS.last
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    delaysNs(WorldRandom.bits(worldKey, step * Delays.Lines + line) >>> DelayTable.Drop)
 
 object DelayTable:
   val Size = 1024
@@ -26,3 +32,6 @@ object DelayTable:
   val none: DelayTable   = of(LatencyDistribution.Constant(Span.Zero))
   val direct: DelayTable = of(LatencyDistribution.Direct)
   val vpn: DelayTable    = of(LatencyDistribution.Vpn)
+
+  /** The paper's VPN over a long time: stretches of `vpn` and of `direct`. */
+  val vpnMixed: Delays = Delays.of(LatencyProfile.vpnMixed)

@@ -1,10 +1,10 @@
 package skein.rollout
 
-/** A bounded queue of events in the order of their times; events of one time keep the order in which they were added.
-  * An event is a `Long` of the caller's. Allocates nothing after construction.
+/** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they were
+  * added. An event is a `Long` of the caller's. Allocates nothing after construction.
   */
 private final class EventQueue(capacity: Int):
-  private val times    = Array.ofDim[Double](capacity)
+  private val times    = Array.ofDim[Long](capacity)
   private val sequence = Array.ofDim[Long](capacity)
   private val events   = Array.ofDim[Long](capacity)
   private var size     = 0
@@ -15,9 +15,9 @@ private final class EventQueue(capacity: Int):
   def clear(): Unit =
     size = 0; added = 0
 
-  def nextTime: Double = times(0)
+  def nextTime: Long = times(0)
 
-  def add(time: Double, event: Long): Unit =
+  def add(time: Long, event: Long): Unit =
     if size == capacity then throw IllegalStateException(s"more than $capacity events are waiting")
     var hole = size
     size += 1
@@ -45,10 +45,10 @@ private final class EventQueue(capacity: Int):
     put(hole, time, number, events(size))
     first
 
-  private def isBefore(time: Double, number: Long, other: Int): Boolean =
+  private def isBefore(time: Long, number: Long, other: Int): Boolean =
     time < times(other) || (time == times(other) && number < sequence(other))
 
   private def move(from: Int, to: Int): Unit = put(to, times(from), sequence(from), events(from))
 
-  private def put(at: Int, time: Double, number: Long, event: Long): Unit =
+  private def put(at: Int, time: Long, number: Long, event: Long): Unit =
     times(at) = time; sequence(at) = number; events(at) = event

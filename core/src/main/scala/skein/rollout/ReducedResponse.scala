@@ -1,5 +1,6 @@
 package skein.rollout
 
+import skein.signal.Kinematics
 import skein.vehicle.{ReducedFlight, ReducedModel}
 
 /** Forward simulation by an identified [[skein.vehicle.ReducedModel]], exact between the times at which commands begin
@@ -11,13 +12,13 @@ final case class ReducedResponse(model: ReducedModel) extends VelocityResponse:
 private final class ReducedVehicle(model: ReducedModel) extends Vehicle:
   import ReducedVehicle.Pending
   private val flight           = ReducedFlight(model)
-  private var now              = 0.0
+  private var now, down        = 0.0
   private val at, atVx, atVy   = Array.ofDim[Double](Pending)
   private var first, afterLast = 0
 
   def start(x: Double, y: Double, z: Double): Unit =
     flight.start(0, x, y, 0, 0)
-    now = 0; first = 0; afterLast = 0
+    now = 0; down = z; first = 0; afterLast = 0
 
   def command(vx: Double, vy: Double): Unit =
     if afterLast - first == Pending then
@@ -38,6 +39,8 @@ private final class ReducedVehicle(model: ReducedModel) extends Vehicle:
   def y: Double  = flight.y
   def vx: Double = flight.vx
   def vy: Double = flight.vy
+
+  override def seen: Kinematics = level(down)
 
 private object ReducedVehicle:
   private val Pending = 64

@@ -1,7 +1,8 @@
 package skein.rollout
 
-import skein.vehicle.{Environment, Quadrotor, QuadrotorState, ReducedModel, Setpoint}
-import skein.units.Vector3
+import skein.signal.Kinematics
+import skein.units.{Quaternion, Vector3}
+import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and thread. */
 trait Vehicle:
@@ -19,19 +20,37 @@ trait Vehicle:
   def vx: Double
   def vy: Double
 
+  // The same as the vehicle tells it when it is asked.
+  def seenX: Double  = x
+  def seenY: Double  = y
+  def seenVx: Double = vx
+  def seenVy: Double = vy
+
+  /** All that it tells. Where a vehicle knows no more than its horizontal motion: level, not turning, at z = 0. */
+  def seen: Kinematics = level(0)
+
+  protected def level(downM: Double): Kinematics =
+    Kinematics(Vector3(seenX, seenY, downM), Vector3(seenVx, seenVy, 0), Quaternion.Identity, Vector3.Zero)
+
 /** How a vehicle answers to commanded velocities. */
 trait VelocityResponse:
   def create(): Vehicle
+
+  /** From the arrival of a command until it acts in the place of another, s. The first acts at once. */
+  def handoverS: Double = 0.0
 
 object VelocityResponse:
 
   /** The kinematics of the differential game: the velocity is the command. */
   val Ideal: VelocityResponse = () => LagVehicle(Reduced(1, 0, 0))
 
-  /** AirSim's quadrotor with its flight controller at 3 ms, commanded by `moveByVelocityZ` at its start altitude. A
-    * command acts from the next whole step on; a position is that of the last whole step.
+  /** AirSim's quadrotor with its flight controller at 3 ms, behind AirSim's API: see [[QuadrotorResponse]].
+    *
+    * @param hoveredS
+    *   how long it has hovered when the flight starts
     */
-  def quadrotor(quadrotor: Quadrotor = Quadrotor.AirSim): VelocityResponse = () => QuadrotorVehicle(quadrotor)
+  def quadrotor(quadrotor: Quadrotor = Quadrotor.AirSim, hoveredS: Double = 0.0): VelocityResponse =
+    QuadrotorResponse(quadrotor, hoveredS)
 
 /** A first-order model of the response to commanded velocity: v' = (gain · command(t − deadTime) − v) / lag.
   *
@@ -55,13 +74,14 @@ object Reduced:
 private final class LagVehicle(model: Reduced) extends Vehicle:
   import LagVehicle.Pending
   var x, y, vx, vy               = 0.0
+  private var down               = 0.0
   private var now                = 0.0
   private var wantedX, wantedY   = 0.0
   private val at, atX, atY       = Array.ofDim[Double](Pending)
   private var first, behindFirst = 0
 
   def start(x0: Double, y0: Double, z: Double): Unit =
-    x = x0; y = y0; vx = 0; vy = 0
+    x = x0; y = y0; vx = 0; vy = 0; down = z
     now = 0; wantedX = 0; wantedY = 0
     first = 0; behindFirst = 0
 
@@ -82,6 +102,8 @@ private final class LagVehicle(model: Reduced) extends Vehicle:
       first += 1
     glide(timeS)
 
+  override def seen: Kinematics = level(down)
+
   private def glide(until: Double): Unit =
     val dt = until - now
     if model.lagS > 0 then
@@ -97,31 +119,3 @@ private final class LagVehicle(model: Reduced) extends Vehicle:
 
 private object LagVehicle:
   private val Pending = 64
-
-private final class QuadrotorVehicle(quadrotor: Quadrotor) extends Vehicle:
-  private val state              = QuadrotorState()
-  private var setpoint: Setpoint = Setpoint.Disarmed
-  private var down               = 0.0
-  private var steps              = 0L
-
-  def start(x: Double, y: Double, z: Double): Unit =
-    state.copyFrom(quadrotor.hovering(Vector3(x, y, z)))
-    setpoint = Setpoint.hold(Vector3(x, y, z))
-    down = z
-    steps = 0
-
-  def command(vx: Double, vy: Double): Unit = setpoint = Setpoint.velocityZ(vx, vy, down)
-
-  def advance(timeS: Double): Unit =
-    while (steps + 1) * quadrotor.stepS <= timeS + QuadrotorVehicle.Rounding do
-      quadrotor.step(state, setpoint, Environment.Calm)
-      steps += 1
-
-  def x: Double  = state.x
-  def y: Double  = state.y
-  def vx: Double = state.vx
-  def vy: Double = state.vy
-
-private object QuadrotorVehicle:
-  /** A step that ends at the asked time but for rounding belongs to it, s. */
-  private val Rounding = 1e-9

@@ -81,7 +81,7 @@ class RolloutSuite extends munit.FunSuite:
 
   for
     (loop, link, name, least, most) <- Seq(
-      (LoopTiming.Futures(), DelayTable.direct, "direct", 8.9, 9.7),
+      (LoopTiming.Futures(), DelayTable.direct, "direct", 8.8, 9.7),
       (LoopTiming.Stream(), DelayTable.direct, "direct", 8.9, 9.6),
       (LoopTiming.Futures(), DelayTable.vpn, "vpn", 9.9, 11.0),
       (LoopTiming.Stream(), DelayTable.vpn, "vpn", 9.9, 11.0)

@@ -2,6 +2,7 @@ package skein.flow
 
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
+import skein.forecast.{Estimate, Forecast}
 import skein.link.Clock
 import skein.units.*
 

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.policy.{Policy, Role, Scenario, TeamPolicy, TeamSight}
-import skein.flow.{Estimate, Evidence, Forecast}
+import skein.forecast.{Estimate, Evidence, Forecast}
 import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sighting, TrueAge}
 import skein.signal.{ClockAlignment, Kinematics}
 import skein.units.*

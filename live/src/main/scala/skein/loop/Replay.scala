@@ -104,7 +104,7 @@ final class Replay(scenario: Scenario, recording: Recording):
           sightingOf(recorded, reading.vehicle).flatMap(_.predicted) match
             case Some(motion) => moved(read, motion.positionNed, motion.velocityNed)
             case None         => moved(read, OutOfSight, read.velocityNed)
-      skein.flow.Estimate(estimated, predicted.actsAt, reading.state.validAt)
+      skein.forecast.Estimate(estimated, predicted.actsAt, reading.state.validAt)
 
   private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
     read.copy(positionNed = positionNed, velocityNed = velocityNed)

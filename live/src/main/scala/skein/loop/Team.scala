@@ -6,6 +6,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
 import skein.flow.*
+import skein.forecast.{Commanded, Evidence, Forecast}
 import skein.link.Clock
 import skein.policy.{Policy, Scenario, TeamPolicy}
 import skein.record.*

@@ -3,6 +3,7 @@ package skein.flow
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.duration.*
+import skein.forecast.*
 import skein.link.Clock
 import skein.signal.*
 import skein.units.*

@@ -1,4 +1,4 @@
-package skein.flow
+package skein.forecast
 
 import skein.signal.{ClockAlignment, Kinematics, OneWayDelays, Stamped}
 import skein.units.*

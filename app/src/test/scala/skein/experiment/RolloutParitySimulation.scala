@@ -1,0 +1,115 @@
+package skein.experiment
+
+import scala.collection.mutable.ArrayBuffer
+import scala.concurrent.duration.*
+import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.Scenario
+import skein.record.Reading
+import skein.rollout.*
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to rounding: every vehicle
+  * is read at the same nanoseconds at the same places, and is commanded the same headings.
+  */
+class RolloutParitySimulation extends munit.FunSuite:
+  override val munitTimeout = 5.minutes
+
+  private val duration = Span.ofSeconds(60)
+
+  private def settings(loop: LoopKind, link: LatencyProfile, asPublished: Boolean) =
+    FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, pairs = 1, asPublished)
+
+  /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
+  private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
+    override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: $a, $b"
+
+  private def check(loop: LoopKind, link: LatencyProfile, seed: Long, asPublished: Boolean = false): Unit =
+    val flown  = TappedFlight.fly(settings(loop, link, asPublished), FlightPlan("parity", loop, link, seed))
+    val every  = LoopSettings.every(Span.ofMillis(100))
+    val timing =
+      LoopTimings.of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
+    val scenario = Scenario.duel(asPublished)
+    val vehicles = scenario.agents.map(_.name)
+    val clue     = s"${loop.label} over ${link.name}, seed $seed"
+
+    val readings, commands = ArrayBuffer.empty[Note]
+    val observer           = new LoopObserver:
+      override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit =
+        readings += Note(vehicle, number, Span.ofNanos(atNs), x, y)
+      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double): Unit =
+        val velocity = scenario.agents(vehicle).velocityNed(headingRad)
+        commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
+    val model   = VelocityResponse.quadrotor(hoveredS = flown.hovered.toSeconds)
+    val rollout = Rollout(Duel.of(scenario, duration.toSeconds), timing, flown.delays, model)
+    val _       = rollout.fly(0, observer = observer)
+
+    def same(what: String, recorded: Seq[Note], again: Seq[Note], tolerance: Double): Unit =
+      val (expected, actual) = (sorted(recorded), sorted(again))
+      for (e, a) <- expected.zip(actual) do
+        val isSame = e.vehicle == a.vehicle && e.number == a.number && e.at == a.at &&
+          math.abs(e.a - a.a) <= tolerance && math.abs(e.b - a.b) <= tolerance
+        assert(isSame, s"$clue: $what\nflown   $e\nrollout $a")
+      assertEquals(actual.size, expected.size, s"$clue: $what")
+
+    val startS = if loop == LoopKind.Paused then recordedStart(flown) else flown.startedAt
+    val read   = flown.recording.readings.map: (reading: Reading) =>
+      val place = reading.state.value.positionNed
+      Note(
+        vehicles.indexOf(reading.vehicle),
+        reading.sequence.toInt,
+        reading.state.validAt.since(startS),
+        place.x,
+        place.y
+      )
+    // A recorded command bears the number of its decision, and not every decision is sent.
+    val sent = flown.recording.commands
+      .groupBy(_.vehicle)
+      .toSeq
+      .flatMap: (vehicle, commands) =>
+        for (command, number) <- commands.sortBy(_.sentAt.toNanos).zipWithIndex
+        yield Note(
+          vehicles.indexOf(vehicle),
+          number,
+          command.sentAt.since(startS),
+          command.velocityNorth.value,
+          command.velocityEast.value
+        )
+    same("readings", read, readings.toSeq, 1e-6)
+    if loop != LoopKind.Paused then same("commands", sent, commands.toSeq, 1e-6)
+
+  /** In the order of time, those of the last moments left out. */
+  private def sorted(notes: Seq[Note]): Seq[Note] =
+    notes.filter(_.at < duration - Span.ofMillis(1)).sortBy(note =>
+      (note.vehicle, note.at.toNanos, note.number)
+    )
+
+  private def recordedStart(flown: TappedFlight): Instant = flown.recording.readings.head.state.validAt
+
+  test("paused, which meets no delays"):
+    check(LoopKind.Paused, LatencyProfile.none, 1)
+
+  for
+    (loop, link, seed) <- Seq(
+      (LoopKind.Sequential, "direct", 1),
+      (LoopKind.Sequential, "vpn", 2),
+      (LoopKind.Futures, "direct", 1),
+      (LoopKind.Futures, "vpn", 2),
+      (LoopKind.Stream, "direct", 1),
+      (LoopKind.Stream, "vpn", 2),
+      (LoopKind.Stream, "vpn-mixed", 3),
+      // Answers overtake one another, come too late, and questions are missed.
+      (LoopKind.Stream, "lognormal:150ms,0.8", 1),
+      (LoopKind.Predictive, "direct", 1),
+      (LoopKind.Predictive, "vpn", 2),
+      (LoopKind.Predictive, "lognormal:150ms,0.8", 1)
+    )
+  do
+    test(s"${loop.label} over $link"):
+      check(loop, profile(link), seed)
+
+  test("stream over vpn as published: spread questions, answers in order, a decision at each"):
+    check(LoopKind.Stream, LatencyProfile.vpn, 3, asPublished = true)
+
+  private def profile(name: String): LatencyProfile =
+    LatencyProfile.parse(name, Left(_)).fold(error => fail(error.message), identity)

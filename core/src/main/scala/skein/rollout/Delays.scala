@@ -1,0 +1,102 @@
+package skein.rollout
+
+import skein.signal.LatencyProfile
+
+/** How long each message of a flight is under way. A pure function of the world and the message, so that neither the
+  * order of the questions nor a batch changes anything.
+  */
+trait Delays:
+
+  /** The one-way delay of a message, ns. A message that shares its line with others comes out after them, whatever its
+    * own delay; [[LoopTiming]] says which lines keep their order.
+    *
+    * @param worldKey
+    *   of [[WorldRandom]]
+    * @param line
+    *   what it is and of which vehicle: see [[Delays.question]] and the others
+    * @param step
+    *   of the loop, to which it belongs
+    * @param number
+    *   counts the messages of the vehicle and kind, whoever asks; that of an answer is its question's or command's
+    * @param sentAtNs
+    *   since the flight's start
+    */
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long
+
+object Delays:
+  /** Lines, and so places of the random sequence that belong to one step; the kernels use the same. */
+  val Lines = 16
+
+  /** @param asker
+    *   0 or 1: the vehicle that each asks for itself (`Futures`); 0 where one asks for all
+    */
+  def question(asker: Int, vehicle: Int): Int = 4 * asker + 2 * vehicle
+  def answer(asker: Int, vehicle: Int): Int   = question(asker, vehicle) + 1
+
+  def command(vehicle: Int): Int         = FirstCommand + 2 * vehicle
+  def acknowledgement(vehicle: Int): Int = command(vehicle) + 1
+
+  private[rollout] val FirstCommand = 8
+
+  /** A line that no message uses: how long a link stays busy or quiet. */
+  private[rollout] val Stretch = 12
+
+  /** The delays of a link: half of a sampled round trip each. */
+  def of(profile: LatencyProfile): Delays = profile match
+    case LatencyProfile.Steady(_, roundTrip)                    => DelayTable.of(roundTrip)
+    case LatencyProfile.Alternating(_, busy, quiet, lasts, not) =>
+      AlternatingDelays(DelayTable.of(busy), DelayTable.of(quiet), lasts.toSeconds, not.toSeconds)
+
+/** A link that is busy for a while and then quiet for a while; how long is exponentially distributed, and each world's
+  * own. A flight begins at a random moment.
+  */
+final case class AlternatingDelays(
+    busy: DelayTable,
+    quiet: DelayTable,
+    busyLastsS: Double,
+    quietLastsS: Double
+) extends Delays:
+  require(busyLastsS > 0 && quietLastsS > 0, s"stretches must be positive: $busyLastsS, $quietLastsS s")
+
+  /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before it. */
+  def isBusy(worldKey: Int, timeNs: Long): Boolean =
+    var stretch = 0
+    var isBusy  = uniform(worldKey, stretch) < busyLastsS / (busyLastsS + quietLastsS)
+    var until   = 0.0
+    while
+      stretch += 1
+      // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
+      until -= math.log1p(-uniform(worldKey, stretch)) * (if isBusy then busyLastsS else quietLastsS)
+      until * 1e9 <= timeNs
+    do isBusy = !isBusy
+    isBusy
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    (if isBusy(worldKey, sentAtNs) then busy else quiet).delayNs(worldKey, line, step, number, sentAtNs)
+
+  private def uniform(worldKey: Int, stretch: Int): Double =
+    (WorldRandom.bits(worldKey, stretch * Delays.Lines + Delays.Stretch) >>> 8) * AlternatingDelays.Step
+
+private object AlternatingDelays:
+  private val Step = 1.0 / (1 << 24)
+
+/** The delays of one flight, as they were: whatever world flies meets these. A message that is not on record never
+  * arrives.
+  *
+  * @param delaysNs
+  *   by vehicle and kind (question, answer, command, acknowledgement), then by number; [[RecordedDelays.Lost]] where one
+  *   did not arrive
+  */
+final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays:
+  import RecordedDelays.Lost
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    val (vehicle, kind) =
+      if line >= Delays.FirstCommand then ((line - Delays.FirstCommand) / 2, 2 + line % 2)
+      else (line                                                                      % 4 / 2, line % 2)
+    val known = delaysNs(vehicle)(kind)
+    if number < known.length then known(number) else Lost
+
+object RecordedDelays:
+  /** Thirty years. */
+  val Lost: Long = 1_000_000_000_000_000_000L

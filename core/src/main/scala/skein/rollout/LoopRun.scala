@@ -1,0 +1,140 @@
+package skein.rollout
+
+/** A loop while it flies: what it does when something happens. One case of [[LoopTiming]] each. Mutable. */
+private trait LoopRun extends Controller.OnSent:
+  def controllers: Array[Controller]
+
+  def start(): Unit
+
+  /** It is time for what was scheduled as `Tick`. */
+  def tick(vehicle: Int, number: Int): Unit
+
+  def answered(vehicle: Int, question: Int): Unit
+
+  def timedOut(vehicle: Int, question: Int): Unit
+
+  /** It is time for what was scheduled as `Patience`. */
+  def patienceOver(): Unit = ()
+
+  /** It is time for what was scheduled as `Due`. */
+  def due(number: Int): Unit = ()
+
+  def sent(agent: Int, number: Int, headingRad: Double): Unit = ()
+
+  /** A command was answered because a newer one has replaced it. */
+  def replaced(agent: Int, number: Int): Unit = ()
+
+private object LoopRun:
+  def of(timing: LoopTiming, world: DuelWorld): LoopRun = timing match
+    case paused: LoopTiming.Paused         => PausedRun(paused, world)
+    case sequential: LoopTiming.Sequential => SequentialRun(sequential, world)
+    case futures: LoopTiming.Futures       => FuturesRun(futures, world)
+    case stream: LoopTiming.Stream         => StreamRun(stream, world)
+    case predictive: LoopTiming.Predictive => PredictiveRun(predictive, world)
+
+/** [[LoopTiming.Paused]]. */
+private final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) extends LoopRun:
+  private val periodNs               = DuelWorld.nanos(timing.periodS)
+  private val sight                  = DuelSight()
+  val controllers: Array[Controller] =
+    Array.tabulate(2)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
+
+  def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
+
+  def tick(vehicle: Int, number: Int): Unit =
+    for vehicle <- 0 to 1 do
+      sight.take(world, vehicle, world.readNow(vehicle, number))
+      sight.sent(vehicle) = controllers(vehicle).sentHeading
+    for agent <- 0 to 1 do
+      controllers(agent).decide(sight)
+      controllers(agent).sentNow()
+      world.commandNow(agent, controllers(agent).decidedHeading)
+    world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
+
+  def answered(vehicle: Int, question: Int): Unit = ()
+  def timedOut(vehicle: Int, question: Int): Unit = ()
+
+/** [[LoopTiming.Sequential]]. */
+private final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorld) extends LoopRun:
+  import DuelWorld.{Evader, Pursuer}
+  private val periodNs               = DuelWorld.nanos(timing.periodS)
+  private val sight                  = DuelSight()
+  val controllers: Array[Controller] =
+    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
+
+  def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
+
+  def tick(vehicle: Int, number: Int): Unit =
+    val _ = world.ask(0, Evader, number)
+
+  def answered(vehicle: Int, question: Int): Unit =
+    val step = world.stepOf(vehicle, question)
+    sight.take(world, vehicle, question)
+    if vehicle == Evader then
+      val _ = world.ask(0, Pursuer, step)
+    else
+      for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      for controller <- controllers do controller.offer(sight)
+      goOn(step)
+
+  def timedOut(vehicle: Int, question: Int): Unit = goOn(world.stepOf(vehicle, question))
+
+  private def goOn(step: Int): Unit = world.schedule(world.nowNs + periodNs, DuelWorld.Tick, 0, step + 1)
+
+/** [[LoopTiming.Futures]]. */
+private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
+  import DuelWorld.{Evader, Pursuer, Ring, slot}
+  private val periodNs               = DuelWorld.nanos(timing.periodS)
+  private val most                   = 2 * timing.asking.window
+  private val sight                  = DuelSight()
+  val controllers: Array[Controller] =
+    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
+
+  /** The same task's question to the evader, by its question to the pursuer. */
+  private val before = Array.ofDim[Int](2 * Ring)
+
+  // Whose task of the current step begins next (2: all have), and the step that waits behind it.
+  private var next, current = 0
+  private var waiting       = FuturesRun.Nothing
+  private var underWay      = 0
+
+  def start(): Unit =
+    next = 2; waiting = FuturesRun.Nothing; underWay = 0
+    world.schedule(0, DuelWorld.Tick, 0, 0)
+
+  def tick(vehicle: Int, number: Int): Unit =
+    world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
+    if waiting == FuturesRun.Nothing then waiting = number
+    begin()
+
+  /** Begins as many tasks as may be under way. */
+  private def begin(): Unit =
+    while underWay < most && (next < 2 || waiting != FuturesRun.Nothing) do
+      if next == 2 then
+        next = 0
+        current = waiting
+        waiting = FuturesRun.Nothing
+      underWay += 1
+      val _ = world.ask(next, Evader, current)
+      next += 1
+
+  def answered(vehicle: Int, question: Int): Unit =
+    val agent = world.askerOf(vehicle, question)
+    if vehicle == Evader then
+      val asked = world.ask(agent, Pursuer, world.stepOf(vehicle, question))
+      before(slot(Pursuer, asked)) = question
+    else
+      sight.take(world, Evader, before(slot(Pursuer, question)))
+      sight.take(world, Pursuer, question)
+      for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      controllers(agent).offer(sight)
+      ended()
+
+  def timedOut(vehicle: Int, question: Int): Unit = ended()
+
+  private def ended(): Unit =
+    underWay -= 1
+    begin()
+
+private object FuturesRun:
+  private val Nothing = -1

@@ -1,0 +1,72 @@
+package skein.rollout
+
+import skein.forecast.{Commanded, Evidence, Forecast}
+import skein.signal.Stamped
+import skein.units.Instant
+import skein.vehicle.Setpoint
+
+/** [[LoopTiming.Predictive]]. The forecast is a value: this loop allocates. */
+private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorld)
+    extends LoopRun,
+      PeriodicQuestions.Seen:
+  import DuelWorld.{nanos, slot}
+
+  private val periodNs  = nanos(timing.periodS)
+  private val questions = Array.tabulate(2)(PeriodicQuestions(world, _, periodNs, timing.asking, this))
+  val controllers: Array[Controller] =
+    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
+
+  private val sight               = DuelSight()
+  private val validAt, receivedAt = Array.ofDim[Long](2)
+  private val known               = Array.ofDim[Boolean](2)
+  private var forecast            = Forecast(Vector.empty)
+
+  def start(): Unit =
+    known(0) = false; known(1) = false
+    forecast = Forecast(Vector.fill(2)(timing.predictor))
+    questions.foreach(_.start())
+    world.schedule(periodNs / 2, DuelWorld.Due, 0, 0)
+
+  def tick(vehicle: Int, number: Int): Unit = questions(vehicle).tick(number)
+
+  def answered(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = true)
+
+  def timedOut(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = false)
+
+  def seen(vehicle: Int, question: Int): Unit =
+    val at      = slot(vehicle, question)
+    val isNewer =
+      !known(vehicle) || world.validAtNs(at) > validAt(vehicle) || world.sentAtNs(at) > receivedAt(vehicle)
+    if isNewer then
+      known(vehicle) = true
+      validAt(vehicle) = world.validAtNs(at); receivedAt(vehicle) = world.receivedAtNs(at)
+      val reading = Stamped(
+        world.seen(vehicle, question),
+        Instant.ofNanos(world.validAtNs(at)),
+        Instant.ofNanos(world.sentAtNs(at)),
+        Instant.ofNanos(world.receivedAtNs(at))
+      )
+      forecast = forecast.withEvidence(Evidence.Seen(vehicle, reading))
+
+  override def due(number: Int): Unit =
+    world.schedule(periodNs / 2 + (number + 1) * periodNs, DuelWorld.Due, 0, number + 1)
+    if known(0) && known(1) then
+      for vehicle <- 0 to 1 do
+        sight.sent(vehicle) = controllers(vehicle).sentHeading
+        sight.step(vehicle) = number
+      sight.forecast = Some(forecast)
+      for controller <- controllers do controller.offer(sight)
+
+  override def sent(agent: Int, number: Int, headingRad: Double): Unit =
+    val duelist  = world.agents(agent)
+    val setpoint = Setpoint.velocityZ(
+      duelist.speed * math.cos(headingRad),
+      duelist.speed * math.sin(headingRad),
+      duelist.altitudeDownM
+    )
+    forecast = forecast.withEvidence(
+      Evidence.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
+    )
+
+  override def replaced(agent: Int, number: Int): Unit =
+    forecast = forecast.withEvidence(Evidence.Replaced(agent, number, Instant.ofNanos(world.nowNs)))

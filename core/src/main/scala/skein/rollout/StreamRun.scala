@@ -1,0 +1,57 @@
+package skein.rollout
+
+/** [[LoopTiming.Stream]]. */
+private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
+    extends LoopRun,
+      PeriodicQuestions.Seen:
+  import DuelWorld.{nanos, slot}
+
+  private val patienceNs = nanos(timing.patienceS)
+  private val questions  =
+    Array.tabulate(2)(PeriodicQuestions(world, _, nanos(timing.periodS), timing.asking, this))
+  val controllers: Array[Controller] =
+    val interval = nanos(timing.periodS) - nanos(timing.toleranceS)
+    Array.tabulate(2)(Controller(world, _, timing.steering, interval, timing.decideThenPace, this))
+
+  // What is joined, as skein.flow.JoinLatest keeps it.
+  private val sight               = DuelSight()
+  private val validAt, receivedAt = Array.ofDim[Long](2)
+  private val known, renewed      = Array.ofDim[Boolean](2)
+  private var patienceEnds        = StreamRun.NoEnd
+
+  def start(): Unit =
+    for vehicle <- 0 to 1 do
+      known(vehicle) = false; renewed(vehicle) = false
+    patienceEnds = StreamRun.NoEnd
+    questions.foreach(_.start())
+
+  def tick(vehicle: Int, number: Int): Unit = questions(vehicle).tick(number)
+
+  def answered(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = true)
+
+  def timedOut(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = false)
+
+  def seen(vehicle: Int, question: Int): Unit =
+    val at      = slot(vehicle, question)
+    val isNewer =
+      !known(vehicle) || world.validAtNs(at) > validAt(vehicle) || world.sentAtNs(at) > receivedAt(vehicle)
+    if isNewer then
+      known(vehicle) = true; renewed(vehicle) = true
+      validAt(vehicle) = world.validAtNs(at); receivedAt(vehicle) = world.receivedAtNs(at)
+      sight.take(world, vehicle, question)
+      if known(0) && known(1) then
+        if renewed(0) && renewed(1) || patienceNs <= 0 then join()
+        else if patienceEnds == StreamRun.NoEnd then
+          patienceEnds = world.nowNs + patienceNs
+          world.schedule(patienceEnds, DuelWorld.Patience, 0, 0)
+
+  override def patienceOver(): Unit = if patienceEnds == world.nowNs then join()
+
+  private def join(): Unit =
+    renewed(0) = false; renewed(1) = false
+    patienceEnds = StreamRun.NoEnd
+    for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+    for controller <- controllers do controller.offer(sight)
+
+private object StreamRun:
+  private val NoEnd = -1L

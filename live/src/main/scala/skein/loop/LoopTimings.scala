@@ -1,0 +1,36 @@
+package skein.loop
+
+import skein.flow.{Sense, Steer}
+import skein.rollout.{Asking, LoopTiming, Steering}
+import skein.units.*
+
+/** The live loops' timing as forward simulation has it. */
+object LoopTimings:
+
+  /** @param askTimeout
+    *   of every question
+    */
+  def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): LoopTiming =
+    val periodS = settings.period.toSeconds
+    val asking  = Asking(
+      settings.window,
+      askTimeout.toSeconds,
+      settings.spread.toSeconds,
+      inOrder = settings.early == Sense.Early.Waits
+    )
+    val steering =
+      Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Steer.Handover.toSeconds)
+    kind match
+      case LoopKind.Paused     => LoopTiming.Paused(periodS)
+      case LoopKind.Sequential => LoopTiming.Sequential(periodS, asking, steering)
+      case LoopKind.Futures    => LoopTiming.Futures(periodS, asking, steering)
+      case LoopKind.Stream     =>
+        LoopTiming.Stream(
+          periodS,
+          (settings.period - settings.paceInterval).toSeconds,
+          settings.patience.toSeconds,
+          settings.decideThenPace,
+          asking,
+          steering
+        )
+      case LoopKind.Predictive => LoopTiming.Predictive(periodS, settings.model(0), asking, steering)
