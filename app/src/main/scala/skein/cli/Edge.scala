@@ -8,10 +8,18 @@ private[cli] object Edge:
 
   def await[A](future: Future[A]): A = Await.result(future, Duration.Inf)
 
+  @volatile private var interrupted = false
+
+  /** Whether Ctrl-C ends the program: then a hook waits for the main thread to end by itself, and `sys.exit` would wait
+    * for the hook.
+    */
+  def isInterrupted: Boolean = interrupted
+
   /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most `graceMillis`. */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
     val hook = Thread(() =>
+      interrupted = true
       stop()
       main.join(graceMillis)
     )

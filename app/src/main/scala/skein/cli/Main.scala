@@ -6,6 +6,8 @@ object Main:
   private val commands: Seq[Command] = Seq(
     FlyCommand,
     SpreadCommand,
+    SearchCommand,
+    BudgetCommand,
     ServeCommand,
     LinkCommand,
     LatencyCommand,
@@ -16,7 +18,9 @@ object Main:
     TortureCommand
   )
 
-  def main(arguments: Array[String]): Unit = sys.exit(run(arguments.toSeq))
+  def main(arguments: Array[String]): Unit =
+    val status = run(arguments.toSeq)
+    if !Edge.isInterrupted then sys.exit(status)
 
   private def run(arguments: Seq[String]): Int =
     arguments.headOption match

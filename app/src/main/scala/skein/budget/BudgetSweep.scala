@@ -1,0 +1,105 @@
+package skein.budget
+
+import skein.experiment.PolicyFile
+import skein.policy.{Policy, Role}
+import skein.rollout.*
+import skein.search.Conditions
+import skein.signal.LatencyDistribution
+
+/** Flies a policy over links of many latencies and jitters, and once over none while the world waits.
+  *
+  * @param flown
+  *   loop, period, vehicles
+  * @param policy
+  *   that is judged
+  * @param roundTrips
+  *   of the marked links: flown as measured, beside the map
+  */
+final class BudgetSweep(
+    flown: Conditions.Resolved,
+    policy: PolicyFile,
+    opponent: PolicyFile,
+    objective: Objective,
+    axes: BudgetAxes,
+    episodes: Int,
+    seed: Long,
+    threads: Int
+):
+  private val durationS         = flown.duel.durationS
+  private val batch             = flown.batch(threads)
+  private val (pursuer, evader) =
+    if policy.role == Role.Pursuer then (policy.policy, opponent.policy) else (opponent.policy, policy.policy)
+
+  /** The paused loop waits for every answer, so that no delay, and no chance, enters. */
+  def truth: Double =
+    val paused = flown.paused.batch(1).fly(Worlds(Vector(DelayTable.none), 1), objective.captureRadiusM)
+    objective.value(paused, 0, policy.role, durationS)
+
+  /** Over a link with these round trips. */
+  def over(roundTrip: LatencyDistribution): Tally =
+    tallies(Vector(DelayTable.of(roundTrip)), _ => (), () => false).get.head
+
+  /** The whole map, row by row.
+    *
+    * @param onProgress
+    *   told how many episodes are flown
+    * @return
+    *   none if it was cancelled
+    */
+  def map(onProgress: Long => Unit, isCancelled: () => Boolean): Option[LatencyBudget] =
+    val truthNow = truth
+    val links    =
+      axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter).map(DelayTable.of)))
+    val rows = links.scanLeft((0L, Option(Vector.empty[Option[Tally]]))):
+      case ((before, Some(_)), row) =>
+        val known = row.flatten
+        val own   = tallies(known, done => onProgress(before + done), isCancelled)
+        (before + known.size.toLong * episodes, own.map(spread(row, _)))
+      case (cancelled, _) => cancelled
+    .tail.map(_._2)
+    Option.when(rows.forall(_.isDefined))(LatencyBudget(axes.meansMs, axes.jittersMs, rows.flatten, truthNow))
+
+  /** Episodes of the map. */
+  def expected: Long =
+    axes.jittersMs.map(jitter =>
+      axes.meansMs.count(LatencyBudget.link(_, jitter).isDefined).toLong
+    ).sum * episodes
+
+  private def spread(row: Vector[Option[DelayTable]], tallies: Vector[Tally]): Vector[Option[Tally]] =
+    val next = tallies.iterator
+    row.map(_.map(_ => next.next()))
+
+  private def tallies(
+      links: Vector[DelayTable],
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Option[Vector[Tally]] =
+    val worlds   = Worlds(links, episodes)
+    val outcomes = batch.fly(worlds, objective.captureRadiusM, done => onProgress(done), isCancelled)
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(links.size): link =>
+        Tally.of(episodes)(episode =>
+          objective.value(outcomes, link * episodes + episode, policy.role, durationS)
+        )
+
+  /** All links meet the same random numbers. */
+  private final class Worlds(links: Vector[DelayTable], each: Int) extends DuelWorlds:
+    private val tables = links.toArray
+    private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
+
+    def size: Int                    = tables.length * each
+    def key(world: Int): Int         = keys(world % each)
+    def link(world: Int): DelayTable = tables(world / each)
+    def pursuer(world: Int): Policy  = BudgetSweep.this.pursuer
+    def evader(world: Int): Policy   = BudgetSweep.this.evader
+
+/** Where the cells lie: round trips' means and jitters, ms, from 0 in even steps. */
+final case class BudgetAxes(meansMs: Vector[Double], jittersMs: Vector[Double])
+
+object BudgetAxes:
+  /** `count` values each, from 0 up to the most, which is left out. */
+  def of(mostMeanMs: Double, means: Int, mostJitterMs: Double, jitters: Int): BudgetAxes =
+    BudgetAxes(
+      Vector.tabulate(means)(_ * mostMeanMs / means),
+      Vector.tabulate(jitters)(_ * mostJitterMs / jitters)
+    )

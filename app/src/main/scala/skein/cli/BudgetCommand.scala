@@ -1,0 +1,216 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import mainargs.{Flag, ParserForClass, arg}
+import skein.budget.*
+import skein.experiment.PolicyFile
+import skein.plot.{Png, Svg}
+import skein.policy.{PolicyFamily, Role}
+import skein.rollout.Objective
+import skein.search.{Conditions, Effort}
+import skein.signal.LatencyDistribution
+import skein.units.Span
+
+/** Options of `./skein budget`. */
+final case class BudgetOptions(
+    @arg(doc = "a policy file, or the name of a family (default: paper-pursuer)")
+    policy: Option[String],
+    forward: ForwardOptions,
+    @arg(doc = "between decisions for one vehicle; several give a map each (default: 100ms)")
+    period: Seq[String],
+    @arg(name = "most-mean", doc = "mean latency at which the map ends (default: 200ms)")
+    mostMean: Option[String],
+    @arg(name = "most-jitter", doc = "jitter at which the map ends (default: 100ms)")
+    mostJitter: Option[String],
+    @arg(doc = "cells along the latency")
+    means: Int = 40,
+    @arg(doc = "cells along the jitter")
+    jitters: Int = 20,
+    @arg(doc = "of each cell (default: 1000 by SIMD, fewer by the scalar engine)")
+    episodes: Option[Int],
+    @arg(doc = "share of the truth that counts as holding, in per cent")
+    tolerance: Double = 5,
+    @arg(name = "at-jitter", doc = "jitter of which the sentence speaks (default: 20ms)")
+    atJitter: Option[String],
+    @arg(name = "one-way", doc = "all latencies are of one direction, instead of round trips")
+    oneWay: Flag,
+    @arg(doc = "path of map, pictures and cells, without .svg, .png, .csv and .json")
+    out: String = "budget"
+)
+
+object BudgetCommand
+    extends OptionsCommand[BudgetOptions](
+      "budget",
+      "tells how much latency and jitter a policy bears, and draws the map",
+      ParserForClass[BudgetOptions]
+    ):
+  private val MostCells    = 10_000
+  private val MostEpisodes = 100_000
+
+  protected def execute(options: BudgetOptions): Either[String, Unit] =
+    for
+      threads   <- options.forward.threadCount
+      policy    <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
+      other     <- options.forward.opponentOf(policy.role)
+      objective <- Objective
+        .parse(options.forward.objective.getOrElse("last10s"), policy.role)
+        .left
+        .map("--objective: " + _)
+      legs = if options.oneWay.value then Legs.OneWay else Legs.RoundTrip
+      axes       <- axesOf(options, legs)
+      atJitterMs <- milliseconds("--at-jitter", options.atJitter, 20, legs)
+      _          <- Either.cond(
+        options.tolerance > 0 && options.tolerance <= 1000,
+        (),
+        s"--tolerance: expected more than 0 %, came ${options.tolerance}"
+      )
+      _ <- Either.cond(
+        options.episodes.forall(count => count >= 1 && count <= MostEpisodes),
+        (),
+        s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
+      )
+      flown <- conditions(options)
+      maps  <- fly(options, flown, policy, other, objective, axes, legs, threads)
+      files <- write(maps, options.out)
+    yield
+      for map <- maps do
+        Console.out.println(s"${policy.label}: ${map.sentence(atJitterMs)}")
+        map.markLines.foreach(line => Console.out.println(s"  $line"))
+      Console.out.println(s"written: ${files.mkString(", ")}")
+
+  private def policyOf(text: String): Either[String, PolicyFile] =
+    PolicyFamily.parse(text).toOption match
+      case Some(family) => PolicyFile.roleOf(family, None).map(PolicyFile.ofDefaults(_, family))
+      case None         => PolicyFile.read(text)
+
+  private def milliseconds(option: String, text: Option[String], otherwise: Double, legs: Legs) =
+    text
+      .fold(Right(Span.ofMillis(otherwise)))(Arguments.span)
+      .map(_.toMillis * legs.perRoundTrip)
+      .left
+      .map(mistake => s"$option: $mistake")
+
+  private def axesOf(options: BudgetOptions, legs: Legs): Either[String, BudgetAxes] =
+    for
+      mean   <- milliseconds("--most-mean", options.mostMean, 200 / legs.perRoundTrip, legs)
+      jitter <- milliseconds("--most-jitter", options.mostJitter, 100 / legs.perRoundTrip, legs)
+      _      <- Either.cond(
+        options.means >= 2 && options.jitters >= 2 && options.means.toLong * options.jitters <= MostCells,
+        (),
+        s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came ${options.means} and ${options.jitters}"
+      )
+      _ <- Either.cond(
+        mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500,
+        (),
+        s"--most-mean, --most-jitter: expected round trips of more than 0 and up to 500 ms, came $mean and $jitter ms"
+      )
+    yield BudgetAxes.of(mean, options.means, jitter, options.jitters)
+
+  private def conditions(options: BudgetOptions): Either[String, Vector[(Conditions, Conditions.Resolved)]] =
+    val periods = if options.period.isEmpty then Vector("100ms") else options.period.toVector
+    periods.foldLeft[Either[String, Vector[(Conditions, Conditions.Resolved)]]](Right(Vector.empty)):
+      (before, text) =>
+        for
+          read     <- before
+          period   <- Arguments.span(text).left.map("--period: " + _)
+          named    <- options.forward.conditions(period)
+          resolved <- named.resolved
+          _        <- Either.cond(
+            named.loop != "paused",
+            (),
+            "--loop: the paused loop is the truth and feels no latency; expected sequential, futures or stream"
+          )
+        yield read :+ (named, resolved)
+
+  private def fly(
+      options: BudgetOptions,
+      flown: Vector[(Conditions, Conditions.Resolved)],
+      policy: PolicyFile,
+      opponent: PolicyFile,
+      objective: Objective,
+      axes: BudgetAxes,
+      legs: Legs,
+      threads: Int
+  ): Either[String, Vector[BudgetMap]] =
+    @volatile var stopped = false
+    Edge.untilInterrupted(() => stopped = true):
+      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, asked) =>
+        val (named, resolved) = asked
+        val batch             = resolved.batch(1)
+        val (pursuer, evader) =
+          if policy.role == Role.Pursuer then (policy.policy, opponent.policy)
+          else (opponent.policy, policy.policy)
+        val isFast   = batch.fliesByLanes(pursuer, evader)
+        val episodes = options.episodes.getOrElse(Effort.of(isFast, resolved.vehicle).cellEpisodes)
+        val sweep    = BudgetSweep(
+          resolved,
+          policy,
+          opponent,
+          objective,
+          axes,
+          episodes,
+          options.forward.seed.getOrElse(1),
+          threads
+        )
+        def map(): Either[String, BudgetMap] =
+          val engine =
+            if isFast || batch.engine.startsWith("scalar") then batch.engine
+            else s"scalar: the lanes do not know ${policy.family.name} against ${opponent.family.name}"
+          Console.out.println(
+            s"${named.loop} every ${PolicyFile.brief(named.periodMs)} ms, ${resolved.vehicle.description}\n" +
+              s"$episodes episodes of ${PolicyFile.brief(named.durationS)} s in each of ${sweep.expected / episodes} cells; engine: $engine"
+          )
+          val startedAt = System.nanoTime()
+          val line      = ProgressLine(sweep.expected, Console.err)
+          val truth     = sweep.truth
+          for
+            _ <- Either.cond(
+              truth != 0 && truth.isFinite,
+              (),
+              s"--objective: ${objective.formula} of the paused truth is $truth, so no share of it can be told; choose another"
+            )
+            budget <- sweep.map(
+              done => line.show(done, ""),
+              () => stopped
+            ).toRight("stopped before the map was whole")
+          yield
+            line.end()
+            val seconds = (System.nanoTime() - startedAt) * 1e-9
+            Console.out.println(f"${sweep.expected}%,d episodes in $seconds%.1f s")
+            BudgetMap(
+              named.loop,
+              named.periodMs,
+              objective.formula,
+              objective.unit,
+              resolved.vehicle.description,
+              policy.label,
+              options.tolerance / 100,
+              episodes,
+              budget,
+              Vector("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn).map:
+                (name, roundTrip) => BudgetMark(name, roundTrip, sweep.over(roundTrip))
+              ,
+              legs
+            )
+        before.flatMap(maps => map().map(maps :+ _))
+
+  private def write(maps: Vector[BudgetMap], out: String): Either[String, Vector[Path]] =
+    val drawing                 = BudgetFigure(maps)
+    val painted                 = Png.bytes(drawing)
+    def file(extension: String) = Path.of(s"$out.$extension")
+    val contents                = Vector(
+      file("svg") -> Svg.file(drawing, "latency budget").getBytes("UTF-8"),
+      file("csv") -> (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString(
+        "",
+        "\n",
+        "\n"
+      ).getBytes("UTF-8"),
+      file("json") -> BudgetMap.json(maps).getBytes("UTF-8")
+    ) ++ painted.toOption.map(file("png") -> _)
+    try
+      Option(Path.of(out).getParent).foreach(Files.createDirectories(_))
+      for (path, bytes) <- contents do Files.write(path, bytes)
+      painted.left.foreach(reason => Console.out.println(s"no PNG: $reason"))
+      Right(contents.map(_._1))
+    catch case failed: IOException => Left(s"--out: cannot write $out.*: $failed")

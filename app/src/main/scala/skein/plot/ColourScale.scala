@@ -1,0 +1,53 @@
+package skein.plot
+
+/** Colours for values between two ends; values beyond get the end's colour. */
+final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
+
+  def of(value: Double): Colour =
+    val place = if to > from then ((value - from) / (to - from)).max(0).min(1) else 0.5
+    val at    = place * (stops.size - 1)
+    val below = at.toInt.min(stops.size - 2)
+    ColourScale.mixed(stops(below), stops(below + 1), at - below)
+
+  /** A bar that shows the scale, with ticks at its right and the label above. */
+  def bar(left: Double, top: Double, bottom: Double, label: String): Vector[Shape] =
+    val slices = 64
+    val width  = 14.0
+    val height = bottom - top
+    val boxes  = Vector.tabulate(slices): i =>
+      Shape.box(
+        left,
+        bottom - height * (i + 1) / slices,
+        left + width,
+        (bottom - height * i / slices + 0.5).min(bottom),
+        of(from + (to - from) * (i + 0.5) / slices)
+      )
+    val axis  = Axis.exactly(label, from, if to > from then to else from + 1)
+    val ticks = axis.ticks.map: tick =>
+      Shape.Text(
+        Point(left + width + 5, bottom - height * axis.share(tick) + 3.5),
+        axis.text(tick),
+        Ink.tickSize,
+        Ink.tickColour
+      )
+    boxes ++ ticks :+ Shape.Text(Point(left, top - 8), label, Ink.tickSize, Ink.labelColour)
+
+object ColourScale:
+  /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */
+  def viridis(from: Double, to: Double): ColourScale = ColourScale(
+    from,
+    to,
+    Vector(0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725)
+  )
+
+  /** White in the middle, blue below and red above (ColorBrewer's RdBu, turned round). */
+  def aroundZero(most: Double): ColourScale = ColourScale(
+    -most,
+    most,
+    Vector(0x2166ac, 0x67a9cf, 0xd1e5f0, 0xffffff, 0xfddbc7, 0xef8a62, 0xb2182b)
+  )
+
+  private def mixed(a: Int, b: Int, share: Double): Colour =
+    def channel(shift: Int) =
+      math.round((a >> shift & 0xff) * (1 - share) + (b >> shift & 0xff) * share).toInt << shift
+    Colour(channel(16) | channel(8) | channel(0))

@@ -1,0 +1,66 @@
+package skein.search
+
+import skein.experiment.TextFile
+import skein.loop.LoopKind
+import skein.rollout.{DelayTable, Duel, DuelBatch, LoopTiming}
+import skein.signal.{LatencyDistribution, LatencyProfile}
+import upickle.default.ReadWriter
+
+/** Under what candidates are judged by forward simulation, as users name it.
+  *
+  * @param model
+  *   see [[VehicleChoice.parse]]
+  */
+final case class Conditions(loop: String, model: String, periodMs: Double, durationS: Double)
+    derives ReadWriter:
+
+  /** @return or what was expected and came */
+  def resolved: Either[String, Conditions.Resolved] =
+    for
+      kind    <- LoopKind.parse(loop).left.map("--loop: " + _)
+      timing  <- Conditions.timing(kind, periodMs / 1000).left.map("--loop: " + _)
+      vehicle <- VehicleChoice.parse(model).left.map("--model: " + _)
+      _       <- Either.cond(
+        periodMs >= 1 && periodMs <= 10_000,
+        (),
+        s"--period: expected 1 ms to 10 s, came $periodMs ms"
+      )
+      _ <- Either.cond(
+        durationS >= 10 && durationS <= 3600,
+        (),
+        s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
+      )
+    yield Conditions.Resolved(timing, vehicle, Duel.paper.copy(durationS = durationS))
+
+object Conditions:
+
+  final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
+    def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
+
+    /** The ground truth with the same vehicles: the same period, and a world that waits. */
+    def paused: Resolved = copy(timing = LoopTiming.Paused(timing.periodS))
+
+  private def timing(loop: LoopKind, periodS: Double): Either[String, LoopTiming] = loop match
+    case LoopKind.Paused     => Right(LoopTiming.Paused(periodS))
+    case LoopKind.Sequential => Right(LoopTiming.Sequential(periodS))
+    case LoopKind.Futures    => Right(LoopTiming.Futures(periodS))
+    case LoopKind.Stream     => Right(LoopTiming.Stream(periodS, periodS / 2))
+    case LoopKind.Predictive =>
+      Left("forward simulation has no predictive loop; expected paused, sequential, futures or stream")
+
+  /** The round trips of a link, which forward simulation takes to be independent of one another. */
+  def roundTrips(link: String): Either[String, LatencyDistribution] =
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap:
+      case LatencyProfile.Steady(_, roundTrip) =>
+        Either.cond(
+          roundTrip.quantile(1).toSeconds <= LongestRoundTripS,
+          roundTrip,
+          s"expected round trips of at most $LongestRoundTripS s, came $link with up to ${roundTrip.quantile(1).toSeconds} s"
+        )
+      case alternating: LatencyProfile.Alternating =>
+        Left(s"expected a link whose latency does not come in stretches, came ${alternating.name}")
+
+  /** Forward simulation keeps so much under way. */
+  val LongestRoundTripS = 2.0
+
+  def delays(link: String): Either[String, DelayTable] = roundTrips(link).map(DelayTable.of)

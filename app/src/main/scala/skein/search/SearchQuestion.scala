@@ -1,0 +1,132 @@
+package skein.search
+
+import skein.experiment.PolicyFile
+import skein.policy.{Policy, PolicyFamily, Role}
+import skein.rollout.*
+import upickle.default.ReadWriter
+
+/** What a search is asked, in the words of the user; enough to go on with it, or to ask again.
+  *
+  * @param opponent
+  *   a policy as [[PolicyFile.text]] writes it, of the other role
+  * @param candidates
+  *   to be tried in all, about
+  * @param episodes
+  *   that each flies; when racing, in the first round
+  * @param population
+  *   of a generation, for the methods that have them
+  */
+final case class SearchQuestion(
+    family: String,
+    role: String,
+    objective: String,
+    method: String,
+    conditions: Conditions,
+    link: String,
+    opponent: String,
+    candidates: Int,
+    episodes: Int,
+    population: Int,
+    seed: Long
+) derives ReadWriter:
+
+  /** @return or what was expected, what came, and in which option */
+  def setup: Either[String, SearchSetup] =
+    for
+      family    <- PolicyFamily.parse(family).left.map("--family: " + _)
+      role      <- PolicyFile.roleOf(family, Some(role)).left.map("--role: " + _)
+      objective <- Objective.parse(objective, role).left.map("--objective: " + _)
+      flown     <- conditions.resolved
+      delays    <- Conditions.delays(link).left.map("--link: " + _)
+      opponent  <- PolicyFile
+        .parse(if role == Role.Pursuer then Role.Evader else Role.Pursuer, opponent)
+        .left
+        .map("--opponent: " + _)
+      method <- SearchQuestion.method(this, family.space.dimension)
+    yield SearchSetup(this, family, role, objective, flown, delays, opponent, method)
+
+object SearchQuestion:
+  val Methods             = "grid, random, cross-entropy, cma-es, racing"
+  private val MostRacing  = 100_000
+  private val MostEpisode = 1_000_000
+
+  /** The paper's policy of the other role. */
+  def paperOpponent(role: Role): PolicyFile =
+    if role == Role.Pursuer then PolicyFile.ofDefaults(Role.Evader, PolicyFamily.paperEvader)
+    else PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
+
+  private def method(asked: SearchQuestion, dimension: Int): Either[String, SearchMethod] =
+    import asked.{candidates, episodes, population}
+    for
+      _ <- Either.cond(candidates >= 4, (), s"--candidates: expected 4 or more, came $candidates")
+      _ <- Either.cond(
+        episodes >= 1 && episodes <= MostEpisode,
+        (),
+        s"--episodes: expected 1 to $MostEpisode, came $episodes"
+      )
+      _ <- Either.cond(
+        population >= 4 && population <= candidates,
+        (),
+        s"--population: expected 4 to the number of candidates, $candidates, came $population"
+      )
+      generations = (candidates / population).max(1)
+      method <- asked.method match
+        case "grid" =>
+          val perAxis = math.floor(math.pow(candidates, 1.0 / dimension) + 1e-9).toInt
+          Either.cond(
+            perAxis >= 2,
+            SearchMethod.Grid(perAxis, episodes),
+            s"--candidates: a grid over $dimension parameters needs 2^$dimension or more, came $candidates"
+          )
+        case "random"        => Right(SearchMethod.Random(candidates, episodes))
+        case "cross-entropy" => Right(SearchMethod.CrossEntropy(population, generations, episodes))
+        case "cma-es"        => Right(SearchMethod.CmaEs(population, generations, episodes))
+        case "racing"        =>
+          Either.cond(
+            candidates <= MostRacing,
+            SearchMethod.Racing(candidates, episodes),
+            s"--candidates: a race takes at most $MostRacing, came $candidates"
+          )
+        case other => Left(s"--method: expected one of $Methods, came '$other'")
+    yield method
+
+/** A search ready to run. */
+final case class SearchSetup(
+    question: SearchQuestion,
+    family: PolicyFamily,
+    role: Role,
+    objective: Objective,
+    conditions: Conditions.Resolved,
+    delays: DelayTable,
+    opponent: PolicyFile,
+    method: SearchMethod
+):
+  val search: Search = Search(family.space, method, objective.direction, question.seed)
+
+  /** The paper's policy of the role, which every result is held against. */
+  val paper: PolicyFamily =
+    if role == Role.Pursuer then PolicyFamily.paperPursuer else PolicyFamily.paperEvader
+
+  def batch(threads: Int): DuelBatch = conditions.batch(threads)
+
+  def evaluator(batch: DuelBatch, of: PolicyFamily = family): Evaluator = DuelEvaluator(
+    batch,
+    conditions.duel.durationS,
+    of,
+    role,
+    opponent.policy,
+    delays,
+    objective,
+    question.seed
+  )
+
+  /** Whether this family's policies fly by lanes. */
+  def isFast(batch: DuelBatch): Boolean =
+    def pair(own: Policy) = if role == Role.Pursuer then (own, opponent.policy) else (opponent.policy, own)
+    val (pursuer, evader) = pair(family.defaultPolicy)
+    batch.fliesByLanes(pursuer, evader, shareEpisodes = true)
+
+  /** A line that says what flies the candidates. */
+  def engine(batch: DuelBatch): String =
+    if isFast(batch) || batch.engine.startsWith("scalar") then batch.engine
+    else s"scalar: the lanes do not know ${family.name} against ${opponent.family.name}"
