@@ -25,6 +25,10 @@ final case class FlightOptions(
     scenario: Option[String],
     @arg(doc = "of a surround, formation or crossing")
     vehicles: Option[Int],
+    @arg(doc =
+      "a policy file of ./skein search: flies the duel with it too, beside the paper's; may be given several times"
+    )
+    policy: Seq[String],
     @arg(doc = "duels side by side, two vehicles each")
     pairs: Option[Int],
     @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
@@ -53,6 +57,7 @@ final case class FlightOptions(
       "period"       -> period,
       "seed"         -> seed,
       "scenario"     -> scenario,
+      "policies"     -> strings(policy),
       "pairs"        -> pairs,
       "model"        -> model,
       "as-published" -> Option.when(asPublished.value)(true)

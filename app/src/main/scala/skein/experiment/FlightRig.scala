@@ -50,7 +50,8 @@ final class FlightRigs(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  val scenario: Scenario = settings.agents
+  /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
+  private val scenario: Scenario = settings.agents
 
   /** What a recording of this flight begins with. */
   def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
@@ -63,14 +64,15 @@ final class FlightRigs(
       settings.duration,
       clockKind,
       simulator.fold("built-in")(_.toString),
-      if settings.asPublished then s"${settings.scenario}, as published" else settings.scenario,
+      settings.scenario + (if settings.asPublished then ", as published" else "") +
+        plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightRigs.version,
       clock.now()
     ),
     scenario.agents.map(agent =>
       Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
     ),
-    RecordedPlan.parameters(settings)
+    RecordedPlan.parameters(settings, plan)
   )
 
   /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
@@ -100,7 +102,7 @@ final class FlightRigs(
       yield
         val timely       = LoopSettings.every(settings.period).copy(model = _ => settings.vehicleModel)
         val loopSettings = if settings.asPublished then timely.asPublished else timely
-        val team         = Team(scenario, crafts, clock, watch, loopSettings)
+        val team         = Team(plan.agents(settings), crafts, clock, watch, loopSettings)
         val startedAt    = clock.now()
         val flight       =
           Flight.start(plan.loop, team, AirSimStepper(client), settings.duration, clock, watch)

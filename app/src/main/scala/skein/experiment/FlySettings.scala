@@ -17,6 +17,8 @@ import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, Vehicle
   *   duels side by side
   * @param asPublished
   *   of the duel alone
+  * @param policies
+  *   with which the duel is flown too, beside the paper's
   * @param scenario
   *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
   * @param model
@@ -34,7 +36,8 @@ final case class FlySettings(
     surround: TeamScenario.Surround = TeamScenario.Surround(),
     formation: TeamScenario.Formation = TeamScenario.Formation(),
     crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
-    model: Option[ReducedModel] = None
+    model: Option[ReducedModel] = None,
+    policies: List[PolicyFile] = Nil
 ) derives ConfigReader:
 
   /** Absent for the duel. */
@@ -46,8 +49,19 @@ final case class FlySettings(
   /** By which `predictive` carries the readings of a vehicle forward. */
   def vehicleModel: VehicleModel[?] = model.fold(QuadrotorModel.AirSim)(ReducedVehicleModel(_))
 
-  /** The flights, the truth first. Their links' seeds differ, so that no two flights meet the same delays. */
+  /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
+    * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
+    */
   def plans: Vector[FlightPlan] =
+    val names = policies.zipWithIndex.map: (policy, index) =>
+      val same = policies.take(index).count(_.family.name == policy.family.name)
+      policy.family.name + (if same == 0 then "" else s"-${same + 1}")
+    val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
+    papers ++ chosen.flatMap(policy =>
+      papers.map(plan => plan.copy(id = s"${plan.id}-${policy.name}", policy = Some(policy)))
+    )
+
+  private def papers: Vector[FlightPlan] =
     val truth  = Option.when(loops.contains(LoopKind.Paused))((LoopKind.Paused, LatencyProfile.none))
     val others =
       for
@@ -57,8 +71,28 @@ final case class FlySettings(
     (truth.toVector ++ others).distinct.zipWithIndex.map:
       case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
 
-/** One flight of an experiment. */
-final case class FlightPlan(id: String, loop: LoopKind, link: LatencyProfile, seed: Long):
+/** A policy that is flown in the place of the paper's.
+  *
+  * @param name
+  *   short, in tables; no two of an experiment share one
+  */
+final case class ChosenPolicy(name: String, file: PolicyFile)
+
+/** One flight of an experiment.
+  *
+  * @param policy
+  *   without one, the paper's fly
+  */
+final case class FlightPlan(
+    id: String,
+    loop: LoopKind,
+    link: LatencyProfile,
+    seed: Long,
+    policy: Option[ChosenPolicy] = None
+):
+  /** Who flies, in the scenario of the settings. */
+  def agents(settings: FlySettings): Scenario =
+    policy.fold(settings.agents)(_.file.flownIn(settings.agents))
 
   /** Where its recording goes. */
   def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
@@ -104,6 +138,9 @@ object FlySettings:
       ),
       Option.when(settings.scenario != Duel && settings.asPublished)(
         s"as-published: expected with the scenario $Duel, came with '${settings.scenario}'"
+      ),
+      Option.when(settings.scenario != Duel && settings.policies.nonEmpty)(
+        s"policies: expected with the scenario $Duel, came with '${settings.scenario}'"
       )
     ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys)
     Either.cond(mistakes.isEmpty, settings, mistakes.mkString("skein.fly.", "\nskein.fly.", ""))
@@ -122,6 +159,8 @@ object FlySettings:
 
   /** A model file's path. */
   private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
+
+  private given ConfigReader[PolicyFile] = parsed("policy", PolicyFile.read)
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 

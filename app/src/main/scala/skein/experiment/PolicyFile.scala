@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValue}
 import java.nio.file.{Files, Path}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
-import skein.policy.{Policy, PolicyFamily, Role}
+import skein.policy.{Policy, PolicyFamily, Role, Scenario}
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
   * how the policy was found) is for people.
@@ -14,6 +14,10 @@ import skein.policy.{Policy, PolicyFamily, Role}
   */
 final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector[Double]):
   def policy: Policy = family.policy(parameters)
+
+  /** The scenario with this policy for all agents of its role. */
+  def flownIn(scenario: Scenario): Scenario =
+    Scenario(scenario.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
 
   /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
   def text: String =

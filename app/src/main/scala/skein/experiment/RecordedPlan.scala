@@ -9,20 +9,28 @@ import skein.vehicle.ReducedModel
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  def scenario: Scenario = settings.agents
+  def scenario: Scenario = plan.agents(settings)
 
 object RecordedPlan:
   private val Pairs       = "pairs"
   private val AsPublished = "asPublished"
   private val Model       = "model"
 
+  /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
+  val PolicyName = "policy"
+
   /** What [[of]] needs besides the columns that every recording has. */
-  def parameters(settings: FlySettings): Seq[Parameter] =
+  def parameters(settings: FlySettings, plan: FlightPlan): Seq[Parameter] =
     val scenario = settings.team match
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
         Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
-    scenario ++ settings.model.map(model => Parameter(Model, textOf(model)))
+    scenario ++ settings.model.map(model => Parameter(Model, textOf(model))) ++
+      plan.policy.toSeq.flatMap: chosen =>
+        Seq(
+          Parameter(PolicyName, chosen.name),
+          Parameter(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
+        )
 
   /** Reads it back.
     *
@@ -63,7 +71,23 @@ object RecordedPlan:
       settings <- flown(
         FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, 1, false)
       )
-    yield RecordedPlan(settings.copy(model = model), FlightPlan(flight.id, loop, link, flight.seed))
+      policy <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
+    yield RecordedPlan(settings.copy(model = model), FlightPlan(flight.id, loop, link, flight.seed, policy))
+
+  private def policyOf(
+      name: Option[String],
+      byRole: Map[String, String]
+  ): Either[String, Option[ChosenPolicy]] =
+    (name, byRole.toSeq) match
+      case (None, _)                         => Right(None)
+      case (Some(name), Seq((role, policy))) =>
+        PolicyFile
+          .role(role)
+          .flatMap(PolicyFile.parse(_, policy))
+          .map(file => Some(ChosenPolicy(name, file)))
+          .left
+          .map(mistake => s"its parameter '$PolicyName.$role': $mistake")
+      case (Some(name), _) => Left(s"the recording names the policy '$name' and does not say what it is")
 
   /** Gain, lag, dead time, lag across, drag. A double's shortest text reads back as the same double. */
   private def textOf(model: ReducedModel): String =

@@ -22,7 +22,7 @@ object DistanceFigure:
   private def panel(link: String, flights: Vector[FlightSummary]): Drawing =
     val curves    = flights.flatMap(summary => summary.distance.map(summary -> _))
     val published =
-      flights.flatMap(summary => Published.flight(summary.flight.loop, link).flatMap(_.distance))
+      flights.flatMap(summary => summary.published.flatMap(_.distance))
     val highest = (curves.flatMap(_._2.points.map(_._2)) ++ published.map(_.most)).max
     val panel   = Panel(
       Axis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
@@ -33,12 +33,12 @@ object DistanceFigure:
       plotHeight
     )
     val lines =
-      curves.map((summary, curve) => panel.curve(curve.points, Looks.line(Looks.of(summary.flight.loop))))
+      curves.map((summary, curve) => panel.curve(curve.points, Looks.of(summary)))
     val stripsLeft  = panel.right + 17
     val stripsWidth = curves.size.max(5) * slotWidth
     val strips      = curves.zipWithIndex.flatMap:
       case ((summary, curve), index) =>
-        strip(panel, stripsLeft + (index + 0.5) * slotWidth, summary.flight.loop, link, curve.lastTenSeconds)
+        strip(panel, stripsLeft + (index + 0.5) * slotWidth, summary, curve.lastTenSeconds)
     val heading = Shape.Text(
       Point(stripsLeft, panel.top - 10),
       "last 10 s: ours ●, paper ◆",
@@ -53,13 +53,13 @@ object DistanceFigure:
         lines ++ strips ++ legend(panel, flights)
     )
 
-  private def strip(panel: Panel, x: Double, loop: String, link: String, last: Distribution): Vector[Shape] =
-    val colour = Looks.of(loop)
+  private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Shape] =
+    val colour = Looks.of(summary.flight.loop)
     val ours   = Vector(
       Shape.line(Point(x - 5, panel.atY(last.least)), Point(x - 5, panel.atY(last.most)), Stroke(colour, 2)),
       Shape.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(Looks.halo, 0.8)), Some(colour))
     )
-    val paper = Published.flight(loop, link).flatMap(_.distance).toVector.flatMap: published =>
+    val paper = summary.published.flatMap(_.distance).toVector.flatMap: published =>
       Vector(
         Shape.line(
           Point(x + 5, panel.atY(published.least)),
@@ -71,6 +71,6 @@ object DistanceFigure:
     ours ++ paper
 
   private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Shape] =
-    val loops  = flights.map(_.flight.loop).distinct
-    val legend = Legend(0, loops.map(loop => Legend.line(loop, Looks.line(Looks.of(loop), 2.2)))*)
+    val names  = flights.distinctBy(_.name)
+    val legend = Legend(0, names.map(one => Legend.line(one.name, Looks.of(one, 2.2)))*)
     legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))

@@ -14,7 +14,10 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
   /** The flight that the others are measured against. */
-  val truth: Option[FlightSummary] = flights.find(_.flight.loop == "paused")
+  val truth: Option[FlightSummary] = truthOf(None)
+
+  private def truthOf(policy: Option[String]): Option[FlightSummary] =
+    flights.find(summary => summary.flight.loop == "paused" && summary.policy == policy)
 
   /** Duels alone. */
   def duels: FlightSet =
@@ -23,10 +26,12 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** Teams' flights by scenario. */
   val teams: Vector[TeamFlights] = TeamFlights.of(flights)
 
-  /** Mean distance of the last 10 s against the truth's, as a share of the truth's; absent for the truth itself. */
+  /** Mean distance of the last 10 s against that of the truth with the same policies, as a share of it; absent for the
+    * truth itself.
+    */
   def deviation(flight: FlightSummary): Option[Double] =
     for
-      truth <- truth if truth != flight
+      truth <- truthOf(flight.policy) if truth != flight
       from  <- truth.distance
       own   <- flight.distance
     yield own.lastTenSeconds.mean / from.lastTenSeconds.mean - 1
@@ -39,6 +44,11 @@ object FlightSet:
     def place(order: Vector[String], name: String) =
       Some(order.indexOf(name)).filter(_ >= 0).getOrElse(order.size)
     val ordered = flights.toVector.sortBy: summary =>
-      (place(linkOrder, summary.flight.link), summary.flight.link, place(loopOrder, summary.flight.loop))
+      (
+        place(linkOrder, summary.flight.link),
+        summary.flight.link,
+        place(loopOrder, summary.flight.loop),
+        summary.policy.isDefined
+      )
     val twins = Twin.among(ordered)
     new FlightSet(ordered.diff(twins.flatMap(_.virtual)), twins)

@@ -11,6 +11,8 @@ import skein.units.*
   *   of the link's own samples where there are any, else of the readings
   * @param distance
   *   in a duel, between the first pursuer and the first evader; absent if they were not both seen
+  * @param policy
+  *   short name of the policy that was flown in the place of the paper's; the flight's scenario says more
   * @param team
   *   absent for a duel
   */
@@ -25,8 +27,12 @@ final case class FlightSummary(
     commands: Int,
     events: Map[EventKind, Int],
     aborted: Option[String],
-    team: Option[TeamResult] = None
+    team: Option[TeamResult] = None,
+    policy: Option[String] = None
 ):
+  /** The loop, and the policy where it is not the paper's. */
+  def name: String = flight.loop + policy.fold("")(policy => s", $policy")
+
   /** Time flown on the simulator's clock, s. */
   def flownS: Double =
     team.map(_.curve.last._1).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
@@ -40,7 +46,7 @@ final case class FlightSummary(
 
   /** The paper's flight of this loop over this link; it published duels alone. */
   def published: Option[Published.Flight] =
-    if team.isDefined then None else Published.flight(flight.loop, flight.link)
+    if team.isDefined || policy.isDefined then None else Published.flight(flight.loop, flight.link)
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)
 
@@ -76,7 +82,8 @@ object FlightSummary:
       recording.commands.size,
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
       recording.events.find(_.kind == EventKind.Aborted).map(_.detail),
-      team
+      team,
+      recording.heading.parameters.find(_.name == "policy").map(_.value)
     )
 
   private def roles(recording: Recording): Vector[RoleSummary] =

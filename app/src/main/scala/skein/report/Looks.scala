@@ -20,6 +20,11 @@ object Looks:
   val halo: Colour      = Colour(0xffffff)
   val evader: Colour    = Colour(0x8c8c8c)
 
+  /** A flight's curve: dashed where it was not flown with the paper's policies. */
+  def of(flight: FlightSummary, width: Double = 1.4): Stroke =
+    val solid = line(of(flight.flight.loop), width)
+    if flight.policy.isEmpty then solid else solid.copy(dash = Vector(6, 3))
+
   def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
 
   /** How a link is named in titles. */

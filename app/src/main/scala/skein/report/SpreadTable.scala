@@ -5,13 +5,13 @@ object SpreadTable:
 
   /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of the mean
     * distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the closest approach,
-    * and the deviation from the paused truth where it was flown too.
+    * and the deviation from the paused truth of the same policies where it was flown too.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
-    val groups = flights.groupBy(summary => (summary.flight.loop, summary.flight.link))
-    val truth  =
-      groups.collectFirst { case ((loop, _), truths) if loop == "paused" => meanDistance(truths).mean }
-    val order = flights.map(summary => (summary.flight.loop, summary.flight.link)).distinct
+    val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
+    val order  = flights.map(summary => (summary.name, summary.flight.link)).distinct
+    val truths =
+      flights.filter(_.flight.loop == "paused").groupBy(_.policy).view.mapValues(meanDistance(_).mean)
     TextTable(
       Vector(
         "<loop",
@@ -39,7 +39,7 @@ object SpreadTable:
           SummaryTables.fixed(mean.most, 2),
           SummaryTables.fixed(within.mean, 2),
           SummaryTables.fixed(closest.mean, 2),
-          truth.fold("")(truth =>
+          truths.get(groups(group).head.policy).fold("")(truth =>
             String.format(java.util.Locale.ROOT, "%+.1f %%", 100 * (mean.mean / truth - 1))
           )
         )

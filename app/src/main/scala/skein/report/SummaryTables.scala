@@ -34,7 +34,7 @@ object SummaryTables:
               fixed(published.closest, 2)
             )
           case None => Vector("", "", "")
-        Vector(summary.flight.loop, summary.flight.link) ++ ours ++ paper
+        Vector(summary.name, summary.flight.link) ++ ours ++ paper
     )
 
   /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true ages; by the
@@ -56,7 +56,7 @@ object SummaryTables:
               s"${brief(ms.mean)}/${brief(ms.median)}/${brief(ms.p99)}",
             published.fold("")(means => brief(ofRole(means(observation), role.role)))
           )
-        Vector(summary.flight.loop, summary.flight.link, role.role) ++ observed ++
+        Vector(summary.name, summary.flight.link, role.role) ++ observed ++
           Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => brief(age.mean)))
     )
 
@@ -68,7 +68,7 @@ object SummaryTables:
     TextTable(
       Vector("<loop", "<link", "readings", "decisions", "commands") ++ kinds.map(label),
       set.flights.map: summary =>
-        Vector(summary.flight.loop, summary.flight.link) ++
+        Vector(summary.name, summary.flight.link) ++
           Vector(summary.readings, summary.decisions, summary.commands).map(_.toString) ++
           kinds.map(summary.count(_).toString)
     )
@@ -83,7 +83,7 @@ object SummaryTables:
         Vector("live m", "virtual m", "difference", "<flown otherwise"),
       set.twins.map: twin =>
         val flight = twin.live.flight
-        Vector(flight.loop, flight.link, flight.seed.toString, twin.seeds) ++
+        Vector(twin.live.name, flight.link, flight.seed.toString, twin.seeds) ++
           columns.map((role, quantity, _) =>
             twin.find(role, quantity).fold("")(one => fixed(one.distance, 2))
           ) ++

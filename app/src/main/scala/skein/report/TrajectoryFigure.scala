@@ -26,7 +26,7 @@ object TrajectoryFigure:
       val middle = (values.min + values.max) / 2
       Axis.exactly(label, middle - span / 2, middle + span / 2)
     val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
-    val title = panel.title(s"${summary.flight.loop}, ${Looks.link(summary.flight.link)}")
+    val title = panel.title(s"${summary.name}, ${Looks.link(summary.flight.link)}")
     Drawing(
       side + 72,
       side + 82,

@@ -81,4 +81,4 @@ object Twin:
     flights.filterNot(isVirtual).flatMap(live => virtual.get(key(live)).map(Twin(live, _)))
 
   private def isVirtual(summary: FlightSummary) = summary.flight.clock == "virtual"
-  private def key(summary: FlightSummary)       = (summary.flight.loop, summary.flight.link)
+  private def key(summary: FlightSummary)       = (summary.name, summary.flight.link)

@@ -24,7 +24,7 @@ object TwinFigure:
         s"(${SummaryTables.signed(100 * difference)} %)"
     val title = Shape.Text(
       Point(46, 16),
-      s"${flight.loop}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
+      s"${twin.live.name}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
       Ink.titleSize,
       Ink.titleColour,
       bold = true
