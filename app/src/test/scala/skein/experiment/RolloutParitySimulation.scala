@@ -17,19 +17,26 @@ class RolloutParitySimulation extends munit.FunSuite:
 
   private val duration = Span.ofSeconds(60)
 
-  private def settings(loop: LoopKind, link: LatencyProfile, asPublished: Boolean) =
-    FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, pairs = 1, asPublished)
+  private def settings(loop: LoopKind, link: LatencyProfile, asPublished: Boolean, pairs: Int) =
+    FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, pairs, asPublished)
 
   /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
   private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
     override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: $a, $b"
 
-  private def check(loop: LoopKind, link: LatencyProfile, seed: Long, asPublished: Boolean = false): Unit =
-    val flown  = TappedFlight.fly(settings(loop, link, asPublished), FlightPlan("parity", loop, link, seed))
+  private def check(
+      loop: LoopKind,
+      link: LatencyProfile,
+      seed: Long,
+      asPublished: Boolean = false,
+      pairs: Int = 1
+  ): Unit =
+    val flown =
+      TappedFlight.fly(settings(loop, link, asPublished, pairs), FlightPlan("parity", loop, link, seed))
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings.of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
-    val scenario = Scenario.duel(asPublished)
+    val scenario = Scenario.duels(pairs, asPublished)
     val vehicles = scenario.agents.map(_.name)
     val clue     = s"${loop.label} over ${link.name}, seed $seed"
 
@@ -41,7 +48,7 @@ class RolloutParitySimulation extends munit.FunSuite:
         val velocity = scenario.agents(vehicle).velocityNed(headingRad)
         commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
     val model   = VelocityResponse.quadrotor(hoveredS = flown.hovered.toSeconds)
-    val rollout = Rollout(Duel.of(scenario, duration.toSeconds), timing, flown.delays, model)
+    val rollout = Rollout(Engagement.of(scenario, duration.toSeconds), timing, flown.delays, model)
     val _       = rollout.fly(0, observer = observer)
 
     def same(what: String, recorded: Seq[Note], again: Seq[Note], tolerance: Double): Unit =
@@ -107,6 +114,10 @@ class RolloutParitySimulation extends munit.FunSuite:
   do
     test(s"${loop.label} over $link"):
       check(loop, profile(link), seed)
+
+  for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
+    test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
+      check(loop, LatencyProfile.vpn, 1, pairs = 2)
 
   test("stream over vpn as published: spread questions, answers in order, a decision at each"):
     check(LoopKind.Stream, LatencyProfile.vpn, 3, asPublished = true)

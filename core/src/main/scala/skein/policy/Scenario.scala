@@ -44,7 +44,7 @@ final case class Agent(
   * nearest.
   */
 final case class Scenario(agents: Vector[Agent]):
-  private val opponents: Vector[Vector[Int]] = agents.indices.toVector.map: self =>
+  private val opponents = agents.indices.toVector.map: self =>
     val others = agents.indices.filter(_ != self).toVector
     val rivals = others.filter(agents(_).role != agents(self).role)
     agents(self).policy match
@@ -61,13 +61,16 @@ final case class Scenario(agents: Vector[Agent]):
       s"vehicle ${agent.name} has no opponent: a duel needs both roles, a team two vehicles"
     )
 
+  /** Whom each agent plays against. */
+  val assignment: Assignment = Assignment(opponents)
+
   /** Index of the agent that agent `self` plays against: the nearest of its opponents, the first of equals.
     *
     * @param positionNed
     *   position of an agent by its index
     */
   def opponentOf(self: Int, positionNed: Int => Vector3): Int =
-    opponents(self).minBy(other => positionNed(self).horizontalDistance(positionNed(other)))
+    assignment.opponentOf(self, other => positionNed(self).horizontalDistance(positionNed(other)))
 
 object Scenario:
 

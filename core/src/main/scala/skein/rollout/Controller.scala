@@ -8,20 +8,20 @@ import skein.units.Instant
   * @see
   *   `skein.loop.Picture`, which the live loops hold
   */
-private final class DuelSight:
-  val x, y, vx, vy: Array[Double] = Array.ofDim[Double](2)
+private final class DuelSight(count: Int):
+  val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
   /** Headings sent last, rad. */
-  val sent: Array[Double] = Array.ofDim[Double](2)
+  val sent: Array[Double] = Array.ofDim[Double](count)
 
   /** The step of the loop that each vehicle's reading belongs to; what a delay is drawn by. */
-  val step: Array[Int] = Array.ofDim[Int](2)
+  val step: Array[Int] = Array.ofDim[Int](count)
 
   /** What the readings are to be replaced by when it is decided. */
   var forecast: Option[Forecast] = None
 
   def copyFrom(other: DuelSight): Unit =
-    for vehicle <- 0 to 1 do
+    for vehicle <- 0 until count do
       x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
       vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
       sent(vehicle) = other.sent(vehicle); step(vehicle) = other.step(vehicle)
@@ -54,7 +54,7 @@ private final class Controller(
   private val policy     = world.agents(agent).policy
   private val minNs      = nanos(steering.minIntervalS)
   private val handoverNs = nanos(steering.handoverS)
-  private val held       = DuelSight()
+  private val held       = DuelSight(world.count)
 
   private var outstanding   = 0
   private var mayCommandAt  = 0L
@@ -65,7 +65,12 @@ private final class Controller(
   private var decided       = 0.0
   private var sent          = 0.0
   private var made, unused  = 0
-  private var turned        = 0.0
+
+  /** What is decided upon, and how far away it shows another vehicle. */
+  private var upon                    = held
+  private val distance: Int => Double =
+    other => math.hypot(upon.x(agent) - upon.x(other), upon.y(agent) - upon.y(other))
+  private var turned = 0.0
 
   /** Rad. */
   def sentHeading: Double = sent
@@ -116,11 +121,12 @@ private final class Controller(
   def decidedHeading: Double = decided
 
   def decide(sight: DuelSight): Unit =
-    val other   = 1 - agent
     val now     = world.nowNs
     val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
     val before  = decided
     for forecast <- sight.forecast do ahead(sight, forecast)
+    upon = sight
+    val other = world.assignment.opponentOf(agent, distance)
     decided = policy.heading(
       sight.x(other) - sight.x(agent),
       sight.y(other) - sight.y(agent),
@@ -137,7 +143,7 @@ private final class Controller(
   /** Puts where the vehicles will be in the place of where they were read. */
   private def ahead(sight: DuelSight, forecast: Forecast): Unit =
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
-    for vehicle <- 0 to 1 do
+    for vehicle <- 0 until world.count do
       val kinematics = estimates(vehicle).kinematics
       sight.x(vehicle) = kinematics.positionNed.x; sight.y(vehicle) = kinematics.positionNed.y
       sight.vx(vehicle) = kinematics.velocityNed.x; sight.vy(vehicle) = kinematics.velocityNed.y

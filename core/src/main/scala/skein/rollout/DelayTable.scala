@@ -18,7 +18,10 @@ final class DelayTable private (val delaysS: Array[Float]) extends Delays:
   def maxS: Float = delaysS.last
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
-    delaysNs(WorldRandom.bits(worldKey, step * Delays.Lines + line) >>> DelayTable.Drop)
+    delaysNs(WorldRandom.bits(
+      Delays.keyOf(worldKey, line),
+      step * Delays.Lines + line % Delays.Lines
+    ) >>> DelayTable.Drop)
 
 object DelayTable:
   val Size = 1024

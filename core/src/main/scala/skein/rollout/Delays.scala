@@ -24,19 +24,35 @@ trait Delays:
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long
 
 object Delays:
-  /** Lines, and so places of the random sequence that belong to one step; the kernels use the same. */
+  /** Lines of two vehicles, and so places of the random sequence that belong to one step; the kernels use the same. Each
+    * further pair of askers and vehicles has as many lines of its own.
+    */
   val Lines = 16
 
-  /** @param asker
-    *   0 or 1: the vehicle that each asks for itself (`Futures`); 0 where one asks for all
-    */
-  def question(asker: Int, vehicle: Int): Int = 4 * asker + 2 * vehicle
-  def answer(asker: Int, vehicle: Int): Int   = question(asker, vehicle) + 1
+  private val MostPairs = Engagement.Most / 2
 
-  def command(vehicle: Int): Int         = FirstCommand + 2 * vehicle
+  /** @param asker
+    *   the vehicle that each asks for itself (`Futures`); 0 where one asks for all
+    */
+  def question(asker: Int, vehicle: Int): Int =
+    Lines * (asker / 2 * MostPairs + vehicle / 2) + 4 * (asker % 2) + 2 * (vehicle % 2)
+  def answer(asker: Int, vehicle: Int): Int = question(asker, vehicle) + 1
+
+  def command(vehicle: Int): Int         = Lines * (vehicle / 2) + FirstCommand + 2 * (vehicle % 2)
   def acknowledgement(vehicle: Int): Int = command(vehicle) + 1
 
   private[rollout] val FirstCommand = 8
+
+  private[rollout] def isCommand(line: Int): Boolean = line % Lines >= FirstCommand
+
+  /** The vehicle that a line leads to. */
+  private[rollout] def vehicleOf(line: Int): Int =
+    val ofPair = if isCommand(line) then (line % Lines - FirstCommand) / 2 else line % 4 / 2
+    line / Lines % MostPairs * 2 + ofPair
+
+  /** The key of the sequence that a line's delays come from; that of the first two vehicles is the world's own. */
+  private[rollout] def keyOf(worldKey: Int, line: Int): Int =
+    if line < Lines then worldKey else WorldRandom.key(worldKey, line / Lines, 0)
 
   /** A line that no message uses: how long a link stays busy or quiet. */
   private[rollout] val Stretch = 12
@@ -91,10 +107,9 @@ final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays
   import RecordedDelays.Lost
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
-    val (vehicle, kind) =
-      if line >= Delays.FirstCommand then ((line - Delays.FirstCommand) / 2, 2 + line % 2)
-      else (line                                                                      % 4 / 2, line % 2)
-    val known = delaysNs(vehicle)(kind)
+    val vehicle = Delays.vehicleOf(line)
+    val kind    = (if Delays.isCommand(line) then 2 else 0) + line % 2
+    val known   = delaysNs(vehicle)(kind)
     if number < known.length then known(number) else Lost
 
 object RecordedDelays:

@@ -1,6 +1,6 @@
 package skein.rollout
 
-import skein.policy.{Policy, Role, Scenario}
+import skein.policy.{Agent, Policy, Role, Scenario}
 
 /** A pursuer and an evader in one plane, as a rollout flies them.
   *
@@ -16,6 +16,17 @@ final case class Duelist(
     policy: Policy
 )
 
+object Duelist:
+  /** An agent of a scenario that plays against one other. */
+  def of(agent: Agent): Duelist = Duelist(
+    agent.speed.value,
+    agent.startPositionNed.x,
+    agent.startPositionNed.y,
+    agent.startPositionNed.z,
+    agent.startHeading.value,
+    agent.duelPolicy
+  )
+
 /** @param durationS
   *   of an episode
   */
@@ -25,16 +36,7 @@ object Duel:
   /** The duel of a scenario with one pursuer and one evader. */
   def of(scenario: Scenario, durationS: Double = 60.0): Duel =
     require(scenario.agents.size == 2, s"a duel has two agents, this scenario ${scenario.agents.size}")
-    def the(role: Role) =
-      val agent = scenario.agents.find(_.role == role).get
-      Duelist(
-        agent.speed.value,
-        agent.startPositionNed.x,
-        agent.startPositionNed.y,
-        agent.startPositionNed.z,
-        agent.startHeading.value,
-        agent.duelPolicy
-      )
+    def the(role: Role) = Duelist.of(scenario.agents.find(_.role == role).get)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 
   val paper: Duel = of(Scenario.duel())
@@ -62,4 +64,17 @@ final case class Outcome(
     evaderEffortRad: Double,
     decisions: Int,
     skipped: Int
+)
+
+/** What an episode came to for one evader; distances are to the nearest pursuer, once a period.
+  *
+  * @param captureS
+  *   when the distance first was at most the capture radius; infinite if never
+  */
+final case class EvaderOutcome(
+    minDistanceM: Double,
+    minDistanceAtS: Double,
+    meanDistanceM: Double,
+    meanLast10sM: Double,
+    captureS: Double
 )

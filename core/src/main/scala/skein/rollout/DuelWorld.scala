@@ -1,12 +1,13 @@
 package skein.rollout
 
+import skein.policy.Assignment
 import skein.signal.Kinematics
 
-/** What a loop finds outside of itself: the vehicles of a duel, the time, and the messages on their way to and from the
+/** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their way to and from the
   * vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
   */
 private final class DuelWorld(
-    duel: Duel,
+    engagement: Engagement,
     link: Delays,
     model: VelocityResponse,
     asking: Asking,
@@ -14,9 +15,11 @@ private final class DuelWorld(
 ):
   import DuelWorld.*
 
-  val agents: Array[Duelist]         = Array(duel.evader, duel.pursuer)
-  val vehicles: Array[Vehicle]       = Array.fill(agents.length)(model.create())
-  private val queue                  = EventQueue(MostWaiting)
+  val agents: Array[Duelist]         = engagement.agents.toArray
+  val assignment: Assignment         = engagement.assignment
+  val count: Int                     = agents.length
+  val vehicles: Array[Vehicle]       = Array.fill(count)(model.create())
+  private val queue                  = EventQueue(MostWaiting * agents.length)
   private val handoverNs             = nanos(model.handoverS)
   private val timeoutNs              = nanos(asking.timeoutS)
   private var key                    = 0
@@ -24,17 +27,18 @@ private final class DuelWorld(
   private var observer: LoopObserver = LoopObserver.Nobody
 
   // Readings by vehicle and the question's number, see `slot`: what they showed, and when.
-  val x, y, vx, vy                          = Array.ofDim[Double](2 * Ring)
-  val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](2 * Ring)
-  private val kinematics: Array[Kinematics] = Array.ofDim[Kinematics](if keepsKinematics then 2 * Ring else 0)
-  private val steps, askers                 = Array.ofDim[Int](2 * Ring)
-  private val asked                         = Array.ofDim[Int](2)
+  val x, y, vx, vy                          = Array.ofDim[Double](count * Ring)
+  val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](count * Ring)
+  private val kinematics: Array[Kinematics] =
+    Array.ofDim[Kinematics](if keepsKinematics then count * Ring else 0)
+  private val steps, askers = Array.ofDim[Int](count * Ring)
+  private val asked         = Array.ofDim[Int](count)
 
   // Commands by vehicle and number.
-  private val headings         = Array.ofDim[Double](2 * Ring)
-  private val commandSteps     = Array.ofDim[Int](2 * Ring)
-  private val commanded        = Array.ofDim[Int](2)
-  private val commandAt, ackAt = Array.ofDim[Long](2)
+  private val headings         = Array.ofDim[Double](count * Ring)
+  private val commandSteps     = Array.ofDim[Int](count * Ring)
+  private val commanded        = Array.ofDim[Int](count)
+  private val commandAt, ackAt = Array.ofDim[Long](count)
 
   /** Back to the start of an episode. */
   def start(worldKey: Int, listener: LoopObserver): Unit =
@@ -53,7 +57,7 @@ private final class DuelWorld(
 
   /** Lets an event happen at a time that is not past. Events of one time happen in the order of these calls. */
   def schedule(atNs: Long, kind: Int, vehicle: Int, number: Int): Unit =
-    queue.add(atNs, (kind.toLong << 33) | (vehicle.toLong << 32) | number)
+    queue.add(atNs, (kind.toLong << 40) | (vehicle.toLong << 32) | number)
 
   /** Lets time pass up to the next event. */
   def next(): Long =
@@ -150,9 +154,6 @@ private final class DuelWorld(
     vehicles(agent).command(speed * math.cos(headingRad), speed * math.sin(headingRad))
 
 private object DuelWorld:
-  val Evader  = 0
-  val Pursuer = 1
-
   // Kinds of events.
   val ScoreNow     = 0
   val Tick         = 1
@@ -166,24 +167,28 @@ private object DuelWorld:
   val Patience     = 9
   val Due          = 10
 
-  def kindOf(event: Long): Int    = (event >>> 33).toInt
-  def vehicleOf(event: Long): Int = (event >>> 32).toInt & 1
+  def kindOf(event: Long): Int    = (event >>> 40).toInt
+  def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff
   def numberOf(event: Long): Int  = event.toInt
 
   def nanos(seconds: Double): Long = math.round(seconds * 1e9)
 
-  /** Of a question or command to a vehicle, in arrays of `2 * Ring`. */
+  /** Of a question or command to a vehicle, in arrays of `count * Ring`. */
   def slot(vehicle: Int, number: Int): Int = vehicle * Ring + number % Ring
 
   /** Questions and commands of one vehicle that may be under way: more than any window allows. */
   val Ring = 64
 
-  private val MostWaiting = 1024
+  /** Events of one vehicle that may be waiting. */
+  private val MostWaiting = 512
 
 /** Is told what a loop does. */
 trait LoopObserver:
   /** A vehicle was read: at this time, here, as the answer tells it. */
   def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit = ()
+
+  /** A vehicle is here when the world is scored, once a period. */
+  def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
 
   /** A command was sent. */
   def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double): Unit = ()

@@ -35,17 +35,17 @@ private object LoopRun:
 /** [[LoopTiming.Paused]]. */
 private final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) extends LoopRun:
   private val periodNs               = DuelWorld.nanos(timing.periodS)
-  private val sight                  = DuelSight()
+  private val sight                  = DuelSight(world.count)
   val controllers: Array[Controller] =
-    Array.tabulate(2)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
+    Array.tabulate(world.count)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
 
   def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
-    for vehicle <- 0 to 1 do
+    for vehicle <- world.vehicles.indices do
       sight.take(world, vehicle, world.readNow(vehicle, number))
       sight.sent(vehicle) = controllers(vehicle).sentHeading
-    for agent <- 0 to 1 do
+    for agent <- world.vehicles.indices do
       controllers(agent).decide(sight)
       controllers(agent).sentNow()
       world.commandNow(agent, controllers(agent).decidedHeading)
@@ -56,24 +56,23 @@ private final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) exten
 
 /** [[LoopTiming.Sequential]]. */
 private final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorld) extends LoopRun:
-  import DuelWorld.{Evader, Pursuer}
   private val periodNs               = DuelWorld.nanos(timing.periodS)
-  private val sight                  = DuelSight()
+  private val sight                  = DuelSight(world.count)
   val controllers: Array[Controller] =
-    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
+    Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
   def start(): Unit = world.schedule(0, DuelWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
-    val _ = world.ask(0, Evader, number)
+    val _ = world.ask(0, 0, number)
 
   def answered(vehicle: Int, question: Int): Unit =
     val step = world.stepOf(vehicle, question)
     sight.take(world, vehicle, question)
-    if vehicle == Evader then
-      val _ = world.ask(0, Pursuer, step)
+    if vehicle + 1 < world.count then
+      val _ = world.ask(0, vehicle + 1, step)
     else
-      for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
       for controller <- controllers do controller.offer(sight)
       goOn(step)
 
@@ -83,23 +82,23 @@ private final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorl
 
 /** [[LoopTiming.Futures]]. */
 private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
-  import DuelWorld.{Evader, Pursuer, Ring, slot}
+  import DuelWorld.{Ring, slot}
   private val periodNs               = DuelWorld.nanos(timing.periodS)
-  private val most                   = 2 * timing.asking.window
-  private val sight                  = DuelSight()
+  private val most                   = world.count * timing.asking.window
+  private val sight                  = DuelSight(world.count)
   val controllers: Array[Controller] =
-    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
+    Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
-  /** The same task's question to the evader, by its question to the pursuer. */
-  private val before = Array.ofDim[Int](2 * Ring)
+  /** The same task's question to the vehicle before, by its question to a vehicle. */
+  private val before = Array.ofDim[Int](world.count * Ring)
 
-  // Whose task of the current step begins next (2: all have), and the step that waits behind it.
+  // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits behind it.
   private var next, current = 0
   private var waiting       = FuturesRun.Nothing
   private var underWay      = 0
 
   def start(): Unit =
-    next = 2; waiting = FuturesRun.Nothing; underWay = 0
+    next = world.count; waiting = FuturesRun.Nothing; underWay = 0
     world.schedule(0, DuelWorld.Tick, 0, 0)
 
   def tick(vehicle: Int, number: Int): Unit =
@@ -109,24 +108,28 @@ private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) ext
 
   /** Begins as many tasks as may be under way. */
   private def begin(): Unit =
-    while underWay < most && (next < 2 || waiting != FuturesRun.Nothing) do
-      if next == 2 then
+    while underWay < most && (next < world.count || waiting != FuturesRun.Nothing) do
+      if next == world.count then
         next = 0
         current = waiting
         waiting = FuturesRun.Nothing
       underWay += 1
-      val _ = world.ask(next, Evader, current)
+      val _ = world.ask(next, 0, current)
       next += 1
 
   def answered(vehicle: Int, question: Int): Unit =
     val agent = world.askerOf(vehicle, question)
-    if vehicle == Evader then
-      val asked = world.ask(agent, Pursuer, world.stepOf(vehicle, question))
-      before(slot(Pursuer, asked)) = question
+    if vehicle + 1 < world.count then
+      val asked = world.ask(agent, vehicle + 1, world.stepOf(vehicle, question))
+      before(slot(vehicle + 1, asked)) = question
     else
-      sight.take(world, Evader, before(slot(Pursuer, question)))
-      sight.take(world, Pursuer, question)
-      for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      var read = vehicle
+      var its  = question
+      while read >= 0 do
+        sight.take(world, read, its)
+        its = before(slot(read, its))
+        read -= 1
+      for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
       controllers(agent).offer(sight)
       ended()
 

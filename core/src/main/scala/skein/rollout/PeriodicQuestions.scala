@@ -13,7 +13,7 @@ private final class PeriodicQuestions(
   import DuelWorld.Ring
   import PeriodicQuestions.*
 
-  private val offsetNs = DuelWorld.nanos(asking.spreadS) * vehicle / 2
+  private val offsetNs = DuelWorld.nanos(asking.spreadS) * vehicle / world.count
   private val ends     = Array.ofDim[Byte](Ring)
   private var waits    = false
   private var asked    = 0

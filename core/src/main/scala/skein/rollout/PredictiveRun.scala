@@ -12,18 +12,19 @@ private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorl
   import DuelWorld.{nanos, slot}
 
   private val periodNs  = nanos(timing.periodS)
-  private val questions = Array.tabulate(2)(PeriodicQuestions(world, _, periodNs, timing.asking, this))
+  private val questions =
+    Array.tabulate(world.count)(PeriodicQuestions(world, _, periodNs, timing.asking, this))
   val controllers: Array[Controller] =
-    Array.tabulate(2)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
+    Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
 
-  private val sight               = DuelSight()
-  private val validAt, receivedAt = Array.ofDim[Long](2)
-  private val known               = Array.ofDim[Boolean](2)
+  private val sight               = DuelSight(world.count)
+  private val validAt, receivedAt = Array.ofDim[Long](world.count)
+  private val known               = Array.ofDim[Boolean](world.count)
   private var forecast            = Forecast(Vector.empty)
 
   def start(): Unit =
-    known(0) = false; known(1) = false
-    forecast = Forecast(Vector.fill(2)(timing.predictor))
+    java.util.Arrays.fill(known, false)
+    forecast = Forecast(Vector.fill(world.count)(timing.predictor))
     questions.foreach(_.start())
     world.schedule(periodNs / 2, DuelWorld.Due, 0, 0)
 
@@ -50,8 +51,8 @@ private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorl
 
   override def due(number: Int): Unit =
     world.schedule(periodNs / 2 + (number + 1) * periodNs, DuelWorld.Due, 0, number + 1)
-    if known(0) && known(1) then
-      for vehicle <- 0 to 1 do
+    if !known.contains(false) then
+      for vehicle <- world.vehicles.indices do
         sight.sent(vehicle) = controllers(vehicle).sentHeading
         sight.step(vehicle) = number
       sight.forecast = Some(forecast)

@@ -1,6 +1,6 @@
 package skein.rollout
 
-/** Flies duels under a loop's real timing: the scalar reference, readable and in double. Events happen in the order of
+/** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in double. Events happen in the order of
   * their times, in whole nanoseconds; between them the vehicles fly by themselves. Given the delays that a flight in
   * virtual time met ([[RecordedDelays]]) it flies as that did, which `RolloutParitySimulation` holds it to. Mutable: one
   * per thread; an episode allocates nothing but what the policies, the quadrotor's setpoints and the `predictive` loop's
@@ -9,11 +9,14 @@ package skein.rollout
   * @param link
   *   delays of questions, answers, commands and acknowledgements; `Paused` ignores it
   */
-final class Rollout(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse):
+final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
   import DuelWorld.*
 
+  def this(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse) =
+    this(Engagement.of(duel), timing, link, model)
+
   private val world = DuelWorld(
-    duel,
+    engagement,
     link,
     model,
     LoopTiming.askingOf(timing),
@@ -21,8 +24,11 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: Delays, model: Velocit
   )
   private val loop                       = LoopRun.of(timing, world)
   private val periodNs                   = nanos(timing.periodS)
-  private val scores                     = (duel.durationS / timing.periodS).round.toInt
-  private var score                      = Score()
+  private val scores                     = (engagement.durationS / timing.periodS).round.toInt
+  private val evaders                    = engagement.evaders.toArray
+  private val pursuers                   = engagement.pursuers.toArray
+  private var tallies                    = evaders.map(_ => Score())
+  private var watching                   = LoopObserver.Nobody
   private var listener: Rollout.Listener = Rollout.NoListener
 
   /** Flies one episode.
@@ -37,19 +43,35 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: Delays, model: Velocit
       observer: LoopObserver = LoopObserver.Nobody
   ): Outcome =
     listener = onScore
-    score = Score(captureRadiusM, duel.durationS)
+    tallies = evaders.map(_ => Score(captureRadiusM, engagement.durationS))
+    watching = observer
     world.start(worldKey, observer)
     world.schedule(periodNs, ScoreNow, 0, 1)
     for controller <- loop.controllers do controller.start()
     loop.start()
-    while score.count < scores do handle(world.next())
-    val (evader, pursuer) = (loop.controllers(Evader), loop.controllers(Pursuer))
-    score.outcome(
-      pursuer.effortRad,
-      evader.effortRad,
-      evader.decisions + pursuer.decisions,
-      evader.skipped + pursuer.skipped
+    while tallies(0).count < scores do handle(world.next())
+    outcome
+
+  /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last was captured;
+    * distances are to the nearest pursuer, efforts summed over a side.
+    */
+  private def outcome: Outcome =
+    val each    = evaderOutcomes
+    val nearest = each.minBy(_.minDistanceM)
+    Outcome(
+      nearest.minDistanceM,
+      nearest.minDistanceAtS,
+      each.map(_.meanDistanceM).sum / each.size,
+      each.map(_.meanLast10sM).sum / each.size,
+      each.map(_.captureS).max,
+      pursuers.map(loop.controllers(_).effortRad).sum,
+      evaders.map(loop.controllers(_).effortRad).sum,
+      loop.controllers.map(_.decisions).sum,
+      loop.controllers.map(_.skipped).sum
     )
+
+  /** How the last episode came out for each evader, in the engagement's order. */
+  def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
 
   private def handle(event: Long): Unit =
     val vehicle = vehicleOf(event)
@@ -73,14 +95,22 @@ final class Rollout(duel: Duel, timing: LoopTiming, link: Delays, model: Velocit
 
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
-    val (evader, pursuer) = (world.vehicles(Evader), world.vehicles(Pursuer))
-    score.add(world.nowS, math.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
+    for index <- world.vehicles.indices do
+      watching.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
+    for index <- evaders.indices do
+      val evader  = world.vehicles(evaders(index))
+      var nearest = Double.PositiveInfinity
+      for agent <- pursuers do
+        val pursuer = world.vehicles(agent)
+        nearest = math.min(nearest, math.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
+      tallies(index).add(world.nowS, nearest)
+    val (evader, pursuer) = (world.vehicles(evaders(0)), world.vehicles(pursuers(0)))
     listener.scored(world.nowS, evader.x, evader.y, pursuer.x, pursuer.y)
     world.schedule((number + 1) * periodNs, ScoreNow, 0, number + 1)
 
 object Rollout:
 
-  /** Is told of every score: both positions, m, at one time, s. */
+  /** Is told of every score: the positions of the first evader and pursuer, m, at one time, s. */
   trait Listener:
     def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit
 
@@ -109,15 +139,4 @@ private final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0)
       lastSum += distanceM
       lastCount += 1
 
-  def outcome(pursuerEffort: Double, evaderEffort: Double, decisions: Int, skipped: Int): Outcome =
-    Outcome(
-      least,
-      leastAt,
-      sum / count,
-      lastSum / lastCount,
-      captureS,
-      pursuerEffort,
-      evaderEffort,
-      decisions,
-      skipped
-    )
+  def outcome: EvaderOutcome = EvaderOutcome(least, leastAt, sum / count, lastSum / lastCount, captureS)

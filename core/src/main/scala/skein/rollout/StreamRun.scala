@@ -8,19 +8,19 @@ private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
 
   private val patienceNs = nanos(timing.patienceS)
   private val questions  =
-    Array.tabulate(2)(PeriodicQuestions(world, _, nanos(timing.periodS), timing.asking, this))
+    Array.tabulate(world.count)(PeriodicQuestions(world, _, nanos(timing.periodS), timing.asking, this))
   val controllers: Array[Controller] =
     val interval = nanos(timing.periodS) - nanos(timing.toleranceS)
-    Array.tabulate(2)(Controller(world, _, timing.steering, interval, timing.decideThenPace, this))
+    Array.tabulate(world.count)(Controller(world, _, timing.steering, interval, timing.decideThenPace, this))
 
   // What is joined, as skein.flow.JoinLatest keeps it.
-  private val sight               = DuelSight()
-  private val validAt, receivedAt = Array.ofDim[Long](2)
-  private val known, renewed      = Array.ofDim[Boolean](2)
+  private val sight               = DuelSight(world.count)
+  private val validAt, receivedAt = Array.ofDim[Long](world.count)
+  private val known, renewed      = Array.ofDim[Boolean](world.count)
   private var patienceEnds        = StreamRun.NoEnd
 
   def start(): Unit =
-    for vehicle <- 0 to 1 do
+    for vehicle <- world.vehicles.indices do
       known(vehicle) = false; renewed(vehicle) = false
     patienceEnds = StreamRun.NoEnd
     questions.foreach(_.start())
@@ -39,8 +39,8 @@ private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
       known(vehicle) = true; renewed(vehicle) = true
       validAt(vehicle) = world.validAtNs(at); receivedAt(vehicle) = world.receivedAtNs(at)
       sight.take(world, vehicle, question)
-      if known(0) && known(1) then
-        if renewed(0) && renewed(1) || patienceNs <= 0 then join()
+      if all(known) then
+        if all(renewed) || patienceNs <= 0 then join()
         else if patienceEnds == StreamRun.NoEnd then
           patienceEnds = world.nowNs + patienceNs
           world.schedule(patienceEnds, DuelWorld.Patience, 0, 0)
@@ -48,10 +48,15 @@ private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
   override def patienceOver(): Unit = if patienceEnds == world.nowNs then join()
 
   private def join(): Unit =
-    renewed(0) = false; renewed(1) = false
+    java.util.Arrays.fill(renewed, false)
     patienceEnds = StreamRun.NoEnd
-    for vehicle <- 0 to 1 do sight.sent(vehicle) = controllers(vehicle).sentHeading
+    for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
     for controller <- controllers do controller.offer(sight)
+
+  private def all(flags: Array[Boolean]): Boolean =
+    var i = 0
+    while i < flags.length && flags(i) do i += 1
+    i == flags.length
 
 private object StreamRun:
   private val NoEnd = -1L

@@ -1,0 +1,53 @@
+package skein.rollout
+
+import skein.policy.{Assignment, Role, Scenario}
+
+/** Pursuers and evaders in one plane, as a rollout flies them: 1 against 1 up to M against N, each against the rival that
+  * the assignment gives it, as seen at its decision. Whoever was captured flies on.
+  *
+  * @param roles
+  *   of the agents, in the order in which a loop asks them
+  */
+final case class Engagement(
+    agents: Vector[Duelist],
+    roles: Vector[Role],
+    assignment: Assignment,
+    durationS: Double = 60.0
+):
+  require(
+    agents.size == roles.size && agents.size == assignment.rivals.size,
+    s"${agents.size} agents, ${roles.size} roles, rivals of ${assignment.rivals.size}"
+  )
+  require(
+    agents.size >= 2 && agents.size <= Engagement.Most,
+    s"expected 2 to ${Engagement.Most} agents, came ${agents.size}"
+  )
+
+  val evaders: Vector[Int]  = roles.indices.filter(roles(_) == Role.Evader).toVector
+  val pursuers: Vector[Int] = roles.indices.filter(roles(_) == Role.Pursuer).toVector
+  require(
+    evaders.nonEmpty && pursuers.nonEmpty && evaders.size + pursuers.size == agents.size,
+    s"expected pursuers and evaders, came ${roles.mkString(", ")}"
+  )
+
+object Engagement:
+  /** Vehicles that one world holds. */
+  val Most = 64
+
+  /** The pursuers and evaders of a scenario, under its own assignment. */
+  def of(scenario: Scenario, durationS: Double = 60.0): Engagement =
+    Engagement(
+      scenario.agents.map(Duelist.of),
+      scenario.agents.map(_.role),
+      scenario.assignment,
+      durationS
+    )
+
+  /** A duel; the evader is asked first. */
+  def of(duel: Duel): Engagement =
+    Engagement(
+      Vector(duel.evader, duel.pursuer),
+      Vector(Role.Evader, Role.Pursuer),
+      Assignment(Vector(Vector(1), Vector(0))),
+      duel.durationS
+    )
