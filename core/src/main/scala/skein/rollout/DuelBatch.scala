@@ -26,9 +26,11 @@ final class DuelBatch(
     if ModuleLayer.boot().findModule("jdk.incubator.vector").isEmpty then
       Left("the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector")
     else
-      model match
-        case reduced: Reduced if reduced.lagS > 0 => Right(reduced)
-        case _                                    => Left("the lanes fly only the reduced model with a lag")
+      (timing, model) match
+        case (_: LoopTiming.Predictive, _) =>
+          Left("the lanes decide on readings as they were made, without a forecast")
+        case (_, reduced: Reduced) if reduced.lagS > 0 => Right(reduced)
+        case _ => Left("the lanes fly only the reduced model with a lag")
 
   /** One per thread. */
   private final class Worker:
