@@ -21,7 +21,7 @@ Global / onChangedBuildSource   := ReloadOnSourceChanges
 Global / concurrentRestrictions := Seq(Tags.limitAll(2), Tags.limit(Tags.ForkedTestGroup, 1))
 
 lazy val root =
-  project.in(file(".")).aggregate(core, vtimeAgent, vtime, live, app, bench).settings(publish / skip := true)
+  project.in(file(".")).aggregate(core, vtimeAgent, vtime, live, app, bench, benchJmh).settings(publish / skip := true)
 
 /** Pure: units, signals, vehicle dynamics, policies, forward simulation. No Pekko, no I/O, no clock. */
 lazy val core = project.settings(
@@ -101,3 +101,7 @@ lazy val app = project
 /** Measurements: plain programs that print a witness of what they did. */
 lazy val bench =
   project.dependsOn(app).settings(Jvm.vectorModule).settings(publish / skip := true, libraryDependencies ++= munit)
+
+/** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */
+lazy val benchJmh =
+  project.in(file("bench/jmh")).dependsOn(bench).enablePlugins(JmhPlugin).settings(publish / skip := true)

@@ -141,7 +141,7 @@ private object WorldBatches:
 
   /** A batch has worlds of one key and one link. */
   def byEpisode(worlds: DuelWorlds, most: Int): WorldBatches =
-    val groups  = java.util.HashMap[(DelayTable, Int), Integer]()
+    val groups  = java.util.HashMap[(Delays, Int), Integer]()
     val groupOf = Array.tabulate(worlds.size): world =>
       groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
     val sizes = Array.ofDim[Int](groups.size)

@@ -23,9 +23,9 @@ private object PaperParameters:
 
 /** By the scalar reference. */
 private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse) extends DuelFlyer:
-  val batch: Int                                 = 16
-  private var last: (Policy, Policy, DelayTable) = (null, null, null)
-  private var rollout: Rollout                   = null
+  val batch: Int                             = 16
+  private var last: (Policy, Policy, Delays) = (null, null, null)
+  private var rollout: Rollout               = null
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     for world <- numbers do
@@ -51,12 +51,12 @@ private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Re
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     var filled = 0
     for world <- numbers do
-      val link = worlds.link(world)
-      PaperParameters.of(worlds.pursuer(world), worlds.evader(world)) match
-        case Some(PaperParameters(turnRate, 0, radius)) if StreamDuelKernel.canFly(timing, link, model) =>
+      (worlds.link(world), PaperParameters.of(worlds.pursuer(world), worlds.evader(world))) match
+        case (table: DelayTable, Some(PaperParameters(turnRate, 0, radius)))
+            if StreamDuelKernel.canFly(timing, table, model) =>
           ofLane(filled) = world
           keys(filled) = worlds.key(world)
-          links(filled) = link
+          links(filled) = table
           turnRates(filled) = turnRate
           radii(filled) = radius
           filled += 1
@@ -123,12 +123,12 @@ private final class TimetableFlyer(
 
 /** The timetables used last, for all threads. */
 private final class Timetables(most: Int):
-  private val known = new java.util.LinkedHashMap[(DelayTable, Int), Timetable](16, 0.75f, true):
-    override def removeEldestEntry(eldest: java.util.Map.Entry[(DelayTable, Int), Timetable]): Boolean =
+  private val known = new java.util.LinkedHashMap[(Delays, Int), Timetable](16, 0.75f, true):
+    override def removeEldestEntry(eldest: java.util.Map.Entry[(Delays, Int), Timetable]): Boolean =
       size > most
 
   /** Two threads may make the same at once; they make it equal. */
-  def getOrMake(link: DelayTable, key: Int)(make: => Timetable): Timetable =
+  def getOrMake(link: Delays, key: Int)(make: => Timetable): Timetable =
     val held = known.synchronized(known.get((link, key)))
     if held != null then held
     else

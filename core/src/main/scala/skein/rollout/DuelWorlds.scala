@@ -17,7 +17,7 @@ trait DuelWorlds:
 
   /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same delays. */
   def key(world: Int): Int
-  def link(world: Int): DelayTable
+  def link(world: Int): Delays
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 

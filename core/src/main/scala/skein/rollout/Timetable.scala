@@ -32,7 +32,7 @@ private[rollout] object Timetable:
   val Numbers: Int = 4
 
   /** The timetable of a world of this key; the model's dead time and lag are in it. */
-  def of(durationS: Double, timing: LoopTiming, link: DelayTable, key: Int, model: Reduced): Timetable =
+  def of(durationS: Double, timing: LoopTiming, link: Delays, key: Int, model: Reduced): Timetable =
     val notes               = Notes(model.deadTimeS)
     def duelist(agent: Int) = Duelist(1, agent, 0, 0, 0, notes.policies(agent))
     Rollout(Duel(duelist(1), duelist(0), durationS), timing, link, notes).fly(key, 0.0, notes): Unit

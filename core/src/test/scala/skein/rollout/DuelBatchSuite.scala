@@ -79,7 +79,7 @@ class DuelBatchSuite extends munit.FunSuite:
     val worlds = mixed(300)
     val broken = new DuelWorlds:
       export worlds.{evader, key, pursuer, size}
-      def link(world: Int): DelayTable =
+      def link(world: Int): Delays =
         if world == 200 then sys.error("no such link") else worlds.link(world)
     val thrown = intercept[RuntimeException](DuelBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
     assertEquals(thrown.getMessage, "no such link")
@@ -132,7 +132,7 @@ object DuelBatchSuite:
       def size: Int                       = count.getOrElse(worlds.size)
       override def shareEpisodes: Boolean = worlds.shareEpisodes
       def key(world: Int): Int            = worlds.key(number(world))
-      def link(world: Int): DelayTable    = worlds.link(number(world))
+      def link(world: Int): Delays        = worlds.link(number(world))
       def pursuer(world: Int): Policy     = worlds.pursuer(number(world))
       def evader(world: Int): Policy      = worlds.evader(number(world))
 

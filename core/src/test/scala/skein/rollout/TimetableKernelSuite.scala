@@ -20,18 +20,31 @@ class TimetableKernelSuite extends munit.FunSuite:
       durationS
     )
 
-  private def fly(timing: LoopTiming, link: DelayTable, key: Int, durationS: Double): TimetableKernel =
+  private def fly(timing: LoopTiming, link: Delays, key: Int, durationS: Double): TimetableKernel =
     val kernel = TimetableKernel(Duel.paper.copy(durationS = durationS), timing, lag)
     val rates  = Array.tabulate(worlds)(i => if turnSteps(i) == 0 then turnRates(i) else 0f)
     kernel.fly(Timetable.of(durationS, timing, link, key, lag), rates, turnSteps, radii, captureM)
     kernel
 
   private val loops =
-    Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+    Seq(
+      LoopTiming.Paused(),
+      LoopTiming.Sequential(),
+      LoopTiming.Futures(),
+      LoopTiming.Stream(),
+      LoopTiming.Stream(decideThenPace = true)
+    )
+
+  private val links = Seq[(String, Delays)](
+    "none"      -> DelayTable.none,
+    "direct"    -> DelayTable.direct,
+    "vpn"       -> DelayTable.vpn,
+    "vpn-mixed" -> DelayTable.vpnMixed
+  )
 
   for
     timing       <- loops
-    (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
+    (name, link) <- links
   do
     // In a few worlds an observation lies within a rounding error of a policy's threshold, and floats decide otherwise.
     test(s"$timing over $name: candidates fly by the timetable as by the scalar reference"):

@@ -1,0 +1,34 @@
+package skein.bench.jmh
+
+import java.util.concurrent.TimeUnit
+import org.openjdk.jmh.annotations.*
+import skein.bench.Works
+import skein.rollout.*
+
+/** How long does one call of a batch take, warm, on one thread? `stream` over `vpn`, 60 s, the reduced model: divide
+  * `worlds` times 1,200 agent-steps by it. Run: `./sbtw "benchJmh/Jmh/run -f 1 -wi 3 -i 5"`.
+  */
+@State(Scope.Benchmark)
+@BenchmarkMode(Array(Mode.AverageTime))
+@OutputTimeUnit(TimeUnit.MILLISECONDS)
+@Warmup(iterations = 3, time = 2)
+@Measurement(iterations = 5, time = 2)
+@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
+class KernelBenchmark:
+  @Param(Array("128", "1024"))
+  var worlds: Int = 0
+
+  private var batch: DuelBatch = null
+
+  @Setup
+  def prepare(): Unit = batch = Works.batch(LoopTiming.Stream(), 1)
+
+  /** All candidates on one episode; its timetable is known after the first call. */
+  @Benchmark
+  def candidates(): Float = fly(Works.Candidates(worlds, worlds, DelayTable.vpn, 1))
+
+  /** Every world with delays of its own. */
+  @Benchmark
+  def singleWorlds(): Float = fly(Works.Candidates(worlds, 1, DelayTable.vpn, 1))
+
+  private def fly(candidates: Works.Candidates): Float = batch.fly(candidates).meanLast10sM(0)

@@ -1,0 +1,68 @@
+package skein.bench
+
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.rollout.*
+import skein.units.Vector3
+import skein.vehicle.{Quadrotor, Setpoint}
+
+/** Forward simulation, from the yardstick's work towards reality. */
+object Works:
+  val model: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+
+  private val AgentStep   = "agent-step: 0.1 s of one agent"
+  private val VehicleStep = "vehicle-step: 3 ms of the quadrotor and its controller"
+
+  /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step, distance. */
+  val yardstick: Work = Work("yardstick, SIMD", AgentStep): thread =>
+    val blocks = 512
+    val worlds = blocks * ChauffeurKernel.BLOCK
+    (worlds * ChauffeurKernel.TICKS * 2.0, ChauffeurKernel().run(thread, blocks) / worlds)
+
+  val yardstickScalar: Work = Work("yardstick, scalar", AgentStep): thread =>
+    val blocks = 16
+    val worlds = blocks * ChauffeurKernel.BLOCK
+    (worlds * ChauffeurKernel.TICKS * 2.0, ChauffeurScalar.run(thread, blocks) / worlds)
+
+  /** The `stream` loop's full event timing over `vpn`: candidates that meet the same episodes. */
+  val candidates: Work = duels("stream over vpn, candidates of 8 episodes", 16_384, perEpisode = 2048)
+
+  /** The same, every world with delays of its own. */
+  val singleWorlds: Work = duels("stream over vpn, single worlds", 8192, perEpisode = 1)
+
+  private def duels(name: String, worlds: Int, perEpisode: Int): Work = Work(name, AgentStep): thread =>
+    val outcomes = batch(LoopTiming.Stream(), 1).fly(Candidates(worlds, perEpisode, DelayTable.vpn, thread))
+    (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
+
+  val streamScalar: Work = Work("stream over vpn, scalar", AgentStep): thread =>
+    val episodes = 256
+    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, model)
+    val sum      = (0 until episodes).map(i => rollout.fly(WorldRandom.key(thread, 0, i)).meanLast10sM).sum
+    (episodes * 1200.0, sum / episodes)
+
+  val quadrotor: Work = Work("quadrotor, SIMD", VehicleStep): _ =>
+    val kernel = QuadrotorKernel()
+    val steps  = 50_000
+    for i <- 0 until QuadrotorKernel.VEHICLES do
+      kernel.hover(i, Vector3(0, 0, -20))
+      kernel.command(i, 10, 0, -20)
+    kernel.fly(steps)
+    (QuadrotorKernel.VEHICLES * steps.toDouble, kernel.velocityNed(0).x)
+
+  val quadrotorScalar: Work = Work("quadrotor, scalar", VehicleStep): _ =>
+    val steps    = 1_000_000
+    val state    = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
+    val setpoint = Setpoint.velocityZ(10, 0, -20)
+    for _ <- 1 to steps do Quadrotor.AirSim.step(state, setpoint)
+    (steps.toDouble, state.vx)
+
+  def batch(timing: LoopTiming, threads: Int): DuelBatch = DuelBatch(Duel.paper, timing, model, threads)
+
+  /** Pursuers of different turn rates, so many of them per episode. */
+  final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
+    override def shareEpisodes: Boolean = perEpisode > 1
+    def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
+    def link(world: Int): DelayTable    = delays
+    def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % perEpisode) / perEpisode)
+    def evader(world: Int): Policy      = Works.evader
+
+  private val evader = PaperEvader()
