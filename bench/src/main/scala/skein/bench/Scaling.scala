@@ -1,9 +1,11 @@
 package skein.bench
 
+import skein.policy.Scenario
 import skein.rollout.*
 
-/** How does the rate of forward simulation grow with the size of a batch and the number of threads? `stream` over `vpn`,
-  * 60 s, the reduced model; all by [[skein.rollout.DuelBatch]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
+/** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size of a team?
+  * `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.rollout.DuelBatch]], teams by
+  * [[skein.rollout.Rollout]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
   */
 object Scaling:
   def main(args: Array[String]): Unit =
@@ -12,7 +14,7 @@ object Scaling:
     println("| worlds of a call | per episode | threads | M agent-steps/s | witness |")
     println("|---|---|---|---|---|")
     for
-      (worlds, perEpisode) <- Seq(16, 128, 1024, 8192, 65536).flatMap(n =>
+      (worlds, perEpisode) <- Seq(16, 128, 1024, 8192).flatMap(n =>
         Seq(n -> 1, n -> 16, n -> 128, n -> 1024)
       )
       if worlds >= perEpisode
@@ -20,6 +22,22 @@ object Scaling:
     do
       val row = measure(worlds, perEpisode, threads)
       println(f"| $worlds | $perEpisode | $threads | ${row.byWall}%.1f | ${row.witness}%.4f |")
+    println()
+    println("| pursuers and evaders, each | episodes | M agent-steps/s, scalar, one thread | witness |")
+    println("|---|---|---|---|")
+    for pairs <- Seq(1, 2, 4, 8, 16, 32) do
+      val row = Seq.fill(3)(team(pairs)).reduce(_.best(_))
+      println(f"| $pairs | ${episodes(pairs)} | ${row.byWall}%.2f | ${row.witness}%.4f |")
+
+  private def episodes(pairs: Int) = (64 / pairs).max(4)
+
+  /** Every agent plays against the nearest of the other side. */
+  private def team(pairs: Int): Rate =
+    val rollout =
+      Rollout(Engagement.of(Scenario.duels(pairs)), LoopTiming.Stream(), DelayTable.vpn, Works.model)
+    val start = System.nanoTime()
+    val sum   = (0 until episodes(pairs)).map(i => rollout.fly(WorldRandom.key(1, 0, i)).meanLast10sM).sum
+    Rate(episodes(pairs) * pairs * 1200 / ((System.nanoTime() - start) * 1e-3), 0, sum / episodes(pairs))
 
   private def warmUp(): Unit = for _ <- 1 to 3 do
     for perEpisode <- Seq(1, 128) do measure(2048, perEpisode, 1)
