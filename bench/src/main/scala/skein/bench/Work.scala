@@ -11,28 +11,28 @@ final case class Work(name: String, unit: String)(val of: Int => (Double, Double
 
   /** On so many threads at once, once. */
   def run(threads: Int): Rate =
-    val cpuNanos = Array.ofDim[Long](threads)
-    val results  = Array.ofDim[(Double, Double)](threads)
-    val timer    = ManagementFactory.getThreadMXBean
-    val workers  = Array.tabulate(threads)(id =>
-      Thread: () =>
-        val before = timer.getCurrentThreadCpuTime
-        results(id) = of(id)
-        cpuNanos(id) = timer.getCurrentThreadCpuTime - before
-    )
-    val start = System.nanoTime()
+    val results = Array.ofDim[(Double, Double)](threads)
+    val workers = Array.tabulate(threads)(id => Thread(() => results(id) = of(id)))
+    val start   = System.nanoTime()
+    val cpu     = Work.cpuNanos
     workers.foreach(_.start())
     workers.foreach(_.join())
-    val wallNanos = System.nanoTime() - start
-    val steps     = results.map(_._1).sum
-    Rate(steps / wallNanos * 1e3, steps / cpuNanos.sum * 1e3, results.map(_._2).sum / threads)
+    val (wallNanos, cpuNanos) = (System.nanoTime() - start, Work.cpuNanos - cpu)
+    val steps                 = results.map(_._1).sum
+    Rate(steps / wallNanos * 1e3, steps / cpuNanos * 1e3, results.map(_._2).sum / threads)
+
+object Work:
+  /** Processor time of this process, its compiler's and collector's threads included. */
+  def cpuNanos: Long = ManagementFactory.getOperatingSystemMXBean match
+    case sun: com.sun.management.OperatingSystemMXBean => sun.getProcessCpuTime
+    case other => sys.error(s"expected the processor time of a process, got ${other.getClass}")
 
 /** Millions of steps.
   *
   * @param byWall
   *   per second of the clock
   * @param byCpu
-  *   per second of processor time that the threads used: other load on the machine disturbs it less
+  *   per second of processor time: other load on the machine disturbs it less
   * @param witness
   *   that the work was done
   */

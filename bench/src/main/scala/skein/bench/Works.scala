@@ -62,7 +62,7 @@ object Works:
     override def shareEpisodes: Boolean = perEpisode > 1
     def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
     def link(world: Int): DelayTable    = delays
-    def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % perEpisode) / perEpisode)
+    def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
     def evader(world: Int): Policy      = Works.evader
 
   private val evader = PaperEvader()
