@@ -54,7 +54,8 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     case SearchMethod.CmaEs(population, _, _, _) => Some(CmaEs(space.dimension, population, seed))
     case _                                       => None
 
-  private val playOffEpisodes = (4 * method.episodes).max(LeastPlayOff).min(MostPlayOff)
+  private val playOffEpisodes =
+    (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(LeastPlayOff).min(MostPlayOff).toInt
 
   /** Episodes of the whole search, if it does not end early. */
   val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
@@ -116,7 +117,7 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     case _                                  => Vector.empty
 
   private def after(course: Course, before: Vector[Scored], seen: Vector[Scored]): (Course, Vector[Scored]) =
-    lazy val leaders = ranked(before ++ seen).distinctBy(_.candidate).take(MostLeaders)
+    lazy val leaders = ranked(before ++ seen).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
     (course, method) match
       case (Course.Listed(next), _) =>
         val behind = next + seen.size
@@ -141,16 +142,18 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
         val standing =
           ranked(if round == 0 then seen
           else field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally)))
-        val names = standing.take(MostLeaders).map(_.candidate).toSet
-        val ahead =
-          (standing.take(
-            MostLeaders
-          ) ++ before.filterNot(scored => names(scored.candidate))).take(MostLeaders)
-        val next =
+        val ahead = (standing ++ before).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
+        val next  =
           if standing.size == 1 then playOff(ahead, None)
           else Course.Raced(round + 1, standing.take((standing.size + 1) / 2))
         (next, ahead)
       case _ => (Course.Ended, ranked(seen))
+
+  /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same
+    * episodes, and would leave no room for others.
+    */
+  private def place(candidate: Vector[Double]): Vector[Long] =
+    space.shares(candidate).map(share => (share * 100).round)
 
   private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
     Course.PlayOff((leaders.map(_.candidate) ++ centre :+ space.defaults).distinct)
@@ -182,8 +185,9 @@ object Search:
   /** The play-off's episodes count from here; a search's own lie below. */
   val PlayOffFrom: Int = 1 << 24
 
-  private val LeastPlayOff = 64
-  private val MostPlayOff  = 4096
+  // A tenth of the search's episodes, within these bounds.
+  private val LeastPlayOff = 64L
+  private val MostPlayOff  = 4096L
   private val MostListed   = 16384
   private val LeastSpread  = 1e-6
 
