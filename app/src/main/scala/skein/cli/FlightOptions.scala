@@ -5,11 +5,13 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import skein.experiment.FlySettings
+import skein.loop.LoopKind
+import skein.planning.Planner
 import skein.policy.TeamScenario
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
-    @arg(doc = "paused, sequential, futures, stream or predictive; may be given several times")
+    @arg(doc = "paused, sequential, futures, stream, predictive or plan; may be given several times")
     loop: Seq[String],
     @arg(doc =
       "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; may be given several times"
@@ -46,7 +48,10 @@ final case class FlightOptions(
     for
       file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       settings <- FlySettings.read(flags.withFallback(file).withFallback(ConfigFactory.load()).resolve())
-    yield settings
+    yield
+      if settings.loops.contains(LoopKind.Plan) && !Planner.isFast then
+        Console.err.println(FlightOptions.slow)
+      settings
 
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
@@ -68,6 +73,9 @@ final case class FlightOptions(
 
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
+
+  private val slow =
+    "plan: this JVM runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
 
   private def read(path: String): Either[String, Config] =
     if !Files.isReadable(Path.of(path)) then Left(s"cannot read the configuration $path")

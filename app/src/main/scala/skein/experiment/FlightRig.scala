@@ -5,6 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.*
 import skein.airsim.simulator.{SimulatorServer, SimulatorSettings}
+import skein.flow.{PlanWorkers, ThreadedPlanWorkers}
 import skein.link.*
 import skein.loop.*
 import skein.policy.Scenario
@@ -41,12 +42,15 @@ final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[Reco
   *
   * @param simulator
   *   the address of a simulator that runs already; without one, each flight has a built-in simulator of its own
+  * @param workers
+  *   what a flight that plans searches with
   */
 final class FlightRigs(
     transport: Transport,
     clock: Clock,
     settings: FlySettings,
-    simulator: Option[Address]
+    simulator: Option[Address],
+    workers: PlanSettings => PlanWorkers = FlightRigs.threads
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -100,9 +104,21 @@ final class FlightRigs(
         )
         _ <- client.ping()
       yield
-        val timely       = LoopSettings.every(settings.period).copy(model = _ => settings.vehicleModel)
+        val timely = LoopSettings
+          .every(settings.period)
+          .copy(
+            model = _ => settings.vehicleModel,
+            planning = settings.planningByModel,
+            seed = plan.seed
+          )
         val loopSettings = if settings.asPublished then timely.asPublished else timely
-        val team         = Team(plan.agents(settings), crafts, clock, watch, loopSettings)
+        val planners =
+          if plan.loop != LoopKind.Plan then PlanWorkers.none
+          else
+            opened.closing(workers(settings.planningByModel)): threads =>
+              threads.close()
+              Future.successful(Done)
+        val team         = Team(plan.agents(settings), crafts, clock, watch, loopSettings, planners)
         val startedAt    = clock.now()
         val flight       =
           Flight.start(plan.loop, team, AirSimStepper(client), settings.duration, clock, watch)
@@ -169,6 +185,10 @@ object FlightRigs:
     // Each command must reach the simulator before the step that follows it: one ordered connection.
     case LoopKind.Paused => RpcSettings(controlConnections = 1)
     case _               => RpcSettings()
+
+  /** Threads to plan on, no more than there are cores. */
+  private def threads(planning: PlanSettings): PlanWorkers =
+    new ThreadedPlanWorkers(planning.searches.min(Runtime.getRuntime.availableProcessors))
 
   private val anyPort = Address("127.0.0.1", 0)
 

@@ -5,7 +5,7 @@ import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import scala.concurrent.duration.FiniteDuration
-import skein.loop.LoopKind
+import skein.loop.{LoopKind, PlanSettings}
 import skein.policy.{Scenario, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -37,8 +37,12 @@ final case class FlySettings(
     formation: TeamScenario.Formation = TeamScenario.Formation(),
     crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
     model: Option[ReducedModel] = None,
-    policies: List[PolicyFile] = Nil
+    policies: List[PolicyFile] = Nil,
+    planning: PlanSettings = PlanSettings()
 ) derives ConfigReader:
+
+  /** Plans are flown by the model that readings are carried forward by, where one is set. */
+  def planningByModel: PlanSettings = planning.copy(response = model.getOrElse(ReducedModel.AirSim))
 
   /** Absent for the duel. */
   def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
@@ -142,7 +146,8 @@ object FlySettings:
       Option.when(settings.scenario != Duel && settings.policies.nonEmpty)(
         s"policies: expected with the scenario $Duel, came with '${settings.scenario}'"
       )
-    ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys)
+    ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys) ++
+      settings.planning.mistakes.map(mistake => inKeys(s"planning.$mistake"))
     Either.cond(mistakes.isEmpty, settings, mistakes.mkString("skein.fly.", "\nskein.fly.", ""))
 
   /** A mistake that begins with a setting's name, by its key in the configuration. */
@@ -161,6 +166,37 @@ object FlySettings:
   private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
 
   private given ConfigReader[PolicyFile] = parsed("policy", PolicyFile.read)
+
+  private given ConfigReader[PlanSettings] =
+    ConfigReader.derived[Planning].map: read =>
+      PlanSettings(
+        deadline = read.deadline,
+        horizonSteps = read.horizonSteps,
+        step = read.step,
+        method = read.method,
+        behaviours = read.behaviours,
+        searches = read.searches,
+        slices = read.slices,
+        turningRadiusM = read.turningRadiusM,
+        slowestShare = read.slowestShare,
+        separationM = read.separationM,
+        geofenceM = read.geofenceM
+      )
+
+  /** [[PlanSettings]] as far as they are configured. */
+  private final case class Planning(
+      deadline: Span,
+      horizonSteps: Int,
+      step: Span,
+      method: String,
+      behaviours: Int,
+      searches: Int,
+      slices: Int,
+      turningRadiusM: Double,
+      slowestShare: Double,
+      separationM: Double,
+      geofenceM: Double
+  )
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 

@@ -1,7 +1,7 @@
 package skein.experiment
 
 import scala.util.Try
-import skein.loop.LoopKind
+import skein.loop.{LoopKind, PlanSettings}
 import skein.policy.{Scenario, TeamScenario}
 import skein.record.{Parameter, Recording}
 import skein.signal.LatencyProfile
@@ -15,6 +15,7 @@ object RecordedPlan:
   private val Pairs       = "pairs"
   private val AsPublished = "asPublished"
   private val Model       = "model"
+  private val Planning    = "planning"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -25,7 +26,7 @@ object RecordedPlan:
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
         Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
-    scenario ++ settings.model.map(model => Parameter(Model, textOf(model))) ++
+    (scenario :+ Parameter(Planning, settings.planning.text)) ++ settings.model.map(model => Parameter(Model, textOf(model))) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
           Parameter(PolicyName, chosen.name),
@@ -68,8 +69,21 @@ object RecordedPlan:
       model <- parameters.get(Model) match
         case None    => Right(None)
         case Some(_) => parameter(Model, "five numbers")(modelOf).map(Some(_))
+      // Recordings from before there was planning have none.
+      planning <-
+        if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
+        else Right(PlanSettings())
       settings <- flown(
-        FlySettings(List(loop), List(link), flight.duration, flight.period, flight.seed, 1, false)
+        FlySettings(
+          List(loop),
+          List(link),
+          flight.duration,
+          flight.period,
+          flight.seed,
+          1,
+          false,
+          planning = planning
+        )
       )
       policy <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
     yield RecordedPlan(settings.copy(model = model), FlightPlan(flight.id, loop, link, flight.seed, policy))

@@ -34,7 +34,7 @@ object Replayed:
     for
       recording <- RecordingReader.read(file).left.map(_.message)
       flown     <- RecordedPlan.of(recording)
-      decided = Replay(flown.scenario, recording).firstDifference
+      decided = Replay(flown.scenario, recording, flown.settings.planningByModel).firstDifference
       again <- Option.when(recording.flight.clock == "virtual")(flyAgain(file, recording, flown)) match
         case None         => Right(None)
         case Some(result) => result.map(Some(_))

@@ -4,7 +4,9 @@ import java.nio.file.Path
 import java.util.concurrent.Executors
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import skein.flow.{CountedPlanWorkers, PlanWorkers}
 import skein.link.{Clock, MemoryNetwork, NetworkPlan}
+import skein.loop.PlanSettings
 import skein.record.{Digest, MemoryRecorder}
 import skein.vtime.VirtualTime
 
@@ -50,7 +52,7 @@ object VirtualFlights:
         import system.dispatcher
         val clock    = Clock.ofNanos(VirtualTime.clock(system))
         val network  = MemoryNetwork(NetworkPlan(), plan.seed, clock)
-        val rigs     = FlightRigs(network.host("localhost"), clock, settings, simulator = None)
+        val rigs     = FlightRigs(network.host("localhost"), clock, settings, simulator = None, workers)
         val recorder = MemoryRecorder(rigs.heading(plan, clockKind = "virtual"))
         rigs
           .start(plan, recorder)
@@ -58,6 +60,9 @@ object VirtualFlights:
             case Left(reason) => Future.successful(Left(reason))
             case Right(rig)   => rig.landed.map(landed => Right(VirtualLanding(landed, recorder)))
       .value
+
+  private def workers(planning: PlanSettings): PlanWorkers =
+    CountedPlanWorkers(planning.searches, planning.slices)
 
 /** A flight in virtual time and all that was recorded of it. */
 final case class VirtualLanding(landed: Landed, recorder: MemoryRecorder)

@@ -15,6 +15,8 @@ import skein.units.*
   *   short name of the policy that was flown in the place of the paper's; the flight's scenario says more
   * @param team
   *   absent for a duel
+  * @param planning
+  *   absent where nothing was planned
   */
 final case class FlightSummary(
     flight: Flight,
@@ -28,7 +30,8 @@ final case class FlightSummary(
     events: Map[EventKind, Int],
     aborted: Option[String],
     team: Option[TeamResult] = None,
-    policy: Option[String] = None
+    policy: Option[String] = None,
+    planning: Option[PlanningSummary] = None
 ):
   /** The loop, and the policy where it is not the paper's. */
   def name: String = flight.loop + policy.fold("")(policy => s", $policy")
@@ -83,7 +86,8 @@ object FlightSummary:
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
       recording.events.find(_.kind == EventKind.Aborted).map(_.detail),
       team,
-      recording.heading.parameters.find(_.name == "policy").map(_.value)
+      recording.heading.parameters.find(_.name == "policy").map(_.value),
+      PlanningSummary.of(recording)
     )
 
   private def roles(recording: Recording): Vector[RoleSummary] =

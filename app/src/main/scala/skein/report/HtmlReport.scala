@@ -33,6 +33,7 @@ object HtmlReport:
         ),
         figures.filterNot(_.name == TwinFigure.name).map(figureOf),
         twins(set, figures),
+        plans(set),
         section(
           h2("Observations per decision, ms"),
           table(SummaryTables.observations(set)),
@@ -69,6 +70,10 @@ object HtmlReport:
 
   private def pictureOf(shown: Figure): TypedTag[String] =
     figure(Svg.element(shown.drawing, shown.title), figcaption(shown.caption))
+
+  private def plans(set: FlightSet): Option[TypedTag[String]] =
+    Option.when(set.flights.exists(_.planning.isDefined)):
+      section(h2(PlanTable.title), table(PlanTable.of(set)), p(cls := "note", s"${PlanTable.note}."))
 
   private def twins(set: FlightSet, figures: Seq[Figure]): Option[TypedTag[String]] =
     Option.when(set.twins.nonEmpty):

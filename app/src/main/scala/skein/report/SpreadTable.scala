@@ -5,7 +5,8 @@ object SpreadTable:
 
   /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of the mean
     * distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the closest approach,
-    * and the deviation from the paused truth of the same policies where it was flown too.
+    * in how many flights it was a capture, and the deviation from the paused truth of the same policies where it was
+    * flown too.
     */
   def of(flights: Seq[FlightSummary]): TextTable =
     val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
@@ -23,6 +24,7 @@ object SpreadTable:
         "most",
         "sd within",
         "closest m",
+        "captured",
         "vs paused"
       ),
       order.toVector.map: group =>
@@ -39,6 +41,7 @@ object SpreadTable:
           SummaryTables.fixed(mean.most, 2),
           SummaryTables.fixed(within.mean, 2),
           SummaryTables.fixed(closest.mean, 2),
+          closest.sorted.count(_ < PlanTable.CaptureM).toString,
           truths.get(groups(group).head.policy).fold("")(truth =>
             String.format(java.util.Locale.ROOT, "%+.1f %%", 100 * (mean.mean / truth - 1))
           )

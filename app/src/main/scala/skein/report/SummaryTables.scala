@@ -110,8 +110,14 @@ object SummaryTables:
       "",
       "What happened",
       counts(set).render
-    ) ++ (if set.twins.isEmpty then Vector.empty
-          else Vector("", s"Live against virtual: $twinsNote", twins(set).render))).mkString("\n")
+    ) ++ (if set.flights.forall(_.planning.isEmpty) then Vector.empty
+          else
+            Vector(
+              "",
+              s"${PlanTable.title}: ${PlanTable.note}",
+              PlanTable.of(set).render
+            )) ++ (if set.twins.isEmpty then Vector.empty
+                   else Vector("", s"Live against virtual: $twinsNote", twins(set).render))).mkString("\n")
 
   /** How to read [[twins]]. */
   val twinsNote: String =

@@ -17,10 +17,12 @@ object Predict:
     *
     * @param verified
     *   vehicles whose estimates are held against readings
+    * @param lead
+    *   how much later than the element's coming its command will be sent, or begin to act
     * @param onVerified
     *   told of every prediction whose moment was read, with its error
     */
-  def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true)(
+  def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: Span = Span.Zero)(
       onVerified: Verified => Unit
   ): Flow[(A, Forecast), (A, Vector[Estimate]), NotUsed] =
     Flow[(A, Forecast)]
@@ -29,7 +31,7 @@ object Predict:
           val now          = clock.now()
           val (left, held) = unverified.heldAgainst(forecast)
           held.foreach(onVerified)
-          forecast.whenActing(now) match
+          forecast.whenActing(now + lead) match
             case Some(estimates) => (left.withMade(now, estimates, verified), Some((element, estimates)))
             case None            => (left, None)
         },

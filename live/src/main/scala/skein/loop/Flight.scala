@@ -17,6 +17,7 @@ enum LoopKind(val label: String):
   case Futures    extends LoopKind("futures")
   case Stream     extends LoopKind("stream")
   case Predictive extends LoopKind("predictive")
+  case Plan       extends LoopKind("plan")
 
 object LoopKind:
   def parse(label: String): Either[String, LoopKind] =
@@ -97,3 +98,4 @@ object Flight:
       case LoopKind.Futures    => FuturesLoop(team, switch)
       case LoopKind.Stream     => StreamLoop(team, switch)
       case LoopKind.Predictive => PredictiveLoop(team, switch)
+      case LoopKind.Plan       => PlanLoop(team, switch)

@@ -28,7 +28,11 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   *   `stream` decides at every picture and paces the commands, instead of pacing first and deciding with the newest
   *   picture
   * @param model
-  *   by which `predictive` carries the readings of a vehicle forward
+  *   by which `predictive` and `plan` carry the readings of a vehicle forward
+  * @param planning
+  *   how `plan` plans
+  * @param seed
+  *   of its searches
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -41,7 +45,9 @@ final case class LoopSettings(
     spread: Span = Span.Zero,
     early: Sense.Early = Sense.Early.Overtakes,
     decideThenPace: Boolean = false,
-    model: Int => VehicleModel[?] = _ => QuadrotorModel.AirSim
+    model: Int => VehicleModel[?] = _ => QuadrotorModel.AirSim,
+    planning: PlanSettings = PlanSettings(),
+    seed: Long = 1
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")

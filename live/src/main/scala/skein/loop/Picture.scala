@@ -84,6 +84,10 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy | TeamPolicy):
       decided(memory, picture, now, course.headingRad, Some(MetresPerSecond(course.speedMps)))
     case duel: Policy => decided(memory, picture, now, headingOf(duel, memory, picture, now), None)
 
+  def regardsTeam: Boolean = policy match
+    case _: Policy     => false
+    case _: TeamPolicy => true
+
   /** What the vehicle knows of its team. */
   def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
     val all = scenario.agents.indices.map(picture.kinematics)
@@ -97,10 +101,11 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy | TeamPolicy):
       elapsed(memory, now).toSeconds
     )
 
-  /** What a decision was made from besides what it names itself: the other vehicles of a team. */
-  def sightings(picture: Picture, decision: Decision): Vector[Sighting] = policy match
-    case _: Policy     => Vector.empty
-    case _: TeamPolicy =>
+  /** What a decision was made from besides what it names itself: the other vehicles, where the whole team was regarded.
+    */
+  def sightings(picture: Picture, decision: Decision, regardsTeam: Boolean): Vector[Sighting] =
+    if !regardsTeam then Vector.empty
+    else
       for
         other <- scenario.agents.indices.toVector
         reading = picture.readings(other).get

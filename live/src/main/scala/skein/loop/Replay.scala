@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Policy, Scenario, TeamPolicy}
+import skein.policy.Scenario
 import skein.record.*
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -10,10 +10,10 @@ import skein.units.*
   *
   * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and moves the
   * controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its predictions and whom
-  * they are of. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
+  * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
   * against and the heading chosen. The memory from decision to decision is the replay's own.
   */
-final class Replay(scenario: Scenario, recording: Recording):
+final class Replay(scenario: Scenario, recording: Recording, planning: PlanSettings = PlanSettings()):
   import Replay.*
 
   private val paused   = recording.flight.loop == LoopKind.Paused.label
@@ -25,19 +25,28 @@ final class Replay(scenario: Scenario, recording: Recording):
   private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
   private val moves      = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
 
+  private val planned =
+    recording.planned.map(planned => (planned.vehicle, planned.decision) -> planned).toMap
+
   /** The first decision that comes out differently. */
   def firstDifference: Option[Difference] =
-    val start = scenario.agents.indices.map(Decider(scenario, _).start).toVector
     recording.decisions.iterator
-      .scanLeft((start, Option.empty[Difference])): (state, recorded) =>
-        val (memories, _) = state
-        again(memories, recorded) match
-          case Left(difference)          => (memories, Some(difference))
-          case Right((memory, decision)) =>
-            (memories.updated(indexOf(recorded.vehicle), memory), Difference.between(recorded, decision))
+      .scanLeft((scenario.agents.indices.map(mind).toVector, Option.empty[Difference])): (state, recorded) =>
+        val (minds, _) = state
+        again(minds, recorded) match
+          case Left(difference)        => (minds, Some(difference))
+          case Right((mind, decision)) =>
+            (minds.updated(indexOf(recorded.vehicle), mind), Difference.between(recorded, decision))
       .collectFirst { case (_, Some(difference)) => difference }
 
-  private def again(memories: Vector[Memory], recorded: Decision): Either[Difference, (Memory, Decision)] =
+  private def mind(self: Int): Mind =
+    val decider = Decider(scenario, self)
+    Option
+      .when(recording.flight.loop == LoopKind.Plan.label)(())
+      .flatMap(_ => Planning.of(scenario, self, planning, recording.flight.seed))
+      .fold(Mind.Deciding(decider, decider.start))(Mind.Searching(_, decider.start))
+
+  private def again(minds: Vector[Mind], recorded: Decision): Either[Difference, (Mind, Decision)] =
     for
       self     <- vehicle(recorded, "vehicle", recorded.vehicle)
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
@@ -45,7 +54,8 @@ final class Replay(scenario: Scenario, recording: Recording):
       opponent <- reading(recorded, "opponentSequence", recorded.opponent)
       ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
       itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
-      others   <- othersSeen(recorded, self, other)
+      others   <- if minds(self).regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
+      slices   <- searched(minds(self), recorded)
     yield
       val empty = Picture.empty(scenario.agents.size)
       val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
@@ -54,15 +64,27 @@ final class Replay(scenario: Scenario, recording: Recording):
         moves = empty.moves.updated(self, ownMove).updated(other, itsMove),
         alignment = recorded.trueAge.map(alignment)
       )
-      val decider = Decider(scenario, self)
-      val decided = pictures(known, recorded).map(decider.decide(memories(self), _, recorded.decidedAt))
-      decided.find(_._2.opponent.vehicle == recorded.opponent.vehicle).getOrElse(decided.head)
+      val possible = pictures(known, recorded)
+      val picture  = possible
+        .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
+        .getOrElse(possible.head)
+      minds(self).decide(picture, recorded.decidedAt, slices)
+
+  /** How far each search of a decision went; empty where nothing is searched. */
+  private def searched(mind: Mind, of: Decision): Either[Difference, Vector[Int]] =
+    def missing(found: String) = Difference(where(of), "slices", found, "expected in the table of plans")
+    if !mind.searches then Right(Vector.empty)
+    else
+      for
+        row    <- planned.get((of.vehicle, of.sequence)).toRight(missing("absent"))
+        slices <- row.slices.split(',').toVector.partitionMap(text => text.toIntOption.toRight(text)) match
+          case (Vector(), slices) => Right(slices)
+          case _                  => Left(missing(row.slices))
+      yield slices
 
   /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
   private def othersSeen(of: Decision, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
-    val rest = scenario.agents(self).policy match
-      case _: Policy     => Nil
-      case _: TeamPolicy => scenario.agents.indices.filter(index => index != self && index != opponent)
+    val rest = scenario.agents.indices.filter(index => index != self && index != opponent)
     rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
       val name = scenario.agents(vehicle).name
       for

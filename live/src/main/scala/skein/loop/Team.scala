@@ -20,7 +20,8 @@ final class Team(
     crafts: Vector[Craft],
     clock: Clock,
     recorder: Recorder,
-    val settings: LoopSettings
+    val settings: LoopSettings,
+    workers: PlanWorkers = PlanWorkers.none
 )(using ExecutionContext):
   require(crafts.size == scenario.agents.size, "one craft per agent")
 
@@ -96,13 +97,16 @@ final class Team(
 
   /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
     * predictions turned out.
+    *
+    * @param lead
+    *   how much later that is because of what is done with the sight
     */
-  def predict(vehicle: Int): Flow[Sight, Sight, NotUsed] =
+  def predict(vehicle: Int, lead: Span = Span.Zero): Flow[Sight, Sight, NotUsed] =
     Flow[Sight]
       .collect(Function.unlift(sight =>
         sight.picture.forecast.filter(_ => sight.deciders(vehicle)).map((sight, _))
       ))
-      .via(Predict.whenActing(clock, verified(vehicle))(verified =>
+      .via(Predict.whenActing(clock, verified(vehicle), lead)(verified =>
         recorder.offer(prediction(vehicle, verified))
       ))
       .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
@@ -153,6 +157,30 @@ final class Team(
       .collect { case Some(decided) => decided }
       .via(Tap(record(vehicle, _, _)))
       .map(_._1)
+
+  /** How a vehicle's decisions are planned, where they are. */
+  def planning(vehicle: Int): Option[Planning] =
+    Planning.of(scenario, vehicle, settings.planning, settings.seed)
+
+  /** Plans for one vehicle on the sights that are meant for it, and records the decision and how it was planned. */
+  def plan(vehicle: Int, planning: Planning)(using ActorSystem): Flow[Sight, Decision, NotUsed] =
+    type Seen = (Picture, Instant)
+    Flow[Sight]
+      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .via(Plan.within(
+        settings.planning.deadline,
+        workers,
+        planning.planner,
+        planning.objective,
+        start(vehicle)
+      )(
+        (memory, seen: Seen) => planning.pose(memory, seen._1, seen._2),
+        (memory, seen: Seen, situation, answer) =>
+          val (next, planned) = planning.decide(memory, seen._1, seen._2, situation, answer)
+          (next, (planned, seen._1))
+      ))
+      .via(Tap((planned, picture) => record(vehicle, planning, planned, picture)))
+      .map((planned, _) => planned.decision)
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
@@ -255,8 +283,30 @@ final class Team(
 
   /** Records a decision and what it was made from. */
   def record(vehicle: Int, decision: Decision, picture: Picture): Unit =
+    record(vehicle, decision, picture, deciders(vehicle).regardsTeam)
+
+  private def record(vehicle: Int, decision: Decision, picture: Picture, regardsTeam: Boolean): Unit =
     recorder.offer(decision)
-    deciders(vehicle).sightings(picture, decision).foreach(recorder.offer)
+    deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
+
+  private def record(vehicle: Int, planning: Planning, planned: PlannedDecision, picture: Picture): Unit =
+    val PlannedDecision(decision, action, answer) = planned
+    record(vehicle, decision, picture, planning.regardsTeam)
+    recorder.offer(
+      Planned(
+        name(vehicle),
+        decision.sequence,
+        answer.best.candidates,
+        answer.slices.mkString(","),
+        Option.when(answer.best.cost.isFinite)(answer.best.cost),
+        clock.now().since(decision.decidedAt),
+        action.breaches.size
+      )
+    )
+    if answer.isMissed then
+      note(EventKind.DeadlineMissed, Some(vehicle), "no slice was searched: the last plan goes on")
+    for breach <- action.breaches.headOption do
+      note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 
   private def name(vehicle: Int): String = scenario.agents(vehicle).name
 

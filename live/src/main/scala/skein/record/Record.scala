@@ -120,6 +120,32 @@ final case class Sighting(
     predicted: Option[PredictedMotion]
 ) extends Record
 
+/** How a decision was planned.
+  *
+  * @param decision
+  *   the sequence of the decision of `vehicle`
+  * @param candidates
+  *   flown by all searches together
+  * @param slices
+  *   that each of the searches finished before the deadline, with commas between; all 0 where nothing was ready and the
+  *   last plan went on
+  * @param cost
+  *   of the plan chosen; absent where none was tried
+  * @param took
+  *   from asking until the decision was there
+  * @param breaches
+  *   of hard limits within the plan's horizon
+  */
+final case class Planned(
+    vehicle: String,
+    decision: Long,
+    candidates: Long,
+    slices: String,
+    cost: Option[Double],
+    took: Span,
+    breaches: Long
+) extends Record
+
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
@@ -244,6 +270,9 @@ enum EventKind:
 
   /** A policy did not decide in time. */
   case DeadlineMissed
+
+  /** A plan could not keep within a hard limit. */
+  case LimitBroken
 
   /** An answer came after its call had been given up. */
   case LateReply

@@ -18,6 +18,7 @@ object RecordingReader:
             Table.reading.read(connection),
             Table.decision.read(connection),
             Table.sighting.read(connection),
+            Table.planned.read(connection),
             Table.prediction.read(connection),
             Table.command.read(connection),
             Table.acknowledgement.read(connection),

@@ -143,6 +143,22 @@ private[record] object Table:
     since = 3
   )
 
+  val planned: Table[Planned] = Table(
+    "plan",
+    product[Planned]:
+      (
+        text("vehicle"),
+        long("decision"),
+        long("candidates"),
+        text("slices"),
+        optional(double("cost")),
+        spanMs("took"),
+        long("breaches")
+      )
+    ,
+    since = 3
+  )
+
   val prediction: Table[Prediction] = Table(
     "prediction",
     product[Prediction]:
@@ -195,6 +211,7 @@ private[record] object Table:
       reading,
       decision,
       sighting,
+      planned,
       prediction,
       command,
       acknowledgement,
@@ -216,6 +233,7 @@ private[record] object Table:
     case _: Reading         => reading
     case _: Decision        => decision
     case _: Sighting        => sighting
+    case _: Planned         => planned
     case _: Prediction      => prediction
     case _: Command         => command
     case _: Acknowledgement => acknowledgement

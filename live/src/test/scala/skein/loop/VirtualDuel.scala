@@ -2,6 +2,7 @@ package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.ExecutionContext
+import skein.flow.CountedPlanWorkers
 import skein.link.Clock
 import skein.policy.Scenario
 import skein.record.{MemoryRecorder, Prediction, Recording, Samples}
@@ -35,7 +36,8 @@ object VirtualDuel:
       kind: LoopKind,
       link: LatencyProfile,
       seed: Long,
-      settings: LoopSettings = LoopSettings()
+      settings: LoopSettings = LoopSettings(),
+      slices: Int = LoopSettings().planning.slices
   ): VirtualDuel =
     var sum   = 0.0
     var steps = 0
@@ -50,7 +52,8 @@ object VirtualDuel:
           sum += states(0).positionNed.horizontalDistance(states(1).positionNed)
           steps += 1
       val recorder = MemoryRecorder(Samples.heading)
-      val team     = Team(scenario, world.crafts, clock, recorder, settings)
+      val workers  = CountedPlanWorkers(settings.planning.searches, slices)
+      val team     = Team(scenario, world.crafts, clock, recorder, settings, workers)
       Flight.start(kind, team, world, duration, clock, recorder).outcome.map((_, recorder.recording))
     VirtualDuel(sum / steps, run.value._1, run.value._2)
 

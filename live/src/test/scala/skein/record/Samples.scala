@@ -92,6 +92,8 @@ object Samples:
       5,
       Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
     ),
+    Planned("Pursuer", 1, 40_960, "40,40", Some(12.25), Span.ofMillis(60.5), 0),
+    Planned("Pursuer", 2, 0, "0,0", None, Span.ofMillis(61), 2),
     Prediction(
       "Pursuer",
       "Evader",

@@ -1,0 +1,151 @@
+package skein.loop
+
+import skein.planning.*
+import skein.units.*
+import skein.vehicle.ReducedModel
+
+/** How `plan` plans.
+  *
+  * @param deadline
+  *   from the tick until the command leaves, whatever was found by then
+  * @param horizonSteps
+  *   of `step` each
+  * @param method
+  *   `cross-entropy` or `path-integral`
+  * @param behaviours
+  *   of the opponent, against which every candidate is flown
+  * @param searches
+  *   side by side: as many threads as that in real time
+  * @param slices
+  *   of each search in virtual time, where the clock does not end it
+  * @param blocksPerSlice
+  *   128 candidates each; between two slices a search looks whether its time is over
+  * @param turningRadiusM
+  *   of a vehicle at the speed that it commands
+  * @param slowestShare
+  *   of its speed that a vehicle may be commanded; 1: only its heading is planned
+  * @param separationM
+  *   to be kept from vehicles that are not the opponent; 0: none
+  * @param geofenceM
+  *   to be kept to north and south, east and west of the origin; 0: none
+  * @param response
+  *   of the vehicles to their commands; across the command it is taken to be as along it
+  */
+final case class PlanSettings(
+    deadline: Span = Span.ofMillis(60),
+    horizonSteps: Int = 30,
+    step: Span = Span.ofMillis(100),
+    method: String = PlanSettings.CrossEntropy,
+    behaviours: Int = 3,
+    searches: Int = 2,
+    slices: Int = 4,
+    blocksPerSlice: Int = PlanSettings.defaultBlocks,
+    turningRadiusM: Double = 8,
+    slowestShare: Double = 1,
+    separationM: Double = 0,
+    geofenceM: Double = 0,
+    response: ReducedModel = ReducedModel.AirSim
+):
+  /** What cannot be flown. */
+  def mistakes: Seq[String] =
+    def check(name: String, value: Any, isRight: Boolean, expected: String) =
+      Option.when(!isRight)(s"$name: expected $expected, came $value")
+    Seq(
+      check("deadline", s"${deadline.toMillis} ms", deadline > Span.Zero, "more than 0"),
+      check("horizonSteps", horizonSteps, horizonSteps > 0 && horizonSteps <= 200, "1 to 200"),
+      check(
+        "step",
+        s"${step.toMillis} ms",
+        step >= Span.ofMillis(10) && step <= Span.ofMillis(500),
+        "10 to 500 ms"
+      ),
+      check(
+        "method",
+        method,
+        PlanSettings.methods.contains(method),
+        PlanSettings.methods.keys.toSeq.sorted.mkString(" or ")
+      ),
+      check("behaviours", behaviours, behaviours > 0 && behaviours <= 32, "1 to 32"),
+      check("searches", searches, searches > 0 && searches <= 64, "1 to 64"),
+      check("slices", slices, slices > 0, "1 or more"),
+      check("blocksPerSlice", blocksPerSlice, blocksPerSlice > 0, "1 or more"),
+      check("turningRadiusM", turningRadiusM, turningRadiusM > 0, "more than 0"),
+      check("slowestShare", slowestShare, slowestShare >= 0 && slowestShare <= 1, "0 to 1"),
+      check("separationM", separationM, separationM >= 0, "0 or more"),
+      check("geofenceM", geofenceM, geofenceM >= 0, "0 or more")
+    ).flatten
+
+  def planner: PlannerSettings =
+    PlannerSettings(
+      horizonSteps,
+      step.toSeconds,
+      PlanSettings.methods(method),
+      blocksPerSlice,
+      stepsPerKnot = 3
+    )
+
+  def geofence: Geofence =
+    if geofenceM == 0 then Geofence.None else Geofence(-geofenceM, geofenceM, -geofenceM, geofenceM)
+
+  /** As [[PlanSettings.parse]] reads it back, apart from the response. */
+  def text: String = Seq(
+    "deadlineNs"     -> deadline.toNanos,
+    "horizonSteps"   -> horizonSteps,
+    "stepNs"         -> step.toNanos,
+    "method"         -> method,
+    "behaviours"     -> behaviours,
+    "searches"       -> searches,
+    "slices"         -> slices,
+    "blocksPerSlice" -> blocksPerSlice,
+    "turningRadiusM" -> turningRadiusM,
+    "slowestShare"   -> slowestShare,
+    "separationM"    -> separationM,
+    "geofenceM"      -> geofenceM
+  ).map((name, value) => s"$name=$value").mkString(" ")
+
+object PlanSettings:
+  val CrossEntropy = "cross-entropy"
+  val PathIntegral = "path-integral"
+
+  private val methods = Map(
+    CrossEntropy -> Method.CrossEntropy(elites = 48, smoothing = 0.2),
+    PathIntegral -> Method.PathIntegral(temperature = 0.1)
+  )
+
+  /** Half a millisecond's work. */
+  val defaultBlocks: Int = if Planner.isFast then 4 else 1
+
+  /** Reads settings back from their text; absent where that is no such text. */
+  def parse(text: String): Option[PlanSettings] =
+    val values = text.split(' ').map(_.split("=", 2)).collect { case Array(name, value) =>
+      name -> value
+    }.toMap
+    for
+      deadline   <- values.get("deadlineNs").flatMap(_.toLongOption)
+      steps      <- values.get("horizonSteps").flatMap(_.toIntOption)
+      step       <- values.get("stepNs").flatMap(_.toLongOption)
+      method     <- values.get("method")
+      behaviours <- values.get("behaviours").flatMap(_.toIntOption)
+      searches   <- values.get("searches").flatMap(_.toIntOption)
+      slices     <- values.get("slices").flatMap(_.toIntOption)
+      blocks     <- values.get("blocksPerSlice").flatMap(_.toIntOption)
+      radius     <- values.get("turningRadiusM").flatMap(_.toDoubleOption)
+      slowest    <- values.get("slowestShare").flatMap(_.toDoubleOption)
+      separation <- values.get("separationM").flatMap(_.toDoubleOption)
+      geofence   <- values.get("geofenceM").flatMap(_.toDoubleOption)
+      settings = PlanSettings(
+        Span.ofNanos(deadline),
+        steps,
+        Span.ofNanos(step),
+        method,
+        behaviours,
+        searches,
+        slices,
+        blocks,
+        radius,
+        slowest,
+        separation,
+        geofence
+      )
+      if settings.mistakes.isEmpty
+    yield settings

@@ -1,0 +1,126 @@
+package skein.loop
+
+import skein.flow.Plan
+import skein.planning.*
+import skein.policy.{PaperEvader, Policy, Role, Scenario}
+import skein.record.Decision
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
+trait Planning:
+  def planner: PlannerSettings
+  def objective: Objective
+
+  /** How long after its arrival a command begins to act on the vehicle. */
+  def deadTime: Span
+
+  /** Whether plans depend on more vehicles than this one and its opponent. */
+  def regardsTeam: Boolean
+
+  /** What is planned upon, from a picture with the estimates of when the command will act, and a stream of random
+    * numbers.
+    */
+  def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long)
+
+  /** The decision for what was found. */
+  def decide(
+      memory: Memory,
+      picture: Picture,
+      now: Instant,
+      situation: Situation,
+      answer: Plan.Answer
+  ): (Memory, PlannedDecision)
+
+/** A decision that was planned, and how. */
+final case class PlannedDecision(decision: Decision, action: Action, answer: Plan.Answer)
+
+object Planning:
+
+  /** How a vehicle's decisions are planned; absent where its policy decides.
+    *
+    * @param seed
+    *   of the search's random numbers
+    */
+  def of(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
+    val agent = scenario.agents(self)
+    agent.policy match
+      case _: Policy if agent.role == Role.Pursuer => Some(PursuitPlanning(scenario, self, settings, seed))
+      case _                                       => None
+
+/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
+  * horizon, and to capture it.
+  *
+  * Its turn rate stays below speed / turning radius. The evader is taken to fly by its policy where that is the paper's,
+  * which answers to the pursuer's commands; else to fly straight on. All other vehicles are taken to fly straight on.
+  */
+private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
+    extends Planning:
+  private val agent    = scenario.agents(self)
+  private val speed    = agent.speed.value
+  private val decider  = Decider(scenario, self)
+  private val response = settings.response.copy(turnLagS = settings.response.lagS)
+
+  val planner: PlannerSettings = settings.planner
+  val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
+
+  val objective: Objective = Objective(
+    Limits(speed * settings.slowestShare, speed, speed / settings.turningRadiusM, settings.turningRadiusM),
+    carried = PursuitPlanning.Carried,
+    closest = PursuitPlanning.Closest,
+    capture = PursuitPlanning.Capture,
+    cruiseSpeed = speed,
+    separation = Separation(settings.separationM, margin = if settings.separationM > 0 then 1 else 0),
+    geofence = settings.geofence
+  )
+
+  def regardsTeam: Boolean = settings.separationM > 0
+
+  def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long) =
+    val opponent = scenario.opponentOf(self, picture.kinematics(_).positionNed)
+    val stream   = (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
+    val others   =
+      if !regardsTeam then Vector.empty
+      else scenario.agents.indices.filter(other => other != self && other != opponent).toVector
+    val situation = Situation(
+      motion(picture.kinematics(self)),
+      memory.headingRad,
+      memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, PursuitPlanning.LongestTurnS)),
+      response,
+      Behaviours.around(target(opponent, motion(picture.kinematics(opponent))), settings.behaviours, stream),
+      others.map(other => straight(motion(picture.kinematics(other))))
+    )
+    (situation, stream)
+
+  private def target(opponent: Int, motion: Motion): Target = scenario.agents(opponent).policy match
+    case paper: PaperEvader =>
+      Target.paperEvader(motion, response, scenario.agents(opponent).speed.value, paper)
+    case _ => Target.Along(straight(motion))
+
+  private def straight(motion: Motion): PredictedTrack =
+    PredictedTrack.straight(motion, planner.steps, planner.dtS)
+
+  private def motion(seen: Kinematics): Motion =
+    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+
+  def decide(
+      memory: Memory,
+      picture: Picture,
+      now: Instant,
+      situation: Situation,
+      answer: Plan.Answer
+  ): (Memory, PlannedDecision) =
+    val action           = Action.of(answer.best, situation, objective, planner.dtS)
+    val chosen           = Option.when(settings.slowestShare < 1)(MetresPerSecond(action.speed))
+    val (next, decision) =
+      decider.decided(memory, picture, now, memory.headingRad + action.turned, chosen)
+    (next, PlannedDecision(decision, action, answer))
+
+private object PursuitPlanning:
+  /** Weights of [[skein.planning.Objective]]; see there. */
+  val Carried = 0.0
+  val Closest = 1.0
+  val Capture = 3.0
+
+  /** After a longer pause a vehicle turns no further at once than in this time, s. */
+  val LongestTurnS = 0.5

@@ -1,0 +1,55 @@
+package skein.flow
+
+import skein.planning.*
+import skein.vehicle.ReducedModel
+
+/** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
+class PlanWorkersLiveSuite extends munit.FunSuite:
+  private val settings  = PlannerSettings(blocksPerSlice = 1)
+  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+
+  private def problem(stream: Long): PlanProblem =
+    val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
+    val situation = Situation(Motion(0, 0, 5, 0), 0, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
+    PlanProblem(settings, objective, situation, Planner(settings, objective).start, stream)
+
+  private val workers = FunFixture[ThreadedPlanWorkers](_ => ThreadedPlanWorkers(2), _.close())
+
+  /** Polls until all searches have come so far. */
+  private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[Plan] =
+    val search   = workers.begin(problem)
+    val deadline = System.nanoTime() + 60_000_000_000L
+    while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.onSpinWait()
+    search.finish()
+
+  workers.test("what threads find in so many slices is found again by counting them"): workers =>
+    for stream <- 1 to 3 do
+      val found    = finished(workers, problem(stream))
+      val planners = Planners()
+      assert(found.forall(_.slices > 3), found.map(_.slices).toString)
+      for (plan, search) <- found.zipWithIndex do
+        val again = planners.searched(problem(stream), search, plan.slices)
+        assertEquals(again.manoeuvre.turnRates.toSeq, plan.manoeuvre.turnRates.toSeq)
+        assertEquals(again.cost, plan.cost)
+
+  workers.test("several problems take turns"): workers =>
+    val searches = Vector.tabulate(5)(stream => workers.begin(problem(stream)))
+    val deadline = System.nanoTime() + 60_000_000_000L
+    while System.nanoTime() < deadline && !searches.forall(_.found.forall(_.slices > 3)) do
+      Thread.onSpinWait()
+    assert(searches.flatMap(_.finish()).forall(_.slices > 3))
+
+  workers.test("a search that was ended finds nothing more"): workers =>
+    val search = workers.begin(problem(1))
+    val found  = search.finish()
+    val later  = finished(workers, problem(2))
+    assert(later.forall(_.slices > 3))
+    assertEquals(search.finish().map(_.slices), found.map(_.slices))
+
+  test("on Linux a background thread runs only where nobody else wants the processor"):
+    assume(System.getProperty("os.name") == "Linux")
+    var became = false
+    val thread = Thread(() => became = BackgroundThread.becomeIdle())
+    thread.start()
+    thread.join()
+    assert(became, "the system refused SCHED_IDLE")
