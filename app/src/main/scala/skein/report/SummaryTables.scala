@@ -104,20 +104,20 @@ object SummaryTables:
         ""
       )
     )
-    (duels ++ teams ++ Vector(
+    val decided = Vector(
       "What the decisions were made on, ms: mean/p50/p99, ages by arrival as published; true ages by the simulator's clock",
       observations(set).render,
       "",
       "What happened",
       counts(set).render
-    ) ++ (if set.flights.forall(_.planning.isEmpty) then Vector.empty
-          else
-            Vector(
-              "",
-              s"${PlanTable.title}: ${PlanTable.note}",
-              PlanTable.of(set).render
-            )) ++ (if set.twins.isEmpty then Vector.empty
-                   else Vector("", s"Live against virtual: $twinsNote", twins(set).render))).mkString("\n")
+    )
+    val planned =
+      if set.flights.forall(_.planning.isEmpty) then Vector.empty
+      else Vector("", s"${PlanTable.title}: ${PlanTable.note}", PlanTable.of(set).render)
+    val twinned =
+      if set.twins.isEmpty then Vector.empty
+      else Vector("", s"Live against virtual: $twinsNote", twins(set).render)
+    (duels ++ teams ++ decided ++ planned ++ twinned).mkString("\n")
 
   /** How to read [[twins]]. */
   val twinsNote: String =

@@ -2,7 +2,7 @@ package skein.experiment
 
 import java.nio.file.{Files, Path}
 import scala.util.Using
-import skein.loop.{LoopKind, Replay}
+import skein.loop.{LoopKind, PlanSettings, Replay}
 import skein.policy.Scenario
 import skein.record.*
 import skein.signal.LatencyProfile
@@ -19,8 +19,12 @@ class ReplaySimulation extends munit.FunSuite:
     period = Span.ofMillis(100),
     seed = 3,
     pairs = 1,
-    asPublished = false
+    asPublished = false,
+    planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
+
+  private val predictive =
+    settings.plans.find(_.loop == LoopKind.Predictive).getOrElse(fail("there is no such flight"))
 
   private val folder = FunFixture[Path](
     _ => Files.createTempDirectory("replay"),
@@ -42,10 +46,11 @@ class ReplaySimulation extends munit.FunSuite:
       assertEquals(replayed.flownAgain.map(_.again), Some(recorder.digest), plan.id)
       assert(replayed.isSame, plan.id)
 
-  folder.test(
-    "every loop decides the same when it is flown again, and when its recording is decided upon again"
-  ): folder =>
-    check(settings, folder)
+  for loop <- LoopKind.values do
+    folder.test(
+      s"${loop.label} decides the same when it is flown again, and when its recording is decided upon again"
+    ): folder =>
+      check(settings.copy(loops = List(loop)), folder)
 
   folder.test("so does a predictive flight by a reduced model, which the recording holds"): folder =>
     check(
@@ -70,7 +75,7 @@ class ReplaySimulation extends munit.FunSuite:
     )
 
   test("a replay names the first decision whose heading is not what the policy gives, with both values"):
-    val recording = fly(settings, settings.plans.last).recording
+    val recording = fly(settings, predictive).recording
     val forged    = recording.decisions(7)
     val heading   = Radians(forged.heading.value + 1e-12)
     val changed   = recording.copy(decisions = recording.decisions.updated(7, forged.copy(heading = heading)))
@@ -80,7 +85,7 @@ class ReplaySimulation extends munit.FunSuite:
     assertEquals((found.recorded, found.again), (heading.value.toString, forged.heading.value.toString))
 
   test("a replay notices a reading that was changed after it had been decided upon"):
-    val recording = fly(settings, settings.plans.last).recording
+    val recording = fly(settings, predictive).recording
     val forged    = recording.readings.map: reading =>
       if reading.sequence != 5 then reading
       else
@@ -92,7 +97,7 @@ class ReplaySimulation extends munit.FunSuite:
     assert(found.exists(_.column.endsWith("Sequence")), found.toString)
 
   folder.test("flying again what was recorded with another seed gives other decisions"): folder =>
-    val plan     = settings.plans.last
+    val plan     = predictive
     val recorder = fly(settings, plan)
     val records  = recorder.records
     val relabel  = recorder.recording.heading
