@@ -78,5 +78,5 @@ object PlanTable:
   /** How to read it. */
   val note: String =
     "Candidate manoeuvres flown forward per tick, all searches together; ms from the tick to the decision; a deadline is " +
-      "missed where no slice was ready and the last plan went on; captured where the distance first is below 1.5 m, and " +
+      "missed where no slice was ready, and the last plan went on or the policy decided; captured where the distance first is below 1.5 m, and " +
       "the share of the flight below it"

@@ -45,8 +45,8 @@ object Conditions:
     case LoopKind.Sequential => Right(LoopTiming.Sequential(periodS))
     case LoopKind.Futures    => Right(LoopTiming.Futures(periodS))
     case LoopKind.Stream     => Right(LoopTiming.Stream(periodS, periodS / 2))
-    case LoopKind.Predictive =>
-      Left("forward simulation has no predictive loop; expected paused, sequential, futures or stream")
+    case LoopKind.Predictive | LoopKind.Plan =>
+      Left(s"a search has no ${loop.label} loop; expected paused, sequential, futures or stream")
 
   /** The round trips of a link, which forward simulation takes to be independent of one another. */
   def roundTrips(link: String): Either[String, LatencyDistribution] =

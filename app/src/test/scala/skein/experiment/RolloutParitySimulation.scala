@@ -35,7 +35,9 @@ class RolloutParitySimulation extends munit.FunSuite:
       TappedFlight.fly(settings(loop, link, asPublished, pairs), FlightPlan("parity", loop, link, seed))
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
-      LoopTimings.of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
+      LoopTimings
+        .of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
+        .getOrElse(fail(s"${loop.label} has no timing"))
     val scenario = Scenario.duels(pairs, asPublished)
     val vehicles = scenario.agents.map(_.name)
     val clue     = s"${loop.label} over ${link.name}, seed $seed"

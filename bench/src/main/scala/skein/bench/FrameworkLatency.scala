@@ -21,7 +21,8 @@ import skein.units.*
   * client's sockets: from the last bytes that arrived before a command to the write of the bytes that hold the
   * command; so decoding, joining, deciding and encoding are in it, for all twenty.
   *
-  * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10).
+  * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10), threads
+  * that plan without a pause meanwhile, as the `plan` loop's do (default 0).
   */
 object FrameworkLatency:
 
@@ -43,9 +44,13 @@ object FrameworkLatency:
     val observed = ObservedTransport(TcpTransport(), Clock.system)
     val rigs     = FlightRigs(observed, Clock.system, settings, simulator = None)
     val recorder = MemoryRecorder(rigs.heading(plan, "real"))
+    val planning = PlanBench.endlessly(threads = args.lift(2).fold(0)(_.toInt))
     val outcome  =
       rigs.start(plan, recorder).flatMap(_.fold(reason => Future.failed(RuntimeException(reason)), _.landed))
     println(Await.result(outcome, Duration.Inf).outcome)
+    for planned <- planning do
+      val candidates = planned.finish().map(_.candidates).sum
+      println(f"planned meanwhile: ${candidates / seconds / 10}%.0f candidates of 2 s per 100 ms")
     // The first seconds belong to the compiler.
     val nanos               = observed.latencies.asScala.toVector.drop(pairs * 2 * 10 * 5).sorted
     def quantile(p: Double) = nanos((p * (nanos.size - 1)).toInt) / 1000

@@ -7,10 +7,12 @@ import skein.units.*
 /** The live loops' timing as forward simulation has it. */
 object LoopTimings:
 
-  /** @param askTimeout
+  /** Absent for `plan`, whose decisions are themselves forward simulations.
+    *
+    * @param askTimeout
     *   of every question
     */
-  def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): LoopTiming =
+  def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): Option[LoopTiming] =
     val periodS = settings.period.toSeconds
     val asking  = Asking(
       settings.window,
@@ -21,16 +23,19 @@ object LoopTimings:
     val steering =
       Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Steer.Handover.toSeconds)
     kind match
-      case LoopKind.Paused     => LoopTiming.Paused(periodS)
-      case LoopKind.Sequential => LoopTiming.Sequential(periodS, asking, steering)
-      case LoopKind.Futures    => LoopTiming.Futures(periodS, asking, steering)
+      case LoopKind.Paused     => Some(LoopTiming.Paused(periodS))
+      case LoopKind.Sequential => Some(LoopTiming.Sequential(periodS, asking, steering))
+      case LoopKind.Futures    => Some(LoopTiming.Futures(periodS, asking, steering))
       case LoopKind.Stream     =>
-        LoopTiming.Stream(
-          periodS,
-          (settings.period - settings.paceInterval).toSeconds,
-          settings.patience.toSeconds,
-          settings.decideThenPace,
-          asking,
-          steering
+        Some(
+          LoopTiming.Stream(
+            periodS,
+            (settings.period - settings.paceInterval).toSeconds,
+            settings.patience.toSeconds,
+            settings.decideThenPace,
+            asking,
+            steering
+          )
         )
-      case LoopKind.Predictive => LoopTiming.Predictive(periodS, settings.model(0), asking, steering)
+      case LoopKind.Predictive => Some(LoopTiming.Predictive(periodS, settings.model(0), asking, steering))
+      case LoopKind.Plan => None

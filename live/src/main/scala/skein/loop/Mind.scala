@@ -1,7 +1,6 @@
 package skein.loop
 
 import skein.flow.{Plan, PlanProblem, Planners}
-import skein.planning.Plan as Found
 import skein.record.Decision
 import skein.units.Instant
 
@@ -29,7 +28,7 @@ private object Mind:
       val (next, decision) = decider.decide(memory, picture, now)
       (Deciding(decider, next), decision)
 
-  final class Searching(planning: Planning, planners: Planners, memory: Memory, last: Option[Found])
+  final class Searching(planning: Planning, planners: Planners, memory: Memory, last: Option[Plan.Answer])
       extends Mind:
     def this(planning: Planning, memory: Memory) = this(planning, Planners(), memory, None)
 
@@ -39,10 +38,9 @@ private object Mind:
     def decide(picture: Picture, now: Instant, slices: Vector[Int]): (Mind, Decision) =
       val (situation, stream) = planning.pose(memory, picture, now)
       val planner             = planners.of(planning.planner, planning.objective)
-      val warm                = planner.resumed(last.getOrElse(planner.start), situation.sinceDecisionS)
+      val warm                = planner.resumed(last.fold(planner.start)(_.best), situation.sinceDecisionS)
       val problem             = PlanProblem(planning.planner, planning.objective, situation, warm, stream)
-      val answer              = Plan.Answer.of(slices.zipWithIndex.map((count, search) =>
-        planners.searched(problem, search, count)
-      ))
+      val found   = slices.zipWithIndex.map((count, search) => planners.searched(problem, search, count))
+      val answer  = Plan.Answer.of(found, situation, last)
       val (next, planned) = planning.decide(memory, picture, now, situation, answer)
-      (Searching(planning, planners, next, Some(answer.best)), planned.decision)
+      (Searching(planning, planners, next, Some(answer)), planned.decision)

@@ -32,8 +32,12 @@ trait Planning:
       answer: Plan.Answer
   ): (Memory, PlannedDecision)
 
-/** A decision that was planned, and how. */
-final case class PlannedDecision(decision: Decision, action: Action, answer: Plan.Answer)
+/** A decision that was planned, and how.
+  *
+  * @param byPolicy
+  *   whether the last plan was too old to go on with
+  */
+final case class PlannedDecision(decision: Decision, action: Action, answer: Plan.Answer, byPolicy: Boolean)
 
 object Planning:
 
@@ -53,6 +57,8 @@ object Planning:
   *
   * Its turn rate stays below speed / turning radius. The evader is taken to fly by its policy where that is the paper's,
   * which answers to the pursuer's commands; else to fly straight on. All other vehicles are taken to fly straight on.
+  *
+  * Where nothing was searched for half a horizon, the vehicle's own policy decides, within the turn limit.
   */
 private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
     extends Planning:
@@ -110,11 +116,18 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
       situation: Situation,
       answer: Plan.Answer
   ): (Memory, PlannedDecision) =
-    val action           = Action.of(answer.best, situation, objective, planner.dtS)
+    val byPolicy = answer.unsearchedS > planner.horizonS / 2
+    val action   =
+      if !byPolicy then Action.of(answer.best, situation, objective, planner.dtS)
+      else
+        val (_, decision) = decider.decide(memory, picture, now)
+        val most          = objective.limits.turnRateAt(speed) * situation.sinceDecisionS
+        val turned        = decision.heading.value - memory.headingRad
+        Action(math.min(math.max(turned, -most), most), speed, Vector.empty)
     val chosen           = Option.when(settings.slowestShare < 1)(MetresPerSecond(action.speed))
     val (next, decision) =
       decider.decided(memory, picture, now, memory.headingRad + action.turned, chosen)
-    (next, PlannedDecision(decision, action, answer))
+    (next, PlannedDecision(decision, action, answer, byPolicy))
 
 private object PursuitPlanning:
   /** Weights of [[skein.planning.Objective]]; see there. */

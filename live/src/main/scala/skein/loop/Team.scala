@@ -290,7 +290,7 @@ final class Team(
     deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
 
   private def record(vehicle: Int, planning: Planning, planned: PlannedDecision, picture: Picture): Unit =
-    val PlannedDecision(decision, action, answer) = planned
+    val PlannedDecision(decision, action, answer, byPolicy) = planned
     record(vehicle, decision, picture, planning.regardsTeam)
     recorder.offer(
       Planned(
@@ -304,7 +304,8 @@ final class Team(
       )
     )
     if answer.isMissed then
-      note(EventKind.DeadlineMissed, Some(vehicle), "no slice was searched: the last plan goes on")
+      val instead = if byPolicy then "the policy decides" else "the last plan goes on"
+      note(EventKind.DeadlineMissed, Some(vehicle), s"no slice was searched: $instead")
     for breach <- action.breaches.headOption do
       note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 

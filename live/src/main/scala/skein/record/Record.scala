@@ -127,8 +127,8 @@ final case class Sighting(
   * @param candidates
   *   flown by all searches together
   * @param slices
-  *   that each of the searches finished before the deadline, with commas between; all 0 where nothing was ready and the
-  *   last plan went on
+  *   that each of the searches finished before the deadline, with commas between; all 0 where nothing was ready: then
+  *   the last plan went on, or the policy decided
   * @param cost
   *   of the plan chosen; absent where none was tried
   * @param took

@@ -1,0 +1,70 @@
+package skein.bench
+
+import java.util.concurrent.atomic.AtomicLong
+import skein.flow.{BackgroundThread, PlanProblem, PlanSearch, ThreadedPlanWorkers}
+import skein.planning.*
+import skein.policy.PaperEvader
+import skein.vehicle.ReducedModel
+
+/** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of pursuer and
+  * evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads are those of the `plan`
+  * loop, under the lowest priority, so other work on the machine takes its share first: rates are given per second of the
+  * clock and of the processor time used.
+  *
+  * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.
+  */
+object PlanBench:
+  private val evader =
+    Target.paperEvader(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, PaperEvader())
+
+  private def problem(behaviours: Int): PlanProblem =
+    val settings  = PlannerSettings(blocksPerSlice = 4)
+    val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+    PlanProblem(
+      settings,
+      objective,
+      Situation(
+        Motion(0, 0, 8, 0),
+        0,
+        0.1,
+        ReducedModel.AirSim,
+        Behaviours.around(evader, behaviours, stream = 1)
+      ),
+      Planner(settings, objective).start,
+      stream = 1
+    )
+
+  def main(args: Array[String]): Unit =
+    val seconds = args.headOption.fold(2.0)(_.toDouble)
+    val cores   = Runtime.getRuntime.availableProcessors
+    println("behaviours  threads  candidates per 100 ms  per 100 ms of processor time  witness")
+    for behaviours <- Seq(1, 3); threads <- Seq(1, cores).distinct do
+      for _ <- 1 to 2 do
+        val (byWall, byCpu, witness) = run(problem(behaviours), threads, seconds)
+        println(f"$behaviours%10d $threads%8d $byWall%22.0f $byCpu%29.0f  $witness%.3f")
+
+  /** A search that goes on until it is finished, on the `plan` loop's own threads. */
+  def endlessly(threads: Int): Option[PlanSearch] =
+    Option.when(threads > 0)(new ThreadedPlanWorkers(threads).begin(problem(behaviours = 1)))
+
+  private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Float) =
+    val (candidates, cpuNanos) = (AtomicLong(), AtomicLong())
+    val start                  = System.nanoTime()
+    val until                  = start + (seconds * 1e9).toLong
+    val timer                  = java.lang.management.ManagementFactory.getThreadMXBean
+    val factory                = BackgroundThread.factory("bench")
+    val best                   = Array.fill(threads)(Float.PositiveInfinity)
+    val workers                = Vector.tabulate(threads): search =>
+      factory.newThread: () =>
+        val planner = Planner(problem.settings, problem.objective)
+        var plan    = problem.warm
+        val before  = timer.getCurrentThreadCpuTime
+        while System.nanoTime() < until do
+          plan = planner.improve(plan, problem.situation, problem.streamOf(search))
+        cpuNanos.addAndGet(timer.getCurrentThreadCpuTime - before): Unit
+        candidates.addAndGet(plan.candidates): Unit
+        best(search) = plan.cost
+    workers.foreach(_.start())
+    workers.foreach(_.join())
+    val wallNanos = System.nanoTime() - start
+    (candidates.get * 1e8 / wallNanos, candidates.get * 1e8 / cpuNanos.get, best.min)
