@@ -52,7 +52,7 @@ object IdentifyCommand
       recordings <- read(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
       fits       <- fit(flights, horizon.toSeconds)
-      _    = Console.out.println(text(fits, flights))
+      _    = Console.out.println(s"${clocks(recordings)}\n${text(fits, flights)}")
       out  = options.out.fold(Path.of(files.head).toAbsolutePath.getParent.resolve("model"))(Path.of(_))
       from = ModelFile.Provenance(
         files.zip(recordings).map(described),
@@ -102,6 +102,11 @@ object IdentifyCommand
   private def described(file: String, recording: Recording): String =
     val flight = recording.flight
     s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
+
+  /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed with. */
+  private def clocks(recordings: Vector[Recording]): String =
+    val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
+    byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")
 
   private def version(recordings: Vector[Recording]): String =
     recordings.map(_.flight.version).distinct.mkString(", ")

@@ -30,7 +30,9 @@ object Peers:
       Works.singleWorlds,
       Works.streamScalar,
       Works.quadrotor,
-      Works.quadrotorScalar
+      Works.quadrotorScalar,
+      Works.networkByLanes,
+      Works.networkScalar
     )
     for
       _    <- 1 to 3

@@ -1,6 +1,6 @@
 package skein.bench
 
-import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
 import skein.rollout.*
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
@@ -10,6 +10,7 @@ object Works:
   val model: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val AgentStep   = "agent-step: 0.1 s of one agent"
+  private val Decision    = "decision of a network with two hidden layers of eight"
   private val VehicleStep = "vehicle-step: 3 ms of the quadrotor and its controller"
 
   /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step, distance. */
@@ -54,6 +55,30 @@ object Works:
     val setpoint = Setpoint.velocityZ(10, 0, -20)
     for _ <- 1 to steps do Quadrotor.AirSim.step(state, setpoint)
     (steps.toDouble, state.vx)
+
+  private val network = NeuralShape(Vector(8, 8))
+  private val weights = Vector.tabulate(network.parameters)(i => math.sin(i))
+
+  val networkByLanes: Work = Work("network, SIMD", Decision): thread =>
+    val (worlds, rounds) = (512, 20_000)
+    val kernel           = NeuralKernel(network.widths.toArray, worlds)
+    val dx, dy, heading  = Array.tabulate(worlds)(i => (i + thread) * 0.01f)
+    val dvx, dvy, turns  = Array.ofDim[Float](worlds)
+    kernel.load(weights.toArray)
+    var sum = 0.0
+    for round <- 1 to rounds do
+      dvx(round % worlds) += 0.1f
+      kernel.turnShares(dx, dy, dvx, dvy, heading, turns)
+      sum += turns(round % worlds)
+    (worlds * rounds.toDouble, sum / rounds)
+
+  val networkScalar: Work = Work("network, scalar", Decision): thread =>
+    val steps  = 500_000
+    val policy = NeuralPolicy(network, weights)
+    var sum    = 0.0
+    for i <- 1 to steps do
+      sum += policy.turnRate((i % 512 + thread) * 0.01, i % 512 * 0.01, 0, 0, i % 512 * 0.01)
+    (steps.toDouble, sum / steps)
 
   def batch(timing: LoopTiming, threads: Int): DuelBatch = DuelBatch(Duel.paper, timing, model, threads)
 

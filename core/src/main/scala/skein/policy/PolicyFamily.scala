@@ -87,7 +87,7 @@ object PolicyFamily:
       Vector(
         Axis("turningRadiusM", 1.0, 24.0, 8.0),
         Axis("speedRatio", 0.05, 0.95, 0.5),
-        Axis("dodgeM", 0.0, 30.0, 8.0)
+        Axis("dodgeM", 0.0, 30.0, 4.0)
       )
     ),
     parameters => ChauffeurEvader(parameters(0), parameters(1), parameters(2))

@@ -100,18 +100,42 @@ class GuidanceSuite extends munit.FunSuite:
         headings.take(turning).map(h => math.abs(math.IEEEremainder(h - headings.head, 2 * math.Pi)))
       assert(hardBend.forall(_ < 1e-2), s"from ($x, $y): ${hardBend.max} rad of $bend")
 
+  test("inside the pursuer's turning circle the chauffeur's evader makes for the centre"):
+    for side <- Seq(1, -1) do
+      // The evader is 4 m beside the pursuer, who faces 0.7 rad.
+      val evader =
+        ChauffeurEvader().heading(side * 4 * math.sin(0.7), -side * 4 * math.cos(0.7), 0, 0, 0, 0.7, 0.1)
+      assertEqualsDouble(evader, 0.7 + side * math.Pi / 2, 1e-12)
+
   test(
-    "inside the pursuer's turning circle the chauffeur's evader makes for the centre, near ahead it steps aside"
+    "near ahead the chauffeur's evader breaks away at a right angle and keeps that course, not crossing the bow"
   ):
-    val evader = ChauffeurEvader(8, 0.5, dodgeM = 8)
-    def at(x: Double, y: Double, facing: Double) =
-      // The evader at (x, y) in the frame of a pursuer at the origin.
-      val (cos, sin) = (math.cos(facing), math.sin(facing))
-      evader.heading(-(x * cos - y * sin), -(x * sin + y * cos), 0, 0, 0, facing, 0.1)
-    assertEqualsDouble(at(0, 4, 0.7), 0.7 + math.Pi / 2, 1e-12)
-    assertEqualsDouble(at(0, -4, 0.7), 0.7 - math.Pi / 2, 1e-12)
-    assertEqualsDouble(at(6, 0.5, 0.7), 0.7 + math.acos(0.5), 1e-12)
-    assertEqualsDouble(at(30, 0, 0), math.atan2(-8, 30) + math.atan2(8, 30), 1e-12)
+    def ahead(right: Double, own: Double) = ChauffeurEvader().heading(-3, -right, 0, 0, own, 0, 0.1)
+    assertEqualsDouble(ahead(0.1, own = 0.2), math.Pi / 2, 1e-12)
+    assertEqualsDouble(ahead(-0.1, own = 0.2), -math.Pi / 2, 1e-12)
+    assertEquals(ahead(0.1, own = 1.3), 1.3)
+    assertEquals(ahead(-0.1, own = 1.3), 1.3)
+    assertEqualsDouble(ahead(-0.1, own = 0.9), math.Pi / 2, 1e-12)
+
+  test(
+    "in the ideal game the chauffeur's evader slips by at the threshold's radius, where it would be run over"
+  ):
+    val (radius, ratio) = (8.0, 0.5)
+    val threshold       = radius * (math.sqrt(1 - ratio * ratio) + ratio * math.asin(ratio) - 1)
+    assertEqualsDouble(threshold, 1.0226, 1e-4)
+    def closest(dodgeM: Double, x: Double, y: Double) =
+      val evader = ChauffeurEvader(radius, ratio, dodgeM)
+      chase(
+        PurePursuit(10 / radius),
+        evader,
+        Mover(0, 0, 0, 10),
+        Mover(x, y, 0, 5),
+        0.002,
+        8
+      ).map(distance(_, _)).min
+    for (x, y) <- Seq((20.0, 0.0), (20.0, 3.0), (15.0, -10.0)) do
+      assertEqualsDouble(closest(ratio * radius, x, y), threshold, 0.02, s"from ($x, $y)")
+      assert(closest(0, x, y) < 0.1, s"from ($x, $y)")
 
   test("every policy mirrors what it does where everything is mirrored"):
     val source   = SplitMix64(3)
