@@ -112,15 +112,15 @@ final class FlightRigs(
             seed = plan.seed
           )
         val loopSettings = if settings.asPublished then timely.asPublished else timely
-        val planners =
+        val planners     =
           if plan.loop != LoopKind.Plan then PlanWorkers.none
           else
             opened.closing(workers(settings.planningByModel)): threads =>
               threads.close()
               Future.successful(Done)
-        val team         = Team(plan.agents(settings), crafts, clock, watch, loopSettings, planners)
-        val startedAt    = clock.now()
-        val flight       =
+        val team      = Team(plan.agents(settings), crafts, clock, watch, loopSettings, planners)
+        val startedAt = clock.now()
+        val flight    =
           Flight.start(plan.loop, team, AirSimStepper(client), settings.duration, clock, watch)
         Right(FlightRig(plan, flight, watch, startedAt, clock, () => opened.close()))
     starting

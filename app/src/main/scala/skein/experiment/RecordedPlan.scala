@@ -26,7 +26,9 @@ object RecordedPlan:
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
         Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
-    (scenario :+ Parameter(Planning, settings.planning.text)) ++ settings.model.map(model => Parameter(Model, textOf(model))) ++
+    (scenario :+ Parameter(Planning, settings.planning.text)) ++ settings.model.map(model =>
+      Parameter(Model, textOf(model))
+    ) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
           Parameter(PolicyName, chosen.name),

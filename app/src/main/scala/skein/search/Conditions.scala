@@ -41,10 +41,10 @@ object Conditions:
     def paused: Resolved = copy(timing = LoopTiming.Paused(timing.periodS))
 
   private def timing(loop: LoopKind, periodS: Double): Either[String, LoopTiming] = loop match
-    case LoopKind.Paused     => Right(LoopTiming.Paused(periodS))
-    case LoopKind.Sequential => Right(LoopTiming.Sequential(periodS))
-    case LoopKind.Futures    => Right(LoopTiming.Futures(periodS))
-    case LoopKind.Stream     => Right(LoopTiming.Stream(periodS, periodS / 2))
+    case LoopKind.Paused                     => Right(LoopTiming.Paused(periodS))
+    case LoopKind.Sequential                 => Right(LoopTiming.Sequential(periodS))
+    case LoopKind.Futures                    => Right(LoopTiming.Futures(periodS))
+    case LoopKind.Stream                     => Right(LoopTiming.Stream(periodS, periodS / 2))
     case LoopKind.Predictive | LoopKind.Plan =>
       Left(s"a search has no ${loop.label} loop; expected paused, sequential, futures or stream")
 

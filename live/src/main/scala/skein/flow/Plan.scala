@@ -63,8 +63,8 @@ object Plan:
     Flow[O]
       .scanAsync(Turn[M, D](start, None, None)): (turn, element) =>
         val (situation, stream) = pose(turn.memory, element)
-        val warm                = planner.resumed(turn.last.fold(planner.start)(_.best), situation.sinceDecisionS)
-        val search              = workers.begin(PlanProblem(settings, objective, situation, warm, stream))
+        val warm   = planner.resumed(turn.last.fold(planner.start)(_.best), situation.sinceDecisionS)
+        val search = workers.begin(PlanProblem(settings, objective, situation, warm, stream))
         after(deadline.toDuration, system.scheduler):
           Future:
             val answer             = Answer.of(search.finish(), situation, turn.last)

@@ -38,4 +38,4 @@ object LoopTimings:
           )
         )
       case LoopKind.Predictive => Some(LoopTiming.Predictive(periodS, settings.model(0), asking, steering))
-      case LoopKind.Plan => None
+      case LoopKind.Plan       => None

@@ -11,7 +11,13 @@ class PlanLoopSimulation extends munit.FunSuite:
 
   private val planning  = PlanSettings(behaviours = 1, searches = 1, slices = 3)
   private lazy val duel =
-    VirtualDuel.fly(LoopKind.Plan, LatencyProfile.vpn, seed = 4, LoopSettings(planning = planning), planning.slices)
+    VirtualDuel.fly(
+      LoopKind.Plan,
+      LatencyProfile.vpn,
+      seed = 4,
+      LoopSettings(planning = planning),
+      planning.slices
+    )
 
   private def distances(duel: VirtualDuel): Vector[Double] =
     duel.recording.decisions
