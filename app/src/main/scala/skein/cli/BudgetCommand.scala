@@ -119,7 +119,7 @@ object BudgetCommand
           _        <- Either.cond(
             named.loop != "paused",
             (),
-            "--loop: the paused loop is the truth and feels no latency; expected sequential, futures or stream"
+            "--loop: the paused loop is the truth and feels no latency; expected sequential, futures, stream or predictive"
           )
         yield read :+ (named, resolved)
 

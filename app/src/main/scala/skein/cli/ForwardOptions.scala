@@ -13,7 +13,7 @@ final case class ForwardOptions(
         "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' or 'maximise' may stand before it (default: last10s)"
     )
     objective: Option[String],
-    @arg(doc = "paused, sequential, futures or stream (default: stream)")
+    @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
     loop: Option[String],
     @arg(doc =
       "the vehicles: reduced, drag, quadrotor, ideal, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"

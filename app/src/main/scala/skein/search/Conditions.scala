@@ -1,9 +1,10 @@
 package skein.search
 
-import skein.experiment.TextFile
-import skein.loop.LoopKind
-import skein.rollout.{DelayTable, Duel, DuelBatch, LoopTiming}
+import skein.experiment.{FlightRigs, TextFile}
+import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.rollout.{Delays, Duel, DuelBatch, LoopTiming, VelocityResponse}
 import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.units.Span
 import upickle.default.ReadWriter
 
 /** Under what candidates are judged by forward simulation, as users name it.
@@ -18,7 +19,6 @@ final case class Conditions(loop: String, model: String, periodMs: Double, durat
   def resolved: Either[String, Conditions.Resolved] =
     for
       kind    <- LoopKind.parse(loop).left.map("--loop: " + _)
-      timing  <- Conditions.timing(kind, periodMs / 1000).left.map("--loop: " + _)
       vehicle <- VehicleChoice.parse(model).left.map("--model: " + _)
       _       <- Either.cond(
         periodMs >= 1 && periodMs <= 10_000,
@@ -30,6 +30,7 @@ final case class Conditions(loop: String, model: String, periodMs: Double, durat
         (),
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
       )
+      timing <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
     yield Conditions.Resolved(timing, vehicle, Duel.paper.copy(durationS = durationS))
 
 object Conditions:
@@ -40,17 +41,18 @@ object Conditions:
     /** The ground truth with the same vehicles: the same period, and a world that waits. */
     def paused: Resolved = copy(timing = LoopTiming.Paused(timing.periodS))
 
-  private def timing(loop: LoopKind, periodS: Double): Either[String, LoopTiming] = loop match
-    case LoopKind.Paused                     => Right(LoopTiming.Paused(periodS))
-    case LoopKind.Sequential                 => Right(LoopTiming.Sequential(periodS))
-    case LoopKind.Futures                    => Right(LoopTiming.Futures(periodS))
-    case LoopKind.Stream                     => Right(LoopTiming.Stream(periodS, periodS / 2))
-    case LoopKind.Predictive | LoopKind.Plan =>
-      Left(s"a search has no ${loop.label} loop; expected paused, sequential, futures or stream")
+  /** As `./skein fly` flies the loop, by the best model of the vehicles where it predicts. */
+  private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =
+    val settings = LoopSettings.every(period).copy(model = _ => vehicles.predictor)
+    LoopTimings
+      .of(loop, settings, FlightRigs.askTimeout)
+      .toRight(
+        s"a search has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
+      )
 
   /** The round trips of a link, which forward simulation takes to be independent of one another. */
   def roundTrips(link: String): Either[String, LatencyDistribution] =
-    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap:
+    profile(link).flatMap:
       case LatencyProfile.Steady(_, roundTrip) =>
         Either.cond(
           roundTrip.quantile(1).toSeconds <= LongestRoundTripS,
@@ -63,4 +65,9 @@ object Conditions:
   /** Forward simulation keeps so much under way. */
   val LongestRoundTripS = 2.0
 
-  def delays(link: String): Either[String, DelayTable] = roundTrips(link).map(DelayTable.of)
+  def delays(link: String): Either[String, Delays] = profile(link).flatMap:
+    case steady: LatencyProfile.Steady           => roundTrips(link).map(_ => Delays.of(steady))
+    case alternating: LatencyProfile.Alternating => Right(Delays.of(alternating))
+
+  private def profile(link: String): Either[String, LatencyProfile] =
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message)

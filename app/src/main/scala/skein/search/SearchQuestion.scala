@@ -97,7 +97,7 @@ final case class SearchSetup(
     role: Role,
     objective: Objective,
     conditions: Conditions.Resolved,
-    delays: DelayTable,
+    delays: Delays,
     opponent: PolicyFile,
     method: SearchMethod
 ):

@@ -55,16 +55,23 @@ class SearchFileSuite extends munit.FunSuite:
       val mistake = SearchFile.parse(text).left.getOrElse("accepted")
       assert(mistake.contains(part), mistake)
 
+  test("the predictive loop and a link that alternates are right"):
+    val asked = question("cma-es").copy(
+      link = "vpn-mixed",
+      conditions = Conditions("predictive", "reduced", 100, 12)
+    )
+    assert(asked.setup.isRight, asked.setup)
+
   for
     (name, wrong, parts) <- Seq(
       ("family", question("cma-es").copy(family = "nosuch"), Seq("--family", "paper-pursuer", "'nosuch'")),
       ("objective", question("cma-es").copy(objective = "best"), Seq("--objective", "character 1", "'best'")),
       ("method", question("luck"), Seq("--method", "cma-es", "'luck'")),
-      ("link", question("cma-es").copy(link = "vpn-mixed"), Seq("--link", "stretches")),
+      ("link", question("cma-es").copy(link = "pigeon"), Seq("--link", "pigeon")),
       (
         "loop",
-        question("cma-es").copy(conditions = Conditions("predictive", "reduced", 100, 12)),
-        Seq("--loop", "predictive")
+        question("cma-es").copy(conditions = Conditions("plan", "reduced", 100, 12)),
+        Seq("--loop", "plan")
       ),
       (
         "model",

@@ -30,7 +30,7 @@ final class DuelEvaluator(
     family: PolicyFamily,
     role: Role,
     opponent: Policy,
-    link: DelayTable,
+    link: Delays,
     objective: Objective,
     seed: Long
 ) extends Evaluator:
@@ -48,7 +48,7 @@ final class DuelEvaluator(
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = true
     def key(world: Int): Int            = keys(world % keys.length)
-    def link(world: Int): DelayTable    = DuelEvaluator.this.link
+    def link(world: Int): Delays        = DuelEvaluator.this.link
     def pursuer(world: Int): Policy = if role == Role.Pursuer then policies(world / keys.length) else opponent
     def evader(world: Int): Policy  = if role == Role.Evader then policies(world / keys.length) else opponent
 
@@ -60,7 +60,7 @@ final class DuelEvaluator(
 final class TrajectoryEvaluator(
     duel: Vector[Double] => Duel,
     timing: LoopTiming,
-    link: DelayTable,
+    link: Delays,
     model: VelocityResponse,
     seed: Long
 )(value: Trajectory => Double)

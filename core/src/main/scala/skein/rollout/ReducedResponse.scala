@@ -1,13 +1,15 @@
 package skein.rollout
 
 import skein.signal.Kinematics
-import skein.vehicle.{ReducedFlight, ReducedModel}
+import skein.vehicle.{ReducedFlight, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** Forward simulation by an identified [[skein.vehicle.ReducedModel]], exact between the times at which commands begin
   * to act.
   */
 final case class ReducedResponse(model: ReducedModel) extends VelocityResponse:
   def create(): Vehicle = ReducedVehicle(model)
+
+  override def predictor: VehicleModel[?] = ReducedVehicleModel(model)
 
 private final class ReducedVehicle(model: ReducedModel) extends Vehicle:
   import ReducedVehicle.Pending

@@ -2,7 +2,7 @@ package skein.rollout
 
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{Quadrotor, ReducedModel}
+import skein.vehicle.*
 
 /** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and thread. */
 trait Vehicle:
@@ -39,10 +39,13 @@ trait VelocityResponse:
   /** From the arrival of a command until it acts in the place of another, s. The first acts at once. */
   def handoverS: Double = 0.0
 
+  /** What carries readings of such a vehicle forward best. */
+  def predictor: VehicleModel[?] = QuadrotorModel.AirSim
+
 object VelocityResponse:
 
   /** The kinematics of the differential game: the velocity is the command. */
-  val Ideal: VelocityResponse = () => LagVehicle(Reduced(1, 0, 0))
+  val Ideal: VelocityResponse = Reduced(1, 0, 0)
 
   /** AirSim's quadrotor with its flight controller at 3 ms, behind AirSim's API: see [[QuadrotorResponse]].
     *
@@ -62,6 +65,10 @@ final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends 
   def create(): Vehicle = LagVehicle(this)
 
   def model: ReducedModel = ReducedModel.lag(gain, lagS, deadTimeS)
+
+  override def predictor: VehicleModel[?] =
+    // A model needs a lag above 0; within a nanosecond nothing happens.
+    ReducedVehicleModel(ReducedModel.lag(gain, lagS.max(1e-9), deadTimeS))
 
 object Reduced:
   /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to live flights of

@@ -60,6 +60,18 @@ class StreamDuelKernelSuite extends munit.FunSuite:
       )
       assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
 
+  // There answers overtake one another and questions fail, which the kernel leaves out.
+  for (meanMs, jitterMs, tolerance) <- Seq((150.0, 150.0, 0.005), (200.0, 300.0, 0.02), (300.0, 300.0, 0.02))
+  do
+    test(s"at $meanMs ms and $jitterMs ms of jitter both means of 60 s agree to ${tolerance * 100} %"):
+      val link   = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+      val model  = Reduced.AirSim
+      val kernel = StreamDuelKernel(Duel.paper, LoopTiming.stream(0.1), model)
+      kernel.fly(keys, Array.fill(worlds)(link), Array.fill(worlds)(1f), Array.fill(worlds)(8f), 0)
+      val rollout = Rollout(Duel.paper, LoopTiming.stream(0.1), link, model)
+      val scalar  = keys.map(rollout.fly(_).meanLast10sM).sum / worlds
+      assertEqualsDouble(kernel.meanLast10s.sum / worlds / scalar, 1.0, tolerance)
+
   test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
     val before   = kernel.meanLast10s.clone
