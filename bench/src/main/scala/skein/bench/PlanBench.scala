@@ -8,7 +8,7 @@ import skein.vehicle.ReducedModel
 
 /** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of pursuer and
   * evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads are those of the `plan`
-  * loop, under the lowest priority, so other work on the machine takes its share first: rates are given per second of the
+  * loop, which give way to all others, so other work on the machine takes its share first: rates are given per second of the
   * clock and of the processor time used.
   *
   * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.

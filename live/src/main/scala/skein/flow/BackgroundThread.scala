@@ -1,23 +1,24 @@
 package skein.flow
 
-import java.lang.foreign.{Arena, FunctionDescriptor, Linker, ValueLayout}
+import java.lang.foreign.{FunctionDescriptor, Linker, ValueLayout}
 import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.AtomicInteger
 import scala.util.Try
 
-/** Threads that work only while nobody else wants the processor. */
+/** Threads that give way to all others. */
 object BackgroundThread:
 
-  /** Daemon threads of the lowest priority. Java's priorities have no effect on Linux, so there each thread puts itself
-    * under the policy `SCHED_IDLE` (see sched(7)), which any process may do: a thread that wakes up takes the processor
-    * from it at once.
+  /** Daemon threads of low priority. Java's priorities have no effect on Linux, so there each thread makes itself nicer
+    * (see setpriority(2), whose `who` is a thread on Linux), which any process may do: a thread of ours that wakes up
+    * takes the processor from it. It is not kept from the processor altogether, since the JVM stops all threads now and
+    * then and would wait for one that never runs.
     */
   def factory(name: String): ThreadFactory =
     val count = AtomicInteger()
     (work: Runnable) =>
       val thread = Thread(
         () =>
-          val _ = becomeIdle()
+          val _ = giveWay()
           work.run()
         ,
         s"$name-${count.incrementAndGet()}"
@@ -26,29 +27,26 @@ object BackgroundThread:
       thread.setPriority(Thread.MIN_PRIORITY)
       thread
 
-  /** Puts the calling thread under `SCHED_IDLE`; says whether the system did so. */
-  private[flow] def becomeIdle(): Boolean =
-    System.getProperty("os.name") == "Linux" && Try(schedule()).getOrElse(false)
+  /** Makes the calling thread nicer; says whether the system did so. */
+  private[flow] def giveWay(): Boolean =
+    System.getProperty("os.name") == "Linux" && Try(setPriority()).getOrElse(false)
 
-  private def schedule(): Boolean =
+  private def setPriority(): Boolean =
     val linker = Linker.nativeLinker()
     val call   = linker.downcallHandle(
-      linker.defaultLookup().findOrThrow("sched_setscheduler"),
+      linker.defaultLookup().findOrThrow("setpriority"),
       FunctionDescriptor.of(
         ValueLayout.JAVA_INT,
         ValueLayout.JAVA_INT,
         ValueLayout.JAVA_INT,
-        ValueLayout.ADDRESS
+        ValueLayout.JAVA_INT
       )
     )
-    val arena = Arena.ofConfined()
-    try
-      // struct sched_param holds one int, the priority: 0 under this policy. Process 0 is the calling thread.
-      val parameter      = arena.allocate(ValueLayout.JAVA_INT)
-      val result: AnyRef =
-        call.invokeWithArguments(Int.box(0), Int.box(Idle), parameter)
-      result == Int.box(0)
-    finally arena.close()
+    val result: AnyRef = call.invokeWithArguments(Int.box(PrioProcess), Int.box(0), Int.box(Nice))
+    result == Int.box(0)
 
-  /** `SCHED_IDLE` in Linux's sched.h. */
-  private val Idle = 5
+  /** `PRIO_PROCESS` in Linux's sys/resource.h; 0 is then the calling thread. */
+  private val PrioProcess = 0
+
+  /** A tenth of an ordinary thread's share, where both want the processor. */
+  private val Nice = 10

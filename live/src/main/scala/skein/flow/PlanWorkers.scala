@@ -1,7 +1,8 @@
 package skein.flow
 
-import java.util.concurrent.{LinkedBlockingQueue, ThreadFactory}
+import java.util.concurrent.ConcurrentLinkedQueue
 import java.util.concurrent.atomic.AtomicReference
+import java.util.concurrent.locks.LockSupport
 import scala.collection.mutable
 import skein.planning.{Objective, Plan, Planner, PlannerSettings, Situation}
 
@@ -86,8 +87,7 @@ object Planners:
   val Limit = 8
 
 /** Searches on threads of its own until it is asked for the result; several problems take turns, slice by slice. The
-  * threads have the lowest priority that the system offers ([[BackgroundThread]]), so that control traffic takes the
-  * processor from them at once.
+  * threads give way to others ([[BackgroundThread]]), so that control traffic takes the processor from them.
   *
   * @param threads
   *   and searches per problem
@@ -95,29 +95,35 @@ object Planners:
 final class ThreadedPlanWorkers(threads: Int) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
 
-  private val waiting                = LinkedBlockingQueue[ThreadedPlanWorkers.Search]()
-  private val factory: ThreadFactory = BackgroundThread.factory("skein-plan")
-  private val workers                = Vector.fill(threads)(factory.newThread(() => work()))
+  // Without a lock, which a worker without the processor could keep the stream's thread waiting for.
+  private val waiting            = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
+  @volatile private var isClosed = false
+  private val factory            = BackgroundThread.factory("skein-plan")
+  private val workers            = Vector.fill(threads)(factory.newThread(() => work()))
   workers.foreach(_.start())
 
   def begin(problem: PlanProblem): PlanSearch =
     val searches = Vector.tabulate(threads)(ThreadedPlanWorkers.Search(problem, _))
-    searches.foreach(waiting.put)
+    for search <- searches do
+      val _ = waiting.add(search)
+    workers.foreach(LockSupport.unpark)
     new PlanSearch:
       def found: Vector[Plan]    = searches.map(_.found)
       def finish(): Vector[Plan] = searches.map(_.finish())
 
   /** Ends the threads; searches under way find nothing more. */
-  def close(): Unit = workers.foreach(_.interrupt())
+  def close(): Unit =
+    isClosed = true
+    workers.foreach(LockSupport.unpark)
 
   private def work(): Unit =
     val planners = Planners()
-    try
-      while true do
-        val search = waiting.take()
-        if search.improve(planners.of(search.problem.settings, search.problem.objective)) then
-          waiting.put(search)
-    catch case _: InterruptedException => ()
+    while !isClosed do
+      Option(waiting.poll()) match
+        case None         => LockSupport.park(this)
+        case Some(search) =>
+          if search.improve(planners.of(search.problem.settings, search.problem.objective)) then
+            val _ = waiting.add(search)
 
 private object ThreadedPlanWorkers:
 
