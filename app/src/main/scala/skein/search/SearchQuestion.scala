@@ -109,7 +109,10 @@ final case class SearchSetup(
 
   def batch(threads: Int): DuelBatch = conditions.batch(threads)
 
-  def evaluator(batch: DuelBatch, of: PolicyFamily = family): Evaluator = DuelEvaluator(
+  /** @param many
+    *   whether many candidates will meet the same episodes
+    */
+  def evaluator(batch: DuelBatch, of: PolicyFamily = family, many: Boolean = true): Evaluator = DuelEvaluator(
     batch,
     conditions.duel.durationS,
     of,
@@ -117,7 +120,8 @@ final case class SearchSetup(
     opponent.policy,
     delays,
     objective,
-    question.seed
+    question.seed,
+    shareEpisodes = many
   )
 
   /** Whether this family's policies fly by lanes. */

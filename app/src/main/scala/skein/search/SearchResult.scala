@@ -84,8 +84,11 @@ object SearchResult:
       setup,
       state,
       PolicyFile(setup.role, setup.family, best),
-      setup.evaluator(batch).tallies(Vector(best), range).head,
-      setup.evaluator(batch, setup.paper).tallies(Vector(setup.paper.space.defaults), range).head
+      setup.evaluator(batch, many = false).tallies(Vector(best), range).head,
+      setup.evaluator(batch, setup.paper, many = false).tallies(
+        Vector(setup.paper.space.defaults),
+        range
+      ).head
     )
 
   private def number(value: Double): String = String.format(Locale.ROOT, "%.4g", value)

@@ -23,6 +23,8 @@ trait Evaluator:
   *   of the other role
   * @param seed
   *   of the delays
+  * @param shareEpisodes
+  *   see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
   */
 final class DuelEvaluator(
     batch: DuelBatch,
@@ -32,7 +34,8 @@ final class DuelEvaluator(
     opponent: Policy,
     link: Delays,
     objective: Objective,
-    seed: Long
+    seed: Long,
+    shareEpisodes: Boolean = true
 ) extends Evaluator:
 
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
@@ -46,7 +49,7 @@ final class DuelEvaluator(
   /** The candidate does not enter the key: all meet the same delays. */
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
-    override def shareEpisodes: Boolean = true
+    override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link
     def pursuer(world: Int): Policy = if role == Role.Pursuer then policies(world / keys.length) else opponent

@@ -33,8 +33,10 @@ enum Course:
   /** Racing: who is left with what they have flown; empty in the first round. */
   case Raced(round: Int, field: Vector[Scored])
 
-  /** The leaders, the distribution's centre and the defaults meet on fresh episodes. */
-  case PlayOff(candidates: Vector[Vector[Double]])
+  /** The leaders, the distribution's centre and the defaults meet on fresh episodes: so many of them so far, with what
+    * each has come to.
+    */
+  case PlayOff(episodes: Int, field: Vector[Scored])
 
   case Ended
 
@@ -104,8 +106,12 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     case Course.Raced(round, field) =>
       val flown = field.head.tally.count
       (field.map(_.candidate), flown until 2 * flown)
-    case Course.PlayOff(candidates) => (candidates, PlayOffFrom until PlayOffFrom + playOffEpisodes)
-    case Course.Ended               => throw IllegalStateException("no round after the end")
+    case Course.PlayOff(episodes, field) =>
+      (
+        field.map(_.candidate),
+        PlayOffFrom + episodes until PlayOffFrom + (episodes + PlayOffRound).min(playOffEpisodes)
+      )
+    case Course.Ended => throw IllegalStateException("no round after the end")
 
   private def listed: Long = method match
     case SearchMethod.Grid(perAxis, _)      => space.gridSize(perAxis)
@@ -147,7 +153,11 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
           if standing.size == 1 then playOff(ahead, None)
           else Course.Raced(round + 1, standing.take((standing.size + 1) / 2))
         (next, ahead)
-      case _ => (Course.Ended, ranked(seen))
+      case (Course.PlayOff(episodes, field), _) =>
+        val standing = field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally))
+        val flown    = episodes + seen.head.tally.count
+        (if flown < playOffEpisodes then Course.PlayOff(flown, standing) else Course.Ended, ranked(standing))
+      case _ => (Course.Ended, before)
 
   /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same
     * episodes, and would leave no room for others.
@@ -156,7 +166,8 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     space.shares(candidate).map(share => (share * 100).round)
 
   private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
-    Course.PlayOff((leaders.map(_.candidate) ++ centre :+ space.defaults).distinct)
+    val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
+    Course.PlayOff(0, candidates.map(Scored(_, Tally.empty)))
 
   /** Small is good; what is no number is worst. */
   private def cost(scored: Scored): Double =
@@ -187,7 +198,8 @@ object Search:
 
   // A tenth of the search's episodes, within these bounds.
   private val LeastPlayOff = 64L
-  private val MostPlayOff  = 4096L
+  private val MostPlayOff  = 1024L
+  private val PlayOffRound = 64
   private val MostListed   = 16384
   private val LeastSpread  = 1e-6
 
