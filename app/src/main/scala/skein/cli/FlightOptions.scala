@@ -36,9 +36,22 @@ final case class FlightOptions(
     @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
     asPublished: Flag,
     @arg(doc =
-      "a model file of `skein identify` by which `predictive` predicts; without it, the whole quadrotor"
+      "by which `predictive` predicts: quadrotor, reduced, constant-velocity, constant-turn, or a model file of `skein identify`"
     )
     model: Option[String],
+    @arg(
+      name = "moves-in-flight",
+      doc =
+        "of one vehicle; 2 unless given. More let a link of a long round trip carry more commands, but several that " +
+          "a stall delivers at once can freeze AirSim"
+    )
+    movesInFlight: Option[Int],
+    @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
+    deadline: Option[String],
+    @arg(doc =
+      "where the deadline is missed: hold, repeat (the last decision), or a policy such as pure-pursuit"
+    )
+    fallback: Option[String],
     @arg(doc = "a HOCON file with settings of skein.fly")
     config: Option[String]
 ):
@@ -56,16 +69,19 @@ final case class FlightOptions(
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
     (Seq(
-      "loops"        -> strings(loop),
-      "links"        -> strings(link),
-      "duration"     -> duration,
-      "period"       -> period,
-      "seed"         -> seed,
-      "scenario"     -> scenario,
-      "policies"     -> strings(policy),
-      "pairs"        -> pairs,
-      "model"        -> model,
-      "as-published" -> Option.when(asPublished.value)(true)
+      "loops"           -> strings(loop),
+      "links"           -> strings(link),
+      "duration"        -> duration,
+      "period"          -> period,
+      "seed"            -> seed,
+      "scenario"        -> scenario,
+      "policies"        -> strings(policy),
+      "pairs"           -> pairs,
+      "model"           -> model,
+      "moves-in-flight" -> movesInFlight,
+      "deadline"        -> deadline,
+      "fallback"        -> fallback,
+      "as-published"    -> Option.when(asPublished.value)(true)
     ) ++ TeamScenario.names.map(name => s"$name.vehicles" -> vehicles)).foldLeft(ConfigFactory.empty):
       case (config, (key, Some(value))) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))

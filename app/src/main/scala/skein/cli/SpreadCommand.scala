@@ -1,15 +1,18 @@
 package skein.cli
 
+import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{ParserForClass, arg}
 import skein.experiment.VirtualFlights
-import skein.report.{FlightSummary, SpreadTable, TeamFlights, TeamTables}
+import skein.report.{FlightSummary, PredictionGroup, Report, SpreadTable, TeamFlights, TeamTables}
 
 /** Options of `./skein spread`. */
 final case class SpreadOptions(
     flights: FlightOptions,
     @arg(doc = "how many times each flight is flown, each time with another seed")
-    seeds: Int = 100
+    seeds: Int = 100,
+    @arg(doc = "folder for spread.html and its pictures; without it, only the tables are shown")
+    out: Option[String]
 )
 
 object SpreadCommand
@@ -32,8 +35,17 @@ object SpreadCommand
         if count % (plans.size / 20).max(1) == 0 then
           Console.err.println(s"$count of ${plans.size} flights have landed")
         FlightSummary.of(flight.recorder.recording)
-      duels = flown.filter(_.team.isEmpty)
-      teams = TeamFlights.of(flown)
-    yield
-      if duels.nonEmpty then Console.out.println(SpreadTable.of(duels).render)
-      teams.foreach(flights => Console.out.println(TeamTables.spread(flights).render))
+      duels  = flown.filter(_.team.isEmpty)
+      tables =
+        Option.when(duels.nonEmpty)(SpreadTable.of(duels)).toVector ++ TeamFlights.of(
+          flown
+        ).map(TeamTables.spread)
+      predictions = PredictionGroup.of(flown)
+      _           = (tables ++ Option.when(predictions.nonEmpty)(PredictionGroup.table(predictions)))
+        .foreach(table => Console.out.println(table.render + "\n"))
+      _ <- options.out.fold(Right(()))(folder =>
+        Report
+          .writeSpread(flown, tables, Path.of(folder))
+          .map(output => Console.out.println(s"spread in ${output.page}"))
+      )
+    yield ()

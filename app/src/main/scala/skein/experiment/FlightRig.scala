@@ -104,15 +104,8 @@ final class FlightRigs(
         )
         _ <- client.ping()
       yield
-        val timely = LoopSettings
-          .every(settings.period)
-          .copy(
-            model = _ => settings.vehicleModel,
-            planning = settings.planningByModel,
-            seed = plan.seed
-          )
-        val loopSettings = if settings.asPublished then timely.asPublished else timely
-        val planners     =
+        val loopSettings = settings.loopSettings.copy(seed = plan.seed)
+        val planners =
           if plan.loop != LoopKind.Plan then PlanWorkers.none
           else
             opened.closing(workers(settings.planningByModel)): threads =>

@@ -5,11 +5,12 @@ import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import scala.concurrent.duration.FiniteDuration
-import skein.loop.{LoopKind, PlanSettings}
+import skein.flow.Steer
+import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.policy.{Scenario, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.ReducedModel
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
@@ -22,7 +23,14 @@ import skein.vehicle.{QuadrotorModel, ReducedModel, ReducedVehicleModel, Vehicle
   * @param scenario
   *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
   * @param model
-  *   by which `predictive` predicts; absent: the whole quadrotor
+  *   by which `predictive` predicts
+  * @param movesInFlight
+  *   moves of one vehicle that may be unanswered; more than 2 are for links that never deliver several at once: see
+  *   [[skein.flow.Steer]]
+  * @param deadline
+  *   of every decision; without one, policies are waited for
+  * @param fallback
+  *   what is done where the deadline is missed
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -36,13 +44,18 @@ final case class FlySettings(
     surround: TeamScenario.Surround = TeamScenario.Surround(),
     formation: TeamScenario.Formation = TeamScenario.Formation(),
     crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
-    model: Option[ReducedModel] = None,
+    model: PredictionModel = PredictionModel.Quadrotor,
+    movesInFlight: Int = Steer.MostOutstanding,
+    deadline: Option[Span] = None,
+    fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,
     planning: PlanSettings = PlanSettings()
 ) derives ConfigReader:
 
   /** Plans are flown by the model that readings are carried forward by, where one is set. */
-  def planningByModel: PlanSettings = planning.copy(response = model.getOrElse(ReducedModel.AirSim))
+  def planningByModel: PlanSettings = planning.copy(response = model match
+    case PredictionModel.Reduced(model) => model
+    case _                              => ReducedModel.AirSim)
 
   /** Absent for the duel. */
   def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
@@ -50,8 +63,17 @@ final case class FlySettings(
   /** Who flies. */
   def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished))(_.scenario)
 
-  /** By which `predictive` carries the readings of a vehicle forward. */
-  def vehicleModel: VehicleModel[?] = model.fold(QuadrotorModel.AirSim)(ReducedVehicleModel(_))
+  /** How the loops are run. */
+  def loopSettings: LoopSettings =
+    val timely = LoopSettings
+      .every(period)
+      .copy(
+        model = _ => model.vehicleModel,
+        planning = planningByModel,
+        movesInFlight = movesInFlight,
+        deadline = deadline.map(Deadline(_, fallback))
+      )
+    if asPublished then timely.asPublished else timely
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
     * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
@@ -111,6 +133,9 @@ final case class FlightPlan(
 object FlySettings:
   val Duel = "duel"
 
+  /** What a forecast remembers of commands has room for more. */
+  val MostMovesInFlight = 32
+
   /** Reads `skein.fly`.
     *
     * @return
@@ -137,6 +162,12 @@ object FlySettings:
       Option.when(
         settings.pairs < 1 || settings.pairs > 50
       )(s"pairs: expected 1 to 50, came ${settings.pairs}"),
+      Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
+        s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
+      ),
+      Option.when(settings.deadline.exists(_ <= Span.Zero))(
+        s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
+      ),
       Option.when(settings.scenario != Duel && settings.team.isEmpty)(
         s"scenario: expected $Duel or one of ${TeamScenario.names.mkString(", ")}, came '${settings.scenario}'"
       ),
@@ -162,8 +193,9 @@ object FlySettings:
   private given ConfigReader[Span] =
     ConfigReader[FiniteDuration].map(duration => Span.ofNanos(duration.toNanos))
 
-  /** A model file's path. */
-  private given ConfigReader[ReducedModel] = parsed("model file", path => ModelFile.read(path).map(_.model))
+  private given ConfigReader[PredictionModel] = parsed("model", PredictionModel.parse)
+
+  private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 
   private given ConfigReader[PolicyFile] = parsed("policy", PolicyFile.read)
 

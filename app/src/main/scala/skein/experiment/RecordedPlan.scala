@@ -1,11 +1,10 @@
 package skein.experiment
 
-import scala.util.Try
-import skein.loop.{LoopKind, PlanSettings}
+import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.policy.{Scenario, TeamScenario}
 import skein.record.{Parameter, Recording}
 import skein.signal.LatencyProfile
-import skein.vehicle.ReducedModel
+import skein.units.*
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
@@ -17,6 +16,9 @@ object RecordedPlan:
   private val Model       = "model"
   private val Planning    = "planning"
 
+  private val MovesInFlight = "movesInFlight"
+  private val DeadlineNs    = "deadlineNs"
+
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
 
@@ -26,8 +28,15 @@ object RecordedPlan:
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
         Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
-    (scenario :+ Parameter(Planning, settings.planning.text)) ++ settings.model.map(model =>
-      Parameter(Model, textOf(model))
+    scenario ++ Seq(
+      Parameter(Planning, settings.planning.text),
+      Parameter(Model, PredictionModel.text(settings.model)),
+      Parameter(MovesInFlight, settings.movesInFlight.toString)
+    ) ++ settings.deadline.toSeq.flatMap(deadline =>
+      Seq(
+        Parameter(DeadlineNs, deadline.toNanos.toString),
+        Parameter(Replay.Fallback, settings.fallback.label)
+      )
     ) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
@@ -49,6 +58,10 @@ object RecordedPlan:
         case None        => Left(s"the recording has no parameter '$name'")
         case Some(value) => parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
 
+    /** Recordings of older versions have not got all. */
+    def optional[A](name: String, expected: String)(parse: String => Option[A]): Either[String, Option[A]] =
+      if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
+
     def flown(settings: FlySettings): Either[String, FlySettings] =
       if TeamScenario.names.contains(flight.scenario) then
         TeamScenario
@@ -66,11 +79,12 @@ object RecordedPlan:
         yield settings.copy(pairs = pairs, asPublished = asPublished)
 
     for
-      loop  <- LoopKind.parse(flight.loop)
-      link  <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
-      model <- parameters.get(Model) match
-        case None    => Right(None)
-        case Some(_) => parameter(Model, "five numbers")(modelOf).map(Some(_))
+      loop     <- LoopKind.parse(flight.loop)
+      link     <- LatencyProfile.parse(flight.link, TextFile.read).left.map(_.message)
+      model    <- optional(Model, "a model's name or five numbers")(PredictionModel.recorded)
+      moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
+      within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
+      fallback <- optional(Replay.Fallback, "hold, repeat or a policy")(Fallback.parse(_).toOption)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
@@ -88,7 +102,15 @@ object RecordedPlan:
         )
       )
       policy <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
-    yield RecordedPlan(settings.copy(model = model), FlightPlan(flight.id, loop, link, flight.seed, policy))
+    yield RecordedPlan(
+      settings.copy(
+        model = model.getOrElse(settings.model),
+        movesInFlight = moves.getOrElse(settings.movesInFlight),
+        deadline = within.map(Span.ofNanos),
+        fallback = fallback.getOrElse(settings.fallback)
+      ),
+      FlightPlan(flight.id, loop, link, flight.seed, policy)
+    )
 
   private def policyOf(
       name: Option[String],
@@ -104,13 +126,3 @@ object RecordedPlan:
           .left
           .map(mistake => s"its parameter '$PolicyName.$role': $mistake")
       case (Some(name), _) => Left(s"the recording names the policy '$name' and does not say what it is")
-
-  /** Gain, lag, dead time, lag across, drag. A double's shortest text reads back as the same double. */
-  private def textOf(model: ReducedModel): String =
-    Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
-
-  private def modelOf(text: String): Option[ReducedModel] =
-    text.split(' ').map(_.toDoubleOption) match
-      case Array(Some(gain), Some(lag), Some(deadTime), Some(turnLag), Some(drag)) =>
-        Try(ReducedModel(gain, lag, deadTime, turnLag, drag)).toOption
-      case _ => None

@@ -15,7 +15,32 @@ object Figure:
 
   /** The pictures that the flights give; those without anything to show are left out. */
   def all(set: FlightSet): Vector[Figure] =
-    duels(set.duels) ++ set.teams.flatMap(ofTeam) ++ ofDecisions(set)
+    duels(set.duels) ++ set.teams.flatMap(ofTeam) ++ ofDecisions(set) ++
+      ofDeviations(set.deviations) ++ ofPredictions(set.predictions)
+
+  /** The pictures of flights that were flown many times. */
+  def spread(flights: Seq[FlightSummary]): Vector[Figure] =
+    ofDeviations(Deviation.of(flights)) ++ ofPredictions(PredictionGroup.of(flights))
+
+  private def ofDeviations(deviations: Vector[Deviation]): Vector[Figure] =
+    DeviationFigure(deviations).toVector.map: drawing =>
+      Figure(
+        DeviationFigure.name,
+        "Deviation from the paused truth",
+        "Mean distance of the last 10 s against the truth's, by link and loop. Discs are means over the flights, thick lines " +
+          "reach one standard deviation to either side, thin lines from the least to the most; live flights are ringed.",
+        drawing
+      )
+
+  private def ofPredictions(groups: Vector[PredictionGroup]): Vector[Figure] =
+    PredictionFigure(groups).toVector.map: drawing =>
+      Figure(
+        PredictionFigure.name,
+        "Prediction error against age",
+        "Distance between where a vehicle was predicted to be and where it then was, by how far its reading was carried " +
+          s"forward, in bins of ${PredictionErrors.BinMs} ms; full lines are medians, dashed ones 95 % quantiles.",
+        drawing
+      )
 
   private def duels(set: FlightSet): Vector[Figure] = Vector(
     TrajectoryFigure(set).map: drawing =>

@@ -26,6 +26,15 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** Teams' flights by scenario. */
   val teams: Vector[TeamFlights] = TeamFlights.of(flights)
 
+  /** Twins' virtual flights included. */
+  def all: Vector[FlightSummary] = flights ++ twins.flatMap(_.virtual).distinct
+
+  /** By loop, link and clock. */
+  def deviations: Vector[Deviation] = Deviation.of(all)
+
+  /** By loop and link. */
+  def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
+
   /** Mean distance of the last 10 s against that of the truth with the same policies, as a share of it; absent for the
     * truth itself.
     */

@@ -17,6 +17,8 @@ import skein.units.*
   *   absent for a duel
   * @param planning
   *   absent where nothing was planned
+  * @param predictions
+  *   absent where nothing was predicted
   */
 final case class FlightSummary(
     flight: Flight,
@@ -31,7 +33,8 @@ final case class FlightSummary(
     aborted: Option[String],
     team: Option[TeamResult] = None,
     policy: Option[String] = None,
-    planning: Option[PlanningSummary] = None
+    planning: Option[PlanningSummary] = None,
+    predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None
 ):
   /** The loop, and the policy where it is not the paper's. */
   def name: String = flight.loop + policy.fold("")(policy => s", $policy")
@@ -87,7 +90,8 @@ object FlightSummary:
       recording.events.find(_.kind == EventKind.Aborted).map(_.detail),
       team,
       recording.heading.parameters.find(_.name == "policy").map(_.value),
-      PlanningSummary.of(recording)
+      PlanningSummary.of(recording),
+      PredictionErrors.of(recording)
     )
 
   private def roles(recording: Recording): Vector[RoleSummary] =

@@ -31,7 +31,9 @@ object HtmlReport:
             p(cls := "note", TeamTables.note(flown.flights.head.result.scenario))
           )
         ),
-        figures.filterNot(_.name == TwinFigure.name).map(figureOf),
+        figures.filterNot(figure => withTables(figure.name)).map(figureOf),
+        deviations(set.deviations, figures),
+        predictions(set.predictions, figures),
         twins(set, figures),
         plans(set),
         section(
@@ -65,6 +67,40 @@ object HtmlReport:
   private val observationsNote =
     "Mean/median/99th percentile in ms, by the role that was decided for. Ages count from the arrival of the reading used, as published; the true " +
       "ages, means, count from when physics was sampled, by the simulator's clock."
+
+  /** What many flights of each loop over each link come to, as a page. */
+  def spread(flights: Seq[FlightSummary], tables: Seq[TextTable], figures: Seq[Figure]): String =
+    val title = s"Skein: spread over ${flights.size} flights"
+    val page  = html(
+      lang := "en",
+      head(meta(charset := "utf-8"), pageTitle(title), tag("style")(raw(style))),
+      body(
+        h1(title),
+        tables.map(spread => section(table(spread))),
+        deviations(Deviation.of(flights), figures),
+        predictions(PredictionGroup.of(flights), figures)
+      )
+    )
+    s"<!doctype html>\n${page.render}\n"
+
+  /** Figures that stand beside a table of their own. */
+  private val withTables = Set(TwinFigure.name, DeviationFigure.name, PredictionFigure.name)
+
+  private def deviations(deviations: Vector[Deviation], figures: Seq[Figure]): Option[TypedTag[String]] =
+    Option.when(deviations.nonEmpty):
+      section(
+        h2("Deviation from the paused truth"),
+        table(Deviation.table(deviations)),
+        figures.filter(_.name == DeviationFigure.name).map(pictureOf)
+      )
+
+  private def predictions(groups: Vector[PredictionGroup], figures: Seq[Figure]): Option[TypedTag[String]] =
+    Option.when(groups.nonEmpty):
+      section(
+        h2("Prediction error against age"),
+        table(PredictionGroup.table(groups)),
+        figures.filter(_.name == PredictionFigure.name).map(pictureOf)
+      )
 
   private def figureOf(shown: Figure): TypedTag[String] = section(h2(shown.title), pictureOf(shown))
 

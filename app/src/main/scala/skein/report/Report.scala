@@ -30,14 +30,29 @@ object Report:
     */
   def write(set: FlightSet, directory: Path): Either[String, Output] =
     val figures = Figure.all(set)
-    val page    = directory.resolve("report.html")
+    write(directory.resolve("report.html"), HtmlReport.render(set, figures), figures)
+
+  /** Writes `spread.html` and its figures likewise.
+    *
+    * @param tables
+    *   that the page begins with
+    */
+  def writeSpread(
+      flights: Seq[FlightSummary],
+      tables: Seq[TextTable],
+      directory: Path
+  ): Either[String, Output] =
+    val figures = Figure.spread(flights)
+    write(directory.resolve("spread.html"), HtmlReport.spread(flights, tables, figures), figures)
+
+  private def write(page: Path, text: String, figures: Vector[Figure]): Either[String, Output] =
     try
-      val folder = Files.createDirectories(directory.resolve("figures"))
-      val _      = Files.writeString(page, HtmlReport.render(set, figures))
+      val folder = Files.createDirectories(page.resolveSibling("figures"))
+      val _      = Files.writeString(page, text)
       for figure <- figures do
         Files.writeString(folder.resolve(s"${figure.name}.svg"), Svg.file(figure.drawing, figure.title))
       val (unpainted, painted) =
         figures.map(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
       for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
       Right(Output(page, unpainted.headOption))
-    catch case failed: IOException => Left(s"cannot write the report to $directory: $failed")
+    catch case failed: IOException => Left(s"cannot write the report to $page: $failed")

@@ -111,13 +111,18 @@ object SummaryTables:
       "What happened",
       counts(set).render
     )
+    val compared = titled("Deviation from the paused truth", Deviation.table(set.deviations)) ++
+      titled("Predictions", PredictionGroup.table(set.predictions))
     val planned =
       if set.flights.forall(_.planning.isEmpty) then Vector.empty
       else Vector("", s"${PlanTable.title}: ${PlanTable.note}", PlanTable.of(set).render)
     val twinned =
       if set.twins.isEmpty then Vector.empty
       else Vector("", s"Live against virtual: $twinsNote", twins(set).render)
-    (duels ++ teams ++ decided ++ planned ++ twinned).mkString("\n")
+    (duels ++ teams ++ decided ++ compared ++ planned ++ twinned).mkString("\n")
+
+  private def titled(title: String, table: TextTable): Vector[String] =
+    if table.rows.isEmpty then Vector.empty else Vector("", title, table.render)
 
   /** How to read [[twins]]. */
   val twinsNote: String =

@@ -5,7 +5,7 @@ import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
-import skein.experiment.{FlySettings, ModelFile, VirtualFlights}
+import skein.experiment.{FlySettings, ModelFile, PredictionModel, VirtualFlights}
 import skein.identify.Structure
 import skein.loop.LoopKind
 import skein.record.{MemoryRecorder, Recording}
@@ -13,7 +13,7 @@ import skein.report.SyntheticFlight
 import skein.rollout.Reduced
 import skein.signal.LatencyProfile
 import skein.units.Span
-import skein.vehicle.{ReducedModel, ReducedVehicleModel}
+import skein.vehicle.ReducedModel
 
 class RecordingCommandsSuite extends munit.FunSuite:
   override val munitTimeout: Duration = 2.minutes
@@ -82,7 +82,7 @@ class RecordingCommandsSuite extends munit.FunSuite:
       assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
       val flags = ConfigFactory.parseString(s"skein.fly.model = \"${folder.resolve("model.conf")}\"")
       val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
-      assertEquals(read.map(_.vehicleModel), Right(ReducedVehicleModel(file.model)))
+      assertEquals(read.map(_.model), Right(PredictionModel.Reduced(file.model)))
 
   recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
     val broken =

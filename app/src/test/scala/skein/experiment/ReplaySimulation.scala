@@ -2,7 +2,7 @@ package skein.experiment
 
 import java.nio.file.{Files, Path}
 import scala.util.Using
-import skein.loop.{LoopKind, PlanSettings, Replay}
+import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.policy.Scenario
 import skein.record.*
 import skein.signal.LatencyProfile
@@ -11,6 +11,9 @@ import skein.vehicle.ReducedModel
 
 /** Run = run = replay, for every loop. */
 class ReplaySimulation extends munit.FunSuite:
+
+  override val munitTimeout: scala.concurrent.duration.Duration =
+    scala.concurrent.duration.Duration(5, "min")
 
   private val settings = FlySettings(
     LoopKind.values.toList,
@@ -56,7 +59,10 @@ class ReplaySimulation extends munit.FunSuite:
     check(
       settings.copy(
         loops = List(LoopKind.Predictive),
-        model = Some(ReducedModel.AirSim.copy(gain = 0.987654321))
+        movesInFlight = 3,
+        deadline = Some(Span.ofMillis(20)),
+        fallback = Fallback.Hold,
+        model = PredictionModel.Reduced(ReducedModel.AirSim.copy(gain = 0.987654321))
       ),
       folder
     )

@@ -33,6 +33,9 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   *   how `plan` plans
   * @param seed
   *   of its searches
+  * @param deadline
+  *   of every decision; without one a policy decides on the loop's own thread and is waited for. `paused` has none: its
+  *   time stands still
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -47,10 +50,12 @@ final case class LoopSettings(
     decideThenPace: Boolean = false,
     model: Int => VehicleModel[?] = _ => QuadrotorModel.AirSim,
     planning: PlanSettings = PlanSettings(),
-    seed: Long = 1
+    seed: Long = 1,
+    deadline: Option[Deadline] = None
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")
+  require(movesInFlight > 0, "at least one move must be allowed in flight")
 
   /** As the published code does: it asks the vehicles in turn, spread over the period, waits for every answer in order,
     * decides at each, and paces the commands.

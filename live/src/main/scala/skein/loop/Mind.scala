@@ -25,7 +25,11 @@ private object Mind:
     def searches: Boolean    = false
 
     def decide(picture: Picture, now: Instant, slices: Vector[Int]): (Mind, Decision) =
-      val (next, decision) = decider.decide(memory, picture, now)
+      decideBy(decider, picture, now)
+
+    /** As another would in its place, this once. */
+    def decideBy(one: Decider, picture: Picture, now: Instant): (Mind, Decision) =
+      val (next, decision) = one.decide(memory, picture, now)
       (Deciding(decider, next), decision)
 
   final class Searching(planning: Planning, planners: Planners, memory: Memory, last: Option[Plan.Answer])

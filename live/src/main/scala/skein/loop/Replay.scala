@@ -23,7 +23,14 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
   private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
   private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
-  private val moves      = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
+  private val missed     = recording.events.collect {
+    case Event(_, EventKind.DeadlineMissed, Some(vehicle), MissedDeadline(sequence)) => (vehicle, sequence)
+  }.toSet
+  private val fallback = recording.heading.parameters
+    .find(_.name == Replay.Fallback)
+    .flatMap(parameter => skein.loop.Fallback.parse(parameter.value).toOption)
+    .getOrElse(skein.loop.Fallback.Repeat)
+  private val moves = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
 
   private val planned =
     recording.planned.map(planned => (planned.vehicle, planned.decision) -> planned).toMap
@@ -68,7 +75,10 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
       val picture  = possible
         .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
-      minds(self).decide(picture, recorded.decidedAt, slices)
+      minds(self) match
+        case deciding: Mind.Deciding if missed((recorded.vehicle, recorded.sequence)) =>
+          deciding.decideBy(instead(self), picture, recorded.decidedAt)
+        case mind => mind.decide(picture, recorded.decidedAt, slices)
 
   /** How far each search of a decision went; empty where nothing is searched. */
   private def searched(mind: Mind, of: Decision): Either[Difference, Vector[Int]] =
@@ -81,6 +91,10 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
           case (Vector(), slices) => Right(slices)
           case _                  => Left(missing(row.slices))
       yield slices
+
+  /** Who decided where a deadline was missed. */
+  private def instead(self: Int): Decider =
+    fallback.policy(scenario.agents(self)).fold(Decider(scenario, self))(Decider(scenario, self, _))
 
   /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
   private def othersSeen(of: Decision, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
@@ -180,6 +194,9 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
   private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
+  /** The parameter that names what was done where deadlines were missed. */
+  val Fallback: String = "fallback"
+
   /** What was predicted of vehicles that a decision was not made against is not recorded. */
   private val OutOfSight = Vector3(Double.PositiveInfinity, 0, 0)
 

@@ -2,6 +2,7 @@ package skein.loop
 
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success, Try}
@@ -111,8 +112,21 @@ final class Team(
       ))
       .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
 
-  /** Decides for one vehicle on the sights that are meant for it, and records the decision. */
-  def decide(vehicle: Int): Flow[Sight, Decision, NotUsed] =
+  /** Decides for one vehicle on the sights that are meant for it, within the deadline if there is one, and records the
+    * decision.
+    */
+  def decide(vehicle: Int): Flow[Sight, Decision, NotUsed] = settings.deadline match
+    case None           => decideAtOnce(vehicle)
+    case Some(deadline) =>
+      Flow
+        .fromMaterializer: (materializer, _) =>
+          given system: ActorSystem = materializer.system
+          val policies              = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
+          decideWithin(vehicle, deadline.within, deadline.otherwise.policy(scenario.agents(vehicle))):
+            case (memory, (picture, now)) => Future(decideAt(vehicle, memory, picture, now))(using policies)
+        .mapMaterializedValue(_ => NotUsed)
+
+  private def decideAtOnce(vehicle: Int): Flow[Sight, Decision, NotUsed] =
     Flow[Sight]
       // Not `filter`: it fetches one element ahead, which would grow old in it.
       .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
@@ -152,7 +166,11 @@ final class Team(
       .map:
         case Timely.Decided(decision)     => Some(decision)
         case Timely.Missed(miss, instead) =>
-          note(EventKind.DeadlineMissed, Some(vehicle), miss.toString)
+          note(
+            EventKind.DeadlineMissed,
+            Some(vehicle),
+            MissedDeadline.detail(miss, instead.map(_._1.sequence))
+          )
           instead
       .collect { case Some(decided) => decided }
       .via(Tap(record(vehicle, _, _)))

@@ -55,7 +55,10 @@ class DecideWithinSuite extends munit.FunSuite:
     "a deadline missed is recorded, and the policy goes on from the decision before, over the time that has passed"
   ):
     val (decisions, events) = flown(instead = None)
-    assertEquals(events.map(event => (event.kind, event.detail)), Vector(EventKind.DeadlineMissed -> "Late"))
+    assertEquals(
+      events.map(event => (event.kind, event.detail)),
+      Vector(EventKind.DeadlineMissed -> "nothing decided: Late")
+    )
     assertEquals(decisions.map(_.sequence), Vector(0L, 1L, 2L, 3L))
     assertEquals(decisions.map(_.elapsed.toMillis), Vector(0.0, 100.0, 200.0, 100.0))
 
@@ -65,3 +68,41 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(decisions.map(_.sequence), (0L to 4L).toVector)
     assertEquals(decisions(2).heading.value, decisions(1).heading.value)
     assertNotEquals(decisions(3).heading.value, decisions(2).heading.value)
+
+  test("a loop within a deadline decides on other threads, and where a policy is late the fallback decides"):
+    val run = VirtualTime.run(seed = 1): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val recorder           = MemoryRecorder(Samples.heading)
+      val world              = FarQuadrotors(scenario, LatencyProfile.direct, 1, clock)
+      val settings = LoopSettings(deadline = Some(skein.loop.Deadline(Span.ofMillis(20), Fallback.Hold)))
+      val team     = Team(scenario, world.crafts, clock, recorder, settings)
+      skein.loop.Flight
+        .start(LoopKind.Stream, team, world, Span.ofSeconds(2), clock, recorder)
+        .outcome
+        .map(outcome => (outcome, recorder.recording))
+    val (outcome, recording) = run.value
+    assertEquals(outcome, Outcome.Completed)
+    assert(recording.decisions.size > 30, recording.decisions.size.toString)
+    // In virtual time a pure policy takes no time.
+    assertEquals(recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)
+    assertEquals(Replay(scenario, recording).firstDifference, None)
+
+  test("a replay asks the fallback for what it decided, and only for that"):
+    val (decisions, events) = flown(instead = Some(KeepHeading))
+    assertEquals(events.map(_.detail), Vector("decision 2 by the fallback: Late"))
+    val readings  = decisions.flatMap(decision => Seq(decision.own, decision.opponent)).distinct
+    val recording = Recording(Samples.heading, readings = readings, decisions = decisions, events = events)
+    assertEquals(Replay(scenario, recording).firstDifference, None)
+    val silent = Replay(scenario, recording.copy(events = Vector.empty)).firstDifference
+    assertEquals(silent.map(_.column), Some("headingRad"))
+
+  test("a fallback is hold, repeat or a policy for the roles that it is meant for"):
+    assertEquals(Fallback.parse("hold").map(_.policy(scenario.agents(0))), Right(None))
+    assertEquals(Fallback.parse("repeat").map(_.policy(scenario.agents(0))), Right(Some(KeepHeading)))
+    val pursuit = Fallback.parse("pure-pursuit").fold(fail(_), identity)
+    assertEquals(pursuit.label, "pure-pursuit")
+    assertEquals(pursuit.policy(scenario.agents(0)), Some(KeepHeading))
+    assertNotEquals(pursuit.policy(scenario.agents(pursuer)), Some(KeepHeading))
+    assert(Fallback.parse("panic").left.exists(_.startsWith("expected hold, repeat or a policy")))

@@ -1,14 +1,16 @@
 package skein.loop
 
 import skein.signal.LatencyProfile
-import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel, ReducedVehicleModel}
+import skein.vehicle.*
 
 /** Prints how far loops and models deviate from the paused truth over the links.
   *
   * @param seeds
   *   flights per row
+  * @param over
+  *   names of links; all of them where none is given
   */
-@main def predictionFigures(seeds: Int): Unit =
+@main def predictionFigures(seeds: Int, over: String*): Unit =
   val truth = VirtualDuel.truth.distanceM
   println(f"paused truth $truth%.3f m; $seeds seeds a row")
   val many  = LoopSettings(movesInFlight = 6)
@@ -20,25 +22,27 @@ import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel, ReducedVehic
     ("constant:400ms, 6 moves in flight", VirtualDuel.constant(400), many),
     ("vpn, 6 moves in flight", LatencyProfile.vpn, many)
   )
-  val identified = ReducedModel.AirSim
-  for (name, link, settings) <- links do
+  for (name, link, settings) <- links if over.isEmpty || over.contains(name) do
     println(name)
     report("stream", LoopKind.Stream, link, settings)
     report("predictive", LoopKind.Predictive, link, settings)
-    for (model, description) <- Seq(
-        (ReducedVehicleModel(identified), "reduced"),
-        (
-          ReducedVehicleModel(identified.copy(
-            lagS = 1.2 * identified.lagS,
-            turnLagS = 1.2 * identified.turnLagS
-          )),
-          "reduced, lag +20 %"
-        ),
-        (ReducedVehicleModel(identified.copy(gain = 1.2 * identified.gain)), "reduced, gain +20 %"),
-        (ConstantVelocity, "constant velocity"),
-        (ConstantTurn, "constant turn")
-      )
-    do report(s"predictive, $description", LoopKind.Predictive, link, settings.copy(model = _ => model))
+    for (description, model) <- models do
+      report(s"predictive, $description", LoopKind.Predictive, link, settings.copy(model = _ => model))
+
+  def models: Seq[(String, VehicleModel[?])] =
+    val identified          = ReducedModel.AirSim
+    def lag(factor: Double) =
+      identified.copy(lagS = factor * identified.lagS, turnLagS = factor * identified.turnLagS)
+    def gain(factor: Double) = identified.copy(gain = factor * identified.gain)
+    Seq(
+      "reduced"             -> ReducedVehicleModel(identified),
+      "reduced, lag +20 %"  -> ReducedVehicleModel(lag(1.2)),
+      "reduced, lag -20 %"  -> ReducedVehicleModel(lag(0.8)),
+      "reduced, gain +20 %" -> ReducedVehicleModel(gain(1.2)),
+      "reduced, gain -20 %" -> ReducedVehicleModel(gain(0.8)),
+      "constant velocity"   -> ConstantVelocity,
+      "constant turn"       -> ConstantTurn
+    )
 
   def report(name: String, kind: LoopKind, link: LatencyProfile, settings: LoopSettings): Unit =
     val duels     = (1 to seeds).map(seed => VirtualDuel.fly(kind, link, seed, settings))

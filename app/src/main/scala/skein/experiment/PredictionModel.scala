@@ -1,0 +1,49 @@
+package skein.experiment
+
+import skein.vehicle.*
+
+/** By which model `predictive` carries the readings of a vehicle forward. */
+enum PredictionModel(val vehicleModel: VehicleModel[?]):
+  /** AirSim's vehicle with its flight controller. */
+  case Quadrotor extends PredictionModel(QuadrotorModel.AirSim)
+
+  /** A first-order response, identified from flights. */
+  case Reduced(model: ReducedModel) extends PredictionModel(ReducedVehicleModel(model))
+
+  /** Straight on, whatever was commanded. */
+  case ConstantVelocity extends PredictionModel(skein.vehicle.ConstantVelocity)
+
+  /** Along an arc, whatever was commanded. */
+  case ConstantTurn extends PredictionModel(skein.vehicle.ConstantTurn)
+
+object PredictionModel:
+  private val named = Vector(
+    "quadrotor"         -> Quadrotor,
+    "reduced"           -> Reduced(ReducedModel.AirSim),
+    "constant-velocity" -> ConstantVelocity,
+    "constant-turn"     -> ConstantTurn
+  )
+
+  /** A name, or the path of a model file of `skein identify`. */
+  def parse(text: String): Either[String, PredictionModel] =
+    named.collectFirst { case (`text`, model) => model } match
+      case Some(model) => Right(model)
+      case None        =>
+        ModelFile
+          .read(text)
+          .map(file => Reduced(file.model))
+          .left
+          .map(reason => s"expected ${named.map(_._1).mkString(", ")} or a model file: $reason")
+
+  /** As a recording keeps it: [[recorded]] reads it back. A double's shortest text reads back as the same double. */
+  def text(model: PredictionModel): String = model match
+    case Reduced(model) =>
+      Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
+    case other => named.collectFirst { case (name, `other`) => name }.get
+
+  def recorded(text: String): Option[PredictionModel] =
+    named.collectFirst { case (`text`, model) => model }.orElse:
+      text.split(' ').map(_.toDoubleOption) match
+        case Array(Some(gain), Some(lag), Some(deadTime), Some(turnLag), Some(drag)) =>
+          scala.util.Try(Reduced(ReducedModel(gain, lag, deadTime, turnLag, drag))).toOption
+        case _ => None

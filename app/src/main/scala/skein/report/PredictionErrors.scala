@@ -1,0 +1,86 @@
+package skein.report
+
+import skein.record.Recording
+
+/** How far predictions of one kind of vehicle were off, by how far they were carried.
+  *
+  * @param made
+  *   predictions made; of those that are no `samples` the moment was never read, or read with too wide a gap around it
+  * @param samples
+  *   of those verified: age of the reading carried forward, ms, and error, m
+  */
+final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
+  def unverified: Int = made - samples.size
+
+  def ++(other: PredictionErrors): PredictionErrors =
+    PredictionErrors(made + other.made, samples ++ other.samples)
+
+  def errors: Option[Distribution] = Distribution.of(samples.map(_._2))
+
+  /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of [[PredictionErrors.BinMs]]. */
+  def around(ageMs: Int): Option[Distribution] =
+    Distribution.of(samples.collect { case (age, error) if PredictionErrors.bin(age) == ageMs => error })
+
+  /** By age, ms, ascending; ages with fewer than [[PredictionErrors.Fewest]] samples are left out. */
+  def byAge: Vector[(Int, Distribution)] =
+    samples
+      .groupMap((age, _) => PredictionErrors.bin(age))(_._2)
+      .toVector
+      .sortBy(_._1)
+      .flatMap((age, errors) =>
+        Distribution.of(errors).filter(_.count >= PredictionErrors.Fewest).map(age -> _)
+      )
+
+object PredictionErrors:
+  val BinMs: Int = 20
+
+  /** For a 95 % quantile. */
+  val Fewest: Int = 20
+
+  private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs
+
+  /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted. */
+  def of(recording: Recording): Option[(own: PredictionErrors, others: PredictionErrors)] =
+    val decisions = recording.decisions.filter(_.predicted.nonEmpty).groupMapReduce(_.vehicle)(_ => 1)(_ + _)
+    def errors(own: Boolean) =
+      val verified = recording.predictions.filter(one => (one.decider == one.vehicle) == own)
+      // A decider predicts once per decision each vehicle that it predicts at all.
+      val made = verified.map(one => (one.decider, one.vehicle)).distinct.map((decider, _) =>
+        decisions.getOrElse(decider, 0)
+      ).sum
+      PredictionErrors(made, verified.map(one => (one.age.toMillis, one.error.value)))
+    Option.when(decisions.nonEmpty)((own = errors(own = true), others = errors(own = false)))
+
+/** The prediction errors of all flights of one loop over one link. */
+final case class PredictionGroup(name: String, link: String, own: PredictionErrors, others: PredictionErrors)
+
+object PredictionGroup:
+
+  /** In the order of the flights. */
+  def of(flights: Seq[FlightSummary]): Vector[PredictionGroup] =
+    val predicted = flights.toVector.filter(_.predictions.nonEmpty)
+    for
+      key <- predicted.map(one => (one.name, one.flight.link)).distinct
+      group  = predicted.filter(one => (one.name, one.flight.link) == key)
+      errors = group.flatMap(_.predictions)
+    yield PredictionGroup(
+      key._1,
+      key._2,
+      errors.map(_.own).reduce(_ ++ _),
+      errors.map(_.others).reduce(_ ++ _)
+    )
+
+  def table(groups: Vector[PredictionGroup]): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "<of", "made", "unverified", "age ms", "p50 m", "p95 m", "p95 at 100 ms m"),
+      for
+        group           <- groups
+        (whose, errors) <- Vector("own vehicle" -> group.own, "others" -> group.others)
+        if errors.made > 0
+      yield Vector(group.name, group.link, whose, errors.made.toString, errors.unverified.toString) ++ Vector(
+        Distribution.of(errors.samples.map(_._1)).map(_.median).fold("")(SummaryTables.brief),
+        errors.errors.fold("")(all => SummaryTables.fixed(all.median, 3)),
+        errors.errors.fold("")(all => SummaryTables.fixed(all.quantile(0.95), 3)),
+        errors.around(100).fold("")(all => SummaryTables.fixed(all.quantile(0.95), 3))
+      )
+    )
