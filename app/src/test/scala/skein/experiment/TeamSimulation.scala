@@ -64,7 +64,8 @@ class TeamSimulation extends munit.FunSuite:
       "surround"  -> LoopKind.Paused,
       "formation" -> LoopKind.Futures,
       "crossing"  -> LoopKind.Stream,
-      "crossing"  -> LoopKind.Predictive
+      "crossing"  -> LoopKind.Predictive,
+      "crossing"  -> LoopKind.Plan
     )
   do
     test(s"$scenario by ${loop.label} decides the same when it is decided upon again, and when flown again"):

@@ -12,8 +12,10 @@ import skein.policy.Avoidance.*
   *
   * @param goalNorthM
   *   where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
-  * @param apartM
-  *   between two vehicles: the sum of the two discs' radii
+  * @param minimumM
+  *   the separation that is set
+  * @param marginM
+  *   on top of it: the two discs' radii together are the sum
   * @param horizonS
   *   for how long no two shall meet
   * @param mostMps
@@ -24,10 +26,12 @@ final case class Avoidance(
     goalEastM: Double,
     cruiseMps: Double,
     mostMps: Double,
-    apartM: Double,
+    override val minimumM: Double,
+    marginM: Double,
     horizonS: Double,
     arrivePerS: Double = 0.4
-) extends TeamPolicy:
+) extends GoalPolicy:
+  private val apartM = minimumM + marginM
   require(apartM > 0 && horizonS > 0, s"discs of $apartM m and a horizon of $horizonS s keep nobody apart")
 
   def course(seen: TeamSight): Course =
@@ -36,6 +40,12 @@ final case class Avoidance(
     val chosen = nearestAllowed(wanted, bounds, mostMps, relaxedMps = 0)
       .getOrElse(leastViolation(wanted, bounds, mostMps))
     Course.of(chosen.north, chosen.east, mostMps, seen.headingRad)
+
+  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+    val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
+    val distance      = math.hypot(north, east)
+    val share         = if distance == 0 then 1.0 else (cruiseMps * aheadS / distance).min(1)
+    (seen.northM(seen.self) + share * north, seen.eastM(seen.self) + share * east)
 
   private def preferred(seen: TeamSight): Velocity =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))

@@ -6,7 +6,11 @@ package skein.policy
   * @param aheadM
   *   about as far as the vehicle flies before it follows a command
   */
-final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends TeamPolicy:
+final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends GoalPolicy:
+  def mostMps: Double = speedMps
+
+  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+    circuit.point(circuit.nearest(seen.northM(seen.self), seen.eastM(seen.self)) + speedMps * aheadS)
 
   def course(seen: TeamSight): Course =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
@@ -35,7 +39,7 @@ final case class KeepSlot(
     mostMps: Double,
     lagS: Double,
     pursuit: Pursuit = Pursuit()
-) extends TeamPolicy:
+) extends GoalPolicy:
 
   def course(seen: TeamSight): Course =
     val self                      = seen.self
@@ -67,6 +71,21 @@ final case class KeepSlot(
       mostMps,
       seen.headingRad
     )
+
+  /** The slot when the leader has flown on along the circuit at its present speed. */
+  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+    val here       = circuit.nearest(seen.northM(leader), seen.eastM(leader))
+    val direction  = circuit.headingRad(here)
+    val alongMps   = seen.northMps(leader) * math.cos(direction) + seen.eastMps(leader) * math.sin(direction)
+    val place      = here + alongMps * aheadS
+    val heading    = circuit.headingRad(place)
+    val (cos, sin) = (math.cos(heading), math.sin(heading))
+    val (nearNorth, nearEast) = circuit.point(here)
+    // The leader's distance from the circuit is kept, to its right.
+    val beside = -(seen.northM(leader) - nearNorth) * math.sin(direction) +
+      (seen.eastM(leader) - nearEast) * math.cos(direction) + rightM
+    val (north, east) = circuit.point(place)
+    (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
   /** Near the middle of a turn the place on the circuit moves ever faster; not more than four times as fast here. */

@@ -13,7 +13,7 @@ package skein.policy
   *   the fastest that is commanded
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
-    extends TeamPolicy:
+    extends GoalPolicy:
 
   def course(seen: TeamSight): Course =
     val slot  = slotRad(seen)
@@ -25,6 +25,13 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       pursuit.along(east, seen.eastMps(evader), seen.eastM(self), seen.eastMps(self)),
       mostMps,
       seen.headingRad
+    )
+
+  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+    val slot = slotRad(seen)
+    (
+      seen.northM(evader) + seen.northMps(evader) * aheadS + ringM * math.cos(slot),
+      seen.eastM(evader) + seen.eastMps(evader) * aheadS + ringM * math.sin(slot)
     )
 
   /** The own slot's bearing from the evader, from north towards east. */

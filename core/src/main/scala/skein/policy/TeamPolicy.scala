@@ -8,6 +8,18 @@ trait TeamPolicy:
   /** The horizontal velocity to command now. */
   def course(seen: TeamSight): Course
 
+/** A policy of a vehicle that wants to be somewhere: what a planner can plan for in its place. */
+trait GoalPolicy extends TeamPolicy:
+
+  /** Where it wants to be a time ahead, north and east, m, if it were alone. */
+  def wanted(seen: TeamSight, aheadS: Double): (Double, Double)
+
+  /** The fastest that is commanded, m/s. */
+  def mostMps: Double
+
+  /** The separation that is set, m; 0: none. */
+  def minimumM: Double = 0
+
 /** What one vehicle knows of its team at one moment. Arrays are by the vehicle's place in the scenario, its own
   * included; world frame NED.
   *

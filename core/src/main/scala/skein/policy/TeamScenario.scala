@@ -207,7 +207,8 @@ object TeamScenario:
           goal._2,
           settings.cruiseMps,
           settings.mostMps,
-          settings.minimumM + settings.marginM,
+          settings.minimumM,
+          settings.marginM,
           settings.horizonS
         )
         agent(

@@ -50,6 +50,15 @@ object ReducedModel:
     */
   val AirSim: ReducedModel = ReducedModel(1.02, 2.967, 0.037, 2.967, 0.0067)
 
+  /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with
+    * k = 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so the lag is
+    * (1 + k · |z|) / (k · g), 1.41 s at 5 m and 2.93 s at 20 m.
+    */
+  def airSimAt(altitudeM: Double): ReducedModel =
+    val k   = 0.2 * math.Pi / 5.5
+    val lag = (1 + k * math.abs(altitudeM)) / (k * 9.80665)
+    AirSim.copy(lagS = lag, turnLagS = lag)
+
 /** One vehicle that flies by a [[ReducedModel]], from one event to the next. Mutable. How its time is cut into calls of
   * [[advance]] does not change the flight, but for rounding.
   */

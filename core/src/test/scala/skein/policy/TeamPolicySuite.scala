@@ -115,7 +115,7 @@ class TeamPolicySuite extends munit.FunSuite:
       MetresPerSecond(5),
       Vector3(north, east, -5),
       Radians(heading),
-      Avoidance(-north, -east, cruiseMps = 5, mostMps = 8, apartM = 3.5, horizonS = 4)
+      Avoidance(-north, -east, cruiseMps = 5, mostMps = 8, minimumM = 2, marginM = 1.5, horizonS = 4)
     )
     val flight = TeamFlight(Scenario(Vector(one("A", -30, -sideM, 0), one("B", 30, sideM, math.Pi))), lagS)
     flight.fly(30)()

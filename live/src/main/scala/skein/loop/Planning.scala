@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.flow.Plan
 import skein.planning.*
-import skein.policy.{PaperEvader, Policy, Role, Scenario}
+import skein.policy.{GoalPolicy, PaperEvader, Policy, Role, Scenario}
 import skein.record.Decision
 import skein.signal.Kinematics
 import skein.units.*
@@ -50,6 +50,7 @@ object Planning:
     val agent = scenario.agents(self)
     agent.policy match
       case _: Policy if agent.role == Role.Pursuer => Some(PursuitPlanning(scenario, self, settings, seed))
+      case team: GoalPolicy                        => Some(TeamPlanning(scenario, self, team, settings, seed))
       case _                                       => None
 
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
