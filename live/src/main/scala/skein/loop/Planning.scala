@@ -53,6 +53,27 @@ object Planning:
       case team: GoalPolicy                        => Some(TeamPlanning(scenario, self, team, settings, seed))
       case _                                       => None
 
+  /** After a longer pause a vehicle turns no further at once than in this time, s. */
+  private val LongestTurnS = 0.5
+
+  /** The random numbers of a vehicle's next plan. */
+  private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
+    (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
+
+  /** How long the vehicle may turn at once, s. */
+  private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
+    memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, LongestTurnS))
+
+  private[loop] def motion(seen: Kinematics): Motion =
+    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+
+  private[loop] def straight(motion: Motion, planner: PlannerSettings): PredictedTrack =
+    PredictedTrack.straight(motion, planner.steps, planner.dtS)
+
+  /** Whether nothing was searched for half a horizon. */
+  private[loop] def isOutdated(answer: Plan.Answer, planner: PlannerSettings): Boolean =
+    answer.unsearchedS > planner.horizonS / 2
+
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
   * horizon, and to capture it.
   *
@@ -63,6 +84,7 @@ object Planning:
   */
 private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
     extends Planning:
+  import Planning.{motion, straight}
   private val agent    = scenario.agents(self)
   private val speed    = agent.speed.value
   private val decider  = Decider(scenario, self)
@@ -85,30 +107,24 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
 
   def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long) =
     val opponent = scenario.opponentOf(self, picture.kinematics(_).positionNed)
-    val stream   = (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
+    val stream   = Planning.stream(seed, self, memory)
     val others   =
       if !regardsTeam then Vector.empty
       else scenario.agents.indices.filter(other => other != self && other != opponent).toVector
     val situation = Situation(
       motion(picture.kinematics(self)),
       memory.headingRad,
-      memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, PursuitPlanning.LongestTurnS)),
+      Planning.sinceDecisionS(memory, now),
       response,
       Behaviours.around(target(opponent, motion(picture.kinematics(opponent))), settings.behaviours, stream),
-      others.map(other => straight(motion(picture.kinematics(other))))
+      others.map(other => straight(motion(picture.kinematics(other)), planner))
     )
     (situation, stream)
 
   private def target(opponent: Int, motion: Motion): Target = scenario.agents(opponent).policy match
     case paper: PaperEvader =>
       Target.paperEvader(motion, response, scenario.agents(opponent).speed.value, paper)
-    case _ => Target.Along(straight(motion))
-
-  private def straight(motion: Motion): PredictedTrack =
-    PredictedTrack.straight(motion, planner.steps, planner.dtS)
-
-  private def motion(seen: Kinematics): Motion =
-    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+    case _ => Target.Along(straight(motion, planner))
 
   def decide(
       memory: Memory,
@@ -117,7 +133,7 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
       situation: Situation,
       answer: Plan.Answer
   ): (Memory, PlannedDecision) =
-    val byPolicy = answer.unsearchedS > planner.horizonS / 2
+    val byPolicy = Planning.isOutdated(answer, planner)
     val action   =
       if !byPolicy then Action.of(answer.best, situation, objective, planner.dtS)
       else
@@ -135,6 +151,3 @@ private object PursuitPlanning:
   val Carried = 0.0
   val Closest = 1.0
   val Capture = 3.0
-
-  /** After a longer pause a vehicle turns no further at once than in this time, s. */
-  val LongestTurnS = 0.5

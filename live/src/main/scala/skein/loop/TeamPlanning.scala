@@ -3,7 +3,6 @@ package skein.loop
 import skein.flow.Plan
 import skein.planning.*
 import skein.policy.{GoalPolicy, Scenario}
-import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.ReducedModel
 
@@ -22,6 +21,7 @@ private final class TeamPlanning(
     settings: PlanSettings,
     seed: Long
 ) extends Planning:
+  import Planning.{motion, straight}
   private val agent    = scenario.agents(self)
   private val decider  = Decider(scenario, self)
   private val response =
@@ -50,14 +50,14 @@ private final class TeamPlanning(
   def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long) =
     val sight  = decider.sight(memory, picture, now)
     val own    = motion(picture.kinematics(self))
-    val stream = (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
+    val stream = Planning.stream(seed, self, memory)
     val wanted = Vector.tabulate(planner.steps)(step => policy.wanted(sight, (step + 1) * planner.dtS))
     val others = if minimumM == 0 then Vector.empty else near(own, picture)
     (
       Situation(
         own,
         memory.headingRad,
-        memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, TeamPlanning.LongestTurnS)),
+        Planning.sinceDecisionS(memory, now),
         response,
         Vector(Behaviour(Target.Along(PredictedTrack(
           IArray.from(wanted.map(_._1)),
@@ -77,10 +77,7 @@ private final class TeamPlanning(
       .filter(_._2 < reachM)
       .sortBy(_._2)
       .take(TeamPlanning.Regarded)
-      .map((other, _) => PredictedTrack.straight(other, planner.steps, planner.dtS))
-
-  private def motion(seen: Kinematics): Motion =
-    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+      .map((other, _) => straight(other, planner))
 
   def decide(
       memory: Memory,
@@ -89,7 +86,7 @@ private final class TeamPlanning(
       situation: Situation,
       answer: Plan.Answer
   ): (Memory, PlannedDecision) =
-    val byPolicy = answer.unsearchedS > planner.horizonS / 2
+    val byPolicy = Planning.isOutdated(answer, planner)
     val action   =
       if !byPolicy then Action.of(answer.best, situation, objective, planner.dtS)
       else
@@ -113,6 +110,3 @@ private object TeamPlanning:
 
   /** Of a multirotor that turns on the spot: as fast as plans of 0.1 s steps can turn. */
   val MostTurnRadps = 4.0
-
-  /** After a longer pause a vehicle turns no further at once than in this time, s. */
-  val LongestTurnS = 0.5
