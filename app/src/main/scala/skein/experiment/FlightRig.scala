@@ -105,7 +105,7 @@ final class FlightRigs(
         _ <- client.ping()
       yield
         val loopSettings = settings.loopSettings.copy(seed = plan.seed)
-        val planners =
+        val planners     =
           if plan.loop != LoopKind.Plan then PlanWorkers.none
           else
             opened.closing(workers(settings.planningByModel)): threads =>

@@ -110,10 +110,11 @@ object Checks:
     case _                 => true
 
   private def unbounded(seen: Evidence): Vector[String] =
-    val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
-    val flown   = seen.endedAt.since(seen.startedAt).toSeconds + 1
-    val rows    = Recorded.rows(seen.recording)
-    val each    = if seen.ordeal.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
+    val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
+    // Where steps take no time, the flight is longer than it took.
+    val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
+    val rows  = Recorded.rows(seen.recording)
+    val each  = if seen.ordeal.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(
       Option.when(

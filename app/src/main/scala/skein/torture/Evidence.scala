@@ -30,6 +30,7 @@ final case class Evidence(
     ordeal: Ordeal,
     window: Int,
     minCommandInterval: Span,
+    period: Span,
     startedAt: Instant,
     endedAt: Instant,
     outcome: Outcome,

@@ -106,6 +106,7 @@ object TortureFlight:
         ordeal,
         loopSettings.window,
         loopSettings.minCommandInterval,
+        loopSettings.period,
         start,
         endedAt,
         outcome,

@@ -15,7 +15,7 @@ import skein.units.*
   * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
   * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
-  * against the simulator's clock. However it ends, the vehicles are told to hover and the simulator is let run again;
+  * against the simulator's clock. However it ends, the simulator is let run again and the vehicles are told to hover;
   * both are tried up to [[PausedLoop.LastAttempts]] times.
   */
 object PausedLoop:
@@ -61,15 +61,18 @@ private final class PausedFlight(
   def next(step: Step): Future[Option[(Step, Done)]] =
     if step.number == steps || stopped() then Future.successful(None) else fly(step)
 
-  /** After the last step or an error. */
+  /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it stands still,
+    * moves that missed their cancellation never end, and those of four vehicles hold every worker it has.
+    */
   def landed(flown: Future[Done]): Future[Done] =
     flown.transformWith: ended =>
       for
+        running <- untilCertain(PausedLoop.LastAttempts)(stepper.resume())(_.isRight)
         // To hover is a command, too, and must not be a third one outstanding.
-        _       <- allEnded(replaced)
-        running <- release(PausedLoop.LastAttempts)
-        _       <- allEnded(newest)
-        done    <- running match
+        _    <- allEnded(replaced)
+        _    <- untilCertain(PausedLoop.LastAttempts)(team.hoverAll())(_.forall(isHovering))
+        _    <- allEnded(newest)
+        done <- running match
           case Right(())                      => Future.fromTry(ended)
           case Left(error) if ended.isSuccess => Future.failed(LoopFailed(standsStill(error)))
           case Left(error)                    =>
@@ -99,18 +102,17 @@ private final class PausedFlight(
           seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now))
       Some((Step(step.number + 1, decided.map(_._1), moved), Done))
 
-  /** Lets the vehicles hover, which ends the last moves, and the simulator run, until both are certain. */
-  private def release(attempts: Int): Future[Either[RpcError, Unit]] =
-    for
-      hovering <- team.hoverAll()
-      running  <- stepper.resume()
-      certain = running.isRight && hovering.forall:
-        case Right(_) | Left(_: RpcError.Refused) => true
-        case Left(_)                              => false
-      result <-
-        if certain || attempts == 1 then Future.successful(running)
-        else after(PausedLoop.TellAgain.toDuration, system.scheduler)(release(attempts - 1))
-    yield result
+  /** What the last of at most so many attempts came to. */
+  private def untilCertain[A](attempts: Int)(attempt: => Future[A])(isCertain: A => Boolean): Future[A] =
+    attempt.flatMap: result =>
+      if isCertain(result) || attempts == 1 then Future.successful(result)
+      else
+        after(PausedLoop.TellAgain.toDuration, system.scheduler):
+          untilCertain(attempts - 1)(attempt)(isCertain)
+
+  private def isHovering(answer: Either[RpcError, ?]): Boolean = answer match
+    case Right(_) | Left(_: RpcError.Refused) => true
+    case Left(_)                              => false
 
   private def send(decisions: Vector[Decision], picture: Picture): Unit =
     replaced = newest

@@ -14,9 +14,11 @@ class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(RpcError.Timeout("lost", Span.ofMillis(500)))
 
   /** A vehicle whose reading number `failing` fails, and whose first hovers do. */
-  private final class Fragile(craft: Craft, failing: Int, failedHovers: Int) extends Craft:
+  private final class Fragile(craft: Craft, isPaused: () => Boolean, failing: Int, failedHovers: Int)
+      extends Craft:
     private var reads, hovers = 0
     var hovering              = false
+    var toldWhilePaused       = false
 
     def read(): Future[Either[RpcError, Stamped[Kinematics]]] =
       reads += 1
@@ -28,6 +30,7 @@ class PausedLoopSuite extends munit.FunSuite:
 
     def hover(): Future[Either[RpcError, Boolean]] =
       hovers += 1
+      toldWhilePaused ||= isPaused()
       if hovers <= failedHovers then Future.successful(lost)
       else
         hovering = true
@@ -57,6 +60,7 @@ class PausedLoopSuite extends munit.FunSuite:
       outcome: Outcome,
       paused: Boolean,
       hovering: Vector[Boolean],
+      toldWhilePaused: Boolean,
       commands: Int,
       ends: Int
   )
@@ -74,7 +78,7 @@ class PausedLoopSuite extends munit.FunSuite:
       val scenario           = Scenario.duel()
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
       val stepper            = FragileStepper(world, failingStep, failedResumes)
-      val crafts             = world.crafts.map(Fragile(_, failingRead, failedHovers))
+      val crafts             = world.crafts.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))
       val recorder           = MemoryRecorder(Samples.heading)
       val team               = Team(scenario, crafts, clock, recorder, LoopSettings())
       Flight
@@ -86,6 +90,7 @@ class PausedLoopSuite extends munit.FunSuite:
             outcome,
             stepper.paused,
             crafts.map(_.hovering),
+            crafts.exists(_.toldWhilePaused),
             recording.commands.size,
             recording.acknowledgements.size
           )
@@ -94,6 +99,7 @@ class PausedLoopSuite extends munit.FunSuite:
   private def isReleased(landed: Landed): Unit =
     assert(!landed.paused, s"the simulator was left standing still: $landed")
     assertEquals(landed.hovering, Vector(true, true), landed.toString)
+    assert(!landed.toldWhilePaused, s"to hover was commanded before the simulator ran again: $landed")
     assertEquals(landed.ends, landed.commands, landed.toString)
 
   test("after its last step the vehicles hover and the simulator runs"):
