@@ -15,6 +15,13 @@ private[cli] object Edge:
     */
   def isInterrupted: Boolean = interrupted
 
+  /** Runs `body`; if the program is ended from outside meanwhile, says so, and how far it was. */
+  def tellingIfCut[A](progress: => String)(body: => A): A =
+    val hook = Thread(() => Console.err.println(s"skein: ended from outside; $progress"))
+    Runtime.getRuntime.addShutdownHook(hook)
+    try body
+    finally removeHook(hook)
+
   /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most `graceMillis`. */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
@@ -25,7 +32,9 @@ private[cli] object Edge:
     )
     Runtime.getRuntime.addShutdownHook(hook)
     try body
-    finally
-      try
-        val _ = Runtime.getRuntime.removeShutdownHook(hook)
-      catch case _: IllegalStateException => () // The JVM is shutting down: the hook runs.
+    finally removeHook(hook)
+
+  private def removeHook(hook: Thread): Unit =
+    try
+      val _ = Runtime.getRuntime.removeShutdownHook(hook)
+    catch case _: IllegalStateException => () // The JVM is shutting down: the hook runs.

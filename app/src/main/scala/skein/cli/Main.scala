@@ -32,7 +32,13 @@ object Main:
           case Some(command) =>
             // Set up before several threads of a command need it at once, which it would remark on.
             val _ = LoggerFactory.getILoggerFactory
-            command.run(arguments.tail)
+            try command.run(arguments.tail)
+            catch
+              // Said last, behind whatever other threads still print, and with an exit status of its own.
+              case error: Throwable =>
+                error.printStackTrace(Console.err)
+                Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
+                1
           case None =>
             Console.err.println(
               s"skein: no command '$word'. There are: ${commands.map(_.name).mkString(", ")}."

@@ -3,7 +3,8 @@ package skein.cli
 import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{ParserForClass, arg}
-import skein.experiment.VirtualFlights
+import skein.experiment.{FlightPlan, FlySettings, NotFlown, VirtualFlights}
+import skein.loop.Outcome
 import skein.report.{FlightSummary, PredictionGroup, Report, SpreadTable, TeamFlights, TeamTables}
 
 /** Options of `./skein spread`. */
@@ -29,14 +30,9 @@ object SpreadCommand
       plans =
         for plan <- settings.plans; number <- 0 until options.seeds
         yield plan.copy(seed = settings.seed + number)
-      landed = AtomicInteger()
-      flown <- VirtualFlights.inParallel(settings, plans): flight =>
-        val count = landed.incrementAndGet()
-        if count % (plans.size / 20).max(1) == 0 then
-          Console.err.println(s"$count of ${plans.size} flights have landed")
-        FlightSummary.of(flight.recorder.recording)
-      duels  = flown.filter(_.team.isEmpty)
-      tables =
+      (missing, flown) = fly(settings, plans).partitionMap(identity)
+      duels            = flown.filter(_.team.isEmpty)
+      tables           =
         Option.when(duels.nonEmpty)(SpreadTable.of(duels)).toVector ++ TeamFlights.of(
           flown
         ).map(TeamTables.spread)
@@ -48,4 +44,18 @@ object SpreadCommand
           .writeSpread(flown, tables, Path.of(folder))
           .map(output => Console.out.println(s"spread in ${output.page}"))
       )
+      _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
     yield ()
+
+  private def fly(settings: FlySettings, plans: Vector[FlightPlan]): Vector[Either[NotFlown, FlightSummary]] =
+    val landed     = AtomicInteger()
+    def progress() = s"${landed.get} of ${plans.size} flights have landed"
+    Edge.tellingIfCut(progress()):
+      VirtualFlights
+        .inParallel(settings, plans): flight =>
+          val summary = flight.landed.outcome match
+            case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
+            case _                      => Right(FlightSummary.of(flight.recorder.recording))
+          if landed.incrementAndGet() % (plans.size / 20).max(1) == 0 then Console.err.println(progress())
+          summary
+        .map(_.flatten)

@@ -52,17 +52,18 @@ object TortureCommand
         f"$flown of ${options.seeds} flights of ${options.duration}, ${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
       )
 
-    Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads): verdict =>
-      flown += 1
-      if !verdict.isClean then
-        failed :+= verdict
-        Console.out.println(verdict.ordeal)
-        verdict.violations.foreach(line => Console.out.println(s"  $line"))
-        Console.out.println(
-          s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}"
-        )
-      if System.nanoTime() - shownAt > 10_000_000_000L then
-        shownAt = System.nanoTime()
-        show()
+    Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed"):
+      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads): verdict =>
+        flown += 1
+        if !verdict.isClean then
+          failed :+= verdict
+          Console.out.println(verdict.ordeal)
+          verdict.violations.foreach(line => Console.out.println(s"  $line"))
+          Console.out.println(
+            s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}"
+          )
+        if System.nanoTime() - shownAt > 10_000_000_000L then
+          shownAt = System.nanoTime()
+          show()
     show()
     failed

@@ -1,5 +1,6 @@
 package skein.experiment
 
+import java.io.{PrintWriter, StringWriter}
 import java.nio.file.Path
 import java.util.concurrent.Executors
 import org.apache.pekko.actor.ActorSystem
@@ -19,25 +20,41 @@ object VirtualFlights:
     *
     * @param onLanded
     *   told of each flight as it has ended, and of its recording's contents
+    * @return
+    *   or which of them could not be flown, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
       onLanded: (Landed, Digest) => Unit
   ): Either[String, Vector[Landed]] =
-    inParallel(settings, plans): flown =>
+    val (missing, landed) = inParallel(settings, plans): flown =>
       val landed = flown.landed.copy(written = flown.recorder.writeTo(flown.landed.plan.file(folder)))
       onLanded(landed, flown.recorder.digest)
       landed
+    .partitionMap(identity)
+    Either.cond(missing.isEmpty, landed, NotFlown.message(missing, plans.size))
 
-  /** Flies all, as many at once as there are cores, and keeps of each what `use` makes of it. Blocks. */
+  /** Flies all, as many at once as there are cores, and keeps of each what `use` makes of it. Blocks.
+    *
+    * @return
+    *   one for each plan, in their order
+    */
   def inParallel[A](settings: FlySettings, plans: Vector[FlightPlan])(
       use: VirtualLanding => A
-  ): Either[String, Vector[A]] =
-    val threads = Executors.newFixedThreadPool(plans.size.min(Runtime.getRuntime.availableProcessors))
-    try
-      val flights = plans.map: plan =>
-        threads.submit(() => fly(settings, plan).left.map(reason => s"${plan.id}: $reason").map(use))
-      val (failed, used) = flights.map(_.get()).partitionMap(identity)
-      failed.headOption.toLeft(used)
+  ): Vector[Either[NotFlown, A]] =
+    eachInParallel(plans)(plan => fly(settings, plan).map(use))
+
+  /** Whatever ends one flight, it is told with that flight's seed, and the others are flown. */
+  private[experiment] def eachInParallel[A](plans: Vector[FlightPlan])(
+      fly: FlightPlan => Either[String, A]
+  ): Vector[Either[NotFlown, A]] =
+    def flown(plan: FlightPlan) =
+      val result =
+        try fly(plan)
+        catch case error: Throwable => Left(NotFlown.trace(error))
+      result.left.map(NotFlown(plan, _))
+    val cores   = Runtime.getRuntime.availableProcessors
+    val threads = Executors.newFixedThreadPool(plans.size.min(cores).max(1))
+    try plans.map(plan => threads.submit(() => flown(plan))).map(_.get())
     finally threads.shutdown()
 
   /** Flies on the calling thread, to the end.
@@ -66,3 +83,20 @@ object VirtualFlights:
 
 /** A flight in virtual time and all that was recorded of it. */
 final case class VirtualLanding(landed: Landed, recorder: MemoryRecorder)
+
+/** A flight in virtual time that could not be flown to its end, or not be used. */
+final case class NotFlown(plan: FlightPlan, reason: String):
+  def message: String = s"${plan.id}, seed ${plan.seed}: $reason"
+
+object NotFlown:
+  private val TraceLines = 30
+
+  /** For a person, the last thing to be said. */
+  def message(missing: Seq[NotFlown], planned: Int): String =
+    (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
+
+  /** What was thrown and where, and what caused it. */
+  private[experiment] def trace(error: Throwable): String =
+    val text = StringWriter()
+    error.printStackTrace(PrintWriter(text))
+    text.toString.linesIterator.take(TraceLines).mkString("\n")

@@ -1,7 +1,6 @@
 package skein.torture
 
 import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
-import scala.util.control.NonFatal
 import skein.units.*
 
 /** How one flight stood its ordeal. */
@@ -13,10 +12,12 @@ object Torture:
   /** Flies the ordeal of one seed. A flight that cannot be flown to its end is a violation, too. */
   def of(seed: Long, duration: Span): Verdict =
     val ordeal = Ordeal.of(seed, duration)
-    val found  =
-      try Checks.violations(TortureFlight.fly(ordeal))
-      catch case NonFatal(error) => Vector(error.toString)
-    Verdict(ordeal, found)
+    Verdict(ordeal, violations(Checks.violations(TortureFlight.fly(ordeal))))
+
+  /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
+  private[torture] def violations(found: => Vector[String]): Vector[String] =
+    try found
+    catch case error: Throwable => Vector(error.toString)
 
   /** Flies many, as many at once as there are `threads`. Blocks.
     *

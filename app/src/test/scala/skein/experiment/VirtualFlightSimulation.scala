@@ -38,3 +38,20 @@ class VirtualFlightSimulation extends munit.FunSuite:
   test("another seed leaves another recording"):
     val plan = settings.plans.last
     assertNotEquals(digest(plan.copy(seed = plan.seed + 1)), digest(plan))
+
+  test("a flight that ends in whatever error is told with its seed, and the others are flown"):
+    val plan  = settings.plans.head
+    val plans = Vector.tabulate(6)(number => plan.copy(seed = number.toLong))
+    val flown = VirtualFlights.eachInParallel(plans): plan =>
+      plan.seed match
+        case 1 => Left("no link")
+        case 3 => throw StackOverflowError("too deep")
+        case 4 => throw InterruptedException("cut")
+        case _ => Right(plan.seed)
+    val (missing, landed) = flown.partitionMap(identity)
+    assertEquals(landed, Vector(0L, 2L, 5L))
+    assertEquals(missing.map(_.plan.seed), Vector(1L, 3L, 4L))
+    val message = NotFlown.message(missing, plans.size)
+    assert(message.startsWith("3 of 6 flights could not be flown"), message)
+    for told <- Seq("seed 1: no link", "seed 3: java.lang.StackOverflowError: too deep", "seed 4: ") do
+      assert(message.contains(told), message)

@@ -31,7 +31,7 @@ class PredictionErrorsSuite extends munit.FunSuite:
     )
     VirtualFlights
       .inParallel(settings, settings.plans)(flown => FlightSummary.of(flown.recorder.recording))
-      .fold(fail(_), identity)
+      .map(_.fold(missing => fail(missing.message), identity))
 
   test("of a flight, every prediction is counted: verified with its error, or unverified"):
     val group = PredictionGroup.of(flights) match

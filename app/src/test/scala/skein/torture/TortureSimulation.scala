@@ -30,3 +30,11 @@ class TortureSimulation extends munit.FunSuite:
       assertEquals(one.arrivals, other.arrivals, s"seed $seed")
       assertEquals(one.recording, other.recording, s"seed $seed")
       assertEquals(one.stats, other.stats, s"seed $seed")
+
+  test("a flight that dies of whatever error is a violation, not a seed that is missing"):
+    assertEquals(
+      Torture.violations(throw StackOverflowError("deep")),
+      Vector("java.lang.StackOverflowError: deep")
+    )
+    assertEquals(Torture.violations(throw InterruptedException("cut")).size, 1)
+    assertEquals(Torture.violations(Vector.empty), Vector.empty)

@@ -55,7 +55,7 @@ object Message:
     case other       => s"an error that is no text but ${kindOf(other)}"
 
   private def decode(frame: Array[Byte])(meaning: Msg => Either[String, Message]): Message =
-    try meaning(upack.read(frame)).fold(Malformed(_), identity)
+    try meaning(upack.read(frame, trace = false)).fold(Malformed(_), identity)
     catch case NonFatal(e) => Malformed(s"not readable as MessagePack: $e")
 
   private def idOf(field: Msg): Either[String, Long] = field match

@@ -92,8 +92,13 @@ final class RpcClient(
     observer(RpcEvent.Skipped(method, error))
 
   private def read[A: Reader](method: String, value: Msg): Either[RpcError, A] =
-    try Right(upickle.default.readBinary[A](value))
-    catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
+    def readAs(trace: Boolean) = upickle.default.readBinary[A](value, trace)
+    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again with it.
+    try Right(readAs(trace = false))
+    catch
+      case NonFatal(_) =>
+        try Right(readAs(trace = true))
+        catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
 
   private def start(lane: Lane): LaneInput =
     val stage =

@@ -82,6 +82,8 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
     catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
     finally
       watchdog.stop()
+      if failure != null then
+        Thread.interrupted(): Unit // the watchdog's; whatever runs next here is not meant
       Redirect.setEnvironment(null)
 
   /** How many tasks have begun; may be read, late, by other threads. */

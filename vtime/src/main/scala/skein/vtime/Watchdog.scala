@@ -1,30 +1,67 @@
 package skein.vtime
 
 import java.lang.Thread.State
+import java.lang.management.ManagementFactory
 import scala.concurrent.duration.*
 
 /** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on the loop can
-  * give. Looks twice, half of `patience` (real time) apart.
+  * give. Looks every half of `patience` (real time).
   */
 private final class Watchdog(loop: Loop, patience: FiniteDuration):
+  import Watchdog.*
+
+  private var stopped = false
   private val watcher = Thread.ofVirtual.start(() => watch())
 
-  /** From here on, the loop's thread may wait as long as it likes. */
-  def stop(): Unit = watcher.interrupt()
+  /** From here on, the loop's thread may wait as long as it likes, and is not interrupted any more. */
+  def stop(): Unit =
+    synchronized { stopped = true }
+    watcher.interrupt()
 
   private def watch(): Unit =
     try
-      var before = Option.empty[Long]
+      var looks = Vector.empty[Look]
       while true do
         Thread.sleep((patience / 2).toMillis)
-        val waiting = Watchdog.waiting.contains(loop.thread.getState)
-        if waiting && before.contains(loop.begun) then
-          val culprit = Loop.Culprit()
-          culprit.setStackTrace(loop.thread.getStackTrace)
-          loop.fail(Problem.Stuck(patience), culprit): Unit
-          loop.thread.interrupt()
-        before = Option.when(waiting)(loop.begun)
+        looks = (looks :+ look()).takeRight(LooksNeeded)
+        if standsStill(looks) then end()
     catch case _: InterruptedException => ()
 
+  private def look() = Look(waiting.contains(loop.thread.getState), loop.begun, processorNanos(loop.thread))
+
+  private def end(): Unit = synchronized:
+    if !stopped then
+      val culprit = Loop.Culprit()
+      culprit.setStackTrace(loop.thread.getStackTrace)
+      loop.fail(Problem.Stuck(patience), culprit): Unit
+      loop.thread.interrupt()
+
 private object Watchdog:
+
+  /** What the watchdog sees of the loop's thread.
+    *
+    * @param waits
+    *   whether it waits at this moment
+    * @param begun
+    *   tasks begun so far
+    * @param processorNanos
+    *   processor time it has had so far; -1 where the JVM cannot tell
+    */
+  final case class Look(waits: Boolean, begun: Long, processorNanos: Long)
+
+  val LooksNeeded = 3
+
+  /** On a machine that is busy otherwise a thread may be met waiting again and again, though it works in between, as
+    * while classes load: what has had the processor since the look before does not stand still.
+    */
+  def standsStill(looks: Seq[Look]): Boolean =
+    looks.size >= LooksNeeded && looks.forall(look => look.waits && look == looks.head)
+
   private val waiting = Set(State.BLOCKED, State.WAITING, State.TIMED_WAITING)
+
+  private val threads = ManagementFactory.getThreadMXBean
+
+  private def processorNanos(thread: Thread): Long =
+    if threads.isThreadCpuTimeSupported && threads.isThreadCpuTimeEnabled then
+      threads.getThreadCpuTime(thread.threadId)
+    else -1

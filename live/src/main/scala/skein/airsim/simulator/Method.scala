@@ -46,7 +46,7 @@ private[simulator] object Method:
       name,
       1,
       params =>
-        val value = readBinary[A](params.head)
+        val value = readBinary[A](params.head, trace = false)
         run(_, value)
     )
 
@@ -56,7 +56,7 @@ private[simulator] object Method:
       name,
       constValue[Tuple.Size[T]],
       params =>
-        val values = readBinary[T](Arr(params*))
+        val values = readBinary[T](Arr(params*), trace = false)
         run(_, values)
     )
 
