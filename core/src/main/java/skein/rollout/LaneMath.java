@@ -96,6 +96,11 @@ public final class LaneMath {
    * @param count a multiple of {@link #LANES}
    */
   public static void sinCos(float[] angles, float[] sines, float[] cosines, int count) {
+    sinCos(angles, sines, cosines, 0, count);
+  }
+
+  /** The same, into the places from {@code at} on. */
+  static void sinCos(float[] angles, float[] sines, float[] cosines, int at, int count) {
     for (int i = 0; i < count; i += LANES) {
       FloatVector angle = FloatVector.fromArray(SPECIES, angles, i);
       FloatVector rounded = angle.fma(TWO_OVER_PI, ROUND);
@@ -115,12 +120,12 @@ public final class LaneMath {
           .reinterpretAsInts()
           .lanewise(XOR, sinSign)
           .reinterpretAsFloats()
-          .intoArray(sines, i);
+          .intoArray(sines, at + i);
       cos.blend(sin, odd)
           .reinterpretAsInts()
           .lanewise(XOR, cosSign)
           .reinterpretAsFloats()
-          .intoArray(cosines, i);
+          .intoArray(cosines, at + i);
     }
   }
 

@@ -1,9 +1,11 @@
 package skein.rollout;
 
+import static jdk.incubator.vector.VectorOperators.EQ;
 import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
-import static skein.rollout.LaneMath.HALF_PI;
+import static jdk.incubator.vector.VectorOperators.NE;
+import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
 import static skein.rollout.LaneMath.ONE;
 import static skein.rollout.LaneMath.SPECIES;
@@ -12,94 +14,67 @@ import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
 
 /**
- * The duel of the paper's pursuer and evader under the full event timing of the {@code stream}
- * loop, many worlds at a time: questions, answers, commands and acknowledgements with sampled
- * delays, order kept, pacing, skipping; vehicles with first-order lag and dead time, exactly
- * integrated between commands. {@link Rollout} with {@code LoopTiming.Stream} and a {@code Reduced}
- * model is its scalar reference; both draw the same delays from a world's key. Of its rules the
- * kernel leaves out what is rare while round trips differ by less than a period: a question and its
- * answer never overtake those before, a picture waits for the answers of all to one question
- * however long, and no question fails or is missed.
+ * Duels under the full event timing of the {@code stream} loop, many worlds at a time, each with
+ * delays of its own: questions, answers, commands and acknowledgements with sampled delays,
+ * overtaking, time-outs, patience, pacing, skipping; vehicles with first-order lag and dead time,
+ * exactly integrated between commands. {@link Rollout} with {@code LoopTiming.Stream} and a {@code
+ * Reduced} model is its scalar reference: both draw the same delays from a world's key, and every
+ * event happens at the same nanosecond in both.
  *
- * <p>All worlds go through question m together; when its events happen differs by lane. Times are
- * counted from the question, so that floats resolve them. Positions are those at the questions'
- * times; what a vehicle answers is extrapolated from there through the commands that reach it
- * before. Nothing is allocated after construction; one instance per thread.
+ * <p>All worlds go through row m, from question m to the next, together ({@link LanePictures});
+ * when its events happen differs by lane. Positions are those at the row's question; a picture shows
+ * them extrapolated through the commands that act before. Nothing is allocated after construction but where
+ * links need more room than any before; one instance per thread.
  */
 public final class StreamDuelKernel {
-  /**
-   * Worlds flown together: few enough for the first-level cache. A multiple of every lane count.
-   */
-  public static final int WORLDS = 128;
+  /** Worlds flown together. */
+  public static final int WORLDS = LanePolicy.WORLDS;
 
   private static final int EVADER = 0;
   private static final int PURSUER = 1;
-
-  /**
-   * Stands for "never yet" and for "not under way"; not infinite, so that no arithmetic makes a NaN
-   * of it.
-   */
-  private static final float PAST = -1e9f;
-
   private static final float FUTURE = 1e9f;
-  private static final FloatVector NEVER = constant(FUTURE),
-      NONE = constant(PAST),
-      SOON = constant(1e-7f);
-
-  // What is earlier, or later, is PAST or FUTURE, shifted by an episode's length at most.
-  private static final FloatVector LONG_AGO = constant(-1e8f), LATER = constant(1e8f);
-  private static final FloatVector MINUS_ONE = constant(-1f), QUARTER = constant(0.25f);
-  private static final FloatVector INFINITE = constant(Float.POSITIVE_INFINITY);
-  private static final FloatVector PER_TURN = constant((float) (0.5 / Math.PI)),
-      MINUS_TURN = constant((float) (-2 * Math.PI));
-
-  /** 1.5·2²³: adding it and taking it away leaves a float's nearest integer. */
-  private static final FloatVector ROUND = constant(12582912f);
+  private static final FloatVector INFINITE = constant(Float.POSITIVE_INFINITY),
+      GRAIN_S = constant(DelayTable.GrainNs() * 1e-9f);
+  private static final IntVector NO = IntVector.zero(INTS),
+      YES = IntVector.broadcast(INTS, 1),
+      PAST = IntVector.broadcast(INTS, -1_000_000_000),
+      NEVER = IntVector.broadcast(INTS, LanePictures.NONE);
 
   private final LoopTiming.Stream timing;
   private final Reduced model;
-  private final int steps;
-  private final float periodS;
+  private final int steps, lastSteps;
+  private final float periodS, lagS;
+  private final LanePictures pictures;
 
-  /** The delays of all links of the episodes flown now, one table after the other. */
-  private float[] delaysS = new float[DelayTable.Size()];
+  private final IntVector periodGrains, interval, minInterval, handover, dead;
+  private final FloatVector period, lag, decayRate, growthRate, periodDecay, periodGain;
 
-  /** Where a world's table begins. */
-  private final int[] tableOf = new int[WORLDS];
+  private final Vehicles evader, pursuer;
+  private final Vehicles[] both;
+  private final LaneSight sight = new LaneSight();
+  private final float[] decay = new float[WORLDS], lookAt = new float[WORLDS];
+  private final int[] delay = new int[WORLDS], backDelay = new int[WORLDS];
+  private final int[] actsFrom = new int[WORLDS], actsUpTo = new int[WORLDS];
 
-  private final DelayTable[] tables = new DelayTable[WORLDS];
-  private int tableCount = 0;
-
-  /** Commands to one vehicle that may be under way. */
+  // Commands that some world has yet to feel, by the beat in which they were decided, modulo slots:
+  // the first of them, the beat now, and of each the row, and the times between which it acts.
   private int slots = 0;
+  private int firstBeat, beat;
+  private int[] rowOf;
+  private float[] soonest, latest;
 
-  /** Where the command of so many questions ago is kept. */
-  private int[] slotOf;
+  /**
+   * Of each such command: its age, its age a row before, s, and what remains of a velocity's error
+   * after its age.
+   */
+  private float[] ageS, youngerS, agedDecay;
 
-  /** What remains of a velocity's error after so many periods. */
-  private float[] agedDecay;
-
-  private final FloatVector period, interval, minInterval, handover, lag, dead;
-  private final FloatVector decayRate, growthRate, periodDecay, periodGain;
-
-  private int[] keys;
-  private final int[] draws = new int[WORLDS];
-  private final Vehicles[] vehicles = new Vehicles[2];
-  private final float[] pictureAt = new float[WORLDS], nextPictureAt = new float[WORLDS];
-  private final float[] ahead = new float[WORLDS], right = new float[WORLDS];
-
-  /** The pursuer's heading that the evader's controller knows, and its direction. */
-
-  private final float[] aside = new float[WORLDS];
-  private final float[] decay = new float[WORLDS];
-  private final int lastSteps;
-
-  // Per world: parameters of the policies, and what the episode came to.
-  private final float[] turnRate = new float[WORLDS], radius = new float[WORLDS];
-  private FloatVector captureRadius = ZERO;
+  private float captureRadiusM;
   private final float[] least = new float[WORLDS],
       sum = new float[WORLDS],
       lastSum = new float[WORLDS];
@@ -107,40 +82,47 @@ public final class StreamDuelKernel {
   /** All worlds' vehicles of one role, and their controllers. */
   private final class Vehicles {
     final int role;
+    final LanePolicy policy;
     final float startX, startY, startHeading;
     final FloatVector speed;
+
+    // At the row's question.
     final float[] x = new float[WORLDS],
         y = new float[WORLDS],
         vx = new float[WORLDS],
-        vy = new float[WORLDS];
-    final float[] wantedX = new float[WORLDS], wantedY = new float[WORLDS];
-    final float[] seenX = new float[WORLDS], seenY = new float[WORLDS];
+        vy = new float[WORLDS],
+        wantedX = new float[WORLDS],
+        wantedY = new float[WORLDS];
 
-    // Commands under way, by question modulo slots: when each begins to act, counted from its own
-    // question, e to that
-    // time over the lag, and by how much it changes the velocity asked for.
+    final float[] seenX = new float[WORLDS],
+        seenY = new float[WORLDS],
+        seenVx = new float[WORLDS],
+        seenVy = new float[WORLDS];
+
+    // By slot: when the command acts, from its own row's question, e to that time over the lag, and
+    // by how much it changes the velocity asked for.
     float[] at, growth, changeX, changeY;
 
-    /** The velocity asked for last. */
-    final float[] askedX = new float[WORLDS], askedY = new float[WORLDS];
+    final Directions sent = new Directions(WORLDS), decided = new Directions(WORLDS);
 
-    final float[] askedAt = new float[WORLDS], answeredAt = new float[WORLDS];
-    final float[] nextAskedAt = new float[WORLDS], nextAnsweredAt = new float[WORLDS];
-    final float[] heading = new float[WORLDS], cos = new float[WORLDS], sin = new float[WORLDS];
-    final float[] newHeading = new float[WORLDS],
-        newCos = new float[WORLDS],
-        newSin = new float[WORLDS];
-    final float[] decideAt = new float[WORLDS], decidedAt = new float[WORLDS];
-    final float[] turnAt = new float[WORLDS],
-        freeAt = new float[WORLDS],
-        commandAt = new float[WORLDS];
-    final float[] delay = new float[WORLDS], backDelay = new float[WORLDS];
+    // From the row's question: when it may decide and when it may be commanded again, when the
+    // last command reaches it, when it decides.
+    final int[] turnAt = new int[WORLDS],
+        freeAt = new int[WORLDS],
+        reachesAt = new int[WORLDS],
+        decideAt = new int[WORLDS];
+
+    /** 1 where it decides, 1 where it ever has, and how long before the row's question. */
+    final int[] decides = new int[WORLDS], hasDecided = new int[WORLDS];
+
+    final float[] decidedBefore = new float[WORLDS];
 
     /** The sum of the decided headings' changes. */
     final float[] effort = new float[WORLDS];
 
-    Vehicles(int role, Duelist duelist, float gain) {
+    Vehicles(int role, Duelist duelist, double gain, LanePolicy policy) {
       this.role = role;
+      this.policy = policy;
       startX = (float) duelist.startX();
       startY = (float) duelist.startY();
       startHeading = (float) duelist.startHeadingRad();
@@ -154,19 +136,29 @@ public final class StreamDuelKernel {
       changeY = new float[slots * WORLDS];
     }
 
+    /** What was seen before the beat. */
+    private final float[][] kept = new float[4][WORLDS];
+
+    void keepSeen() {
+      float[][] seen = {seenX, seenY, seenVx, seenVy};
+      for (int i = 0; i < seen.length; i++) System.arraycopy(seen[i], 0, kept[i], 0, WORLDS);
+    }
+
+    void restoreSeen(int[] isFresh) {
+      float[][] seen = {seenX, seenY, seenVx, seenVy};
+      for (int world = 0; world < WORLDS; world++)
+        if (isFresh[world] == 0)
+          for (int i = 0; i < seen.length; i++) seen[i][world] = kept[i][world];
+    }
+
     void start() {
       Arrays.fill(x, startX);
       Arrays.fill(y, startY);
-      for (float[] zero :
-          new float[][] {
-            vx, vy, wantedX, wantedY, askedX, askedY, growth, changeX, changeY, effort
-          })
+      for (float[] zero : new float[][] {vx, vy, wantedX, wantedY, decidedBefore, effort})
         Arrays.fill(zero, 0f);
-      Arrays.fill(at, PAST);
-      Arrays.fill(heading, startHeading);
-      LaneMath.sinCos(heading, sin, cos, WORLDS);
-      for (float[] past : new float[][] {askedAt, answeredAt, decidedAt, turnAt, freeAt, commandAt})
-        Arrays.fill(past, PAST);
+      for (int[] zero : new int[][] {turnAt, freeAt, reachesAt, hasDecided}) Arrays.fill(zero, 0);
+      sent.fill(0, WORLDS, startHeading);
+      policy.start(startHeading);
     }
   }
 
@@ -185,343 +177,435 @@ public final class StreamDuelKernel {
 
   /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
   public static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
+    double longest = longestS(timing, link.maxS(), model);
     return model.lagS() > 0
         && !timing.decideThenPace()
+        && !timing.asking().inOrder()
         && timing.asking().spreadS() == 0
+        && timing.patienceS() > 0
         && timing.steering().mostOutstanding() == LoopTiming.MostOutstanding()
-        && longestS(timing, link.maxS(), model) <= MOST_LAGS * model.lagS();
+        && longest <= MOST_LAGS * model.lagS()
+        && longest + timing.steering().minIntervalS() + link.maxS() <= MOST_S
+        && LanePictures.isWhole(timing.periodS())
+        && LanePictures.isWhole(timing.toleranceS())
+        && LanePictures.isWhole(timing.patienceS())
+        && LanePictures.isWhole(timing.asking().timeoutS())
+        && LanePictures.isWhole(timing.steering().minIntervalS())
+        && LanePictures.isWhole(timing.steering().handoverS())
+        && longest <= MOST_ROWS * timing.periodS();
   }
 
   /** The powers of e that a command's response needs stay within what floats can hold. */
-  private static final double MOST_LAGS = 80;
+  private static final double MOST_LAGS = 40;
+
+  /** Times stay within what integers can hold. */
+  private static final double MOST_S = 7;
+
+  private static final double MOST_ROWS = 64;
+
+  /** From a question to a picture that it is the newest of. */
+  private static double pictureS(LoopTiming.Stream timing) {
+    return timing.asking().timeoutS() + timing.patienceS() + timing.periodS();
+  }
 
   /**
-   * From a question to the time when its decision's command acts: a decision comes before the next
-   * picture, at most two delays after the next question; its command one later.
+   * From a question to the time when the command acts that was decided on its picture: a decision
+   * waits for the acknowledgement of the command before at most.
    */
   private static double longestS(LoopTiming.Stream timing, double maxDelayS, Reduced model) {
-    return 3 * maxDelayS + model.deadTimeS() + timing.periodS();
+    return pictureS(timing)
+        + 2 * maxDelayS
+        + timing.steering().handoverS()
+        + maxDelayS
+        + model.deadTimeS();
   }
 
   /**
    * @param duel start, speeds and duration; its policies are not used
    * @param timing period, interval and steering
    * @param model lag above 0
+   * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
+   * @param shortCut whether regular stretches are told by lanes; without, the same is told world by
+   *     world
    */
-  public StreamDuelKernel(Duel duel, LoopTiming.Stream timing, Reduced model) {
+  StreamDuelKernel(
+      Duel duel,
+      LoopTiming.Stream timing,
+      Reduced model,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy,
+      boolean shortCut) {
     if (!(model.lagS() > 0))
       throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
     this.timing = timing;
     this.model = model;
+    pictures = new LanePictures(timing, duel.durationS(), shortCut);
     periodS = (float) timing.periodS();
+    lagS = (float) model.lagS();
     period = constant(periodS);
-    interval = constant((float) (timing.periodS() - timing.toleranceS()));
-    minInterval = constant((float) timing.steering().minIntervalS());
-    handover = constant((float) timing.steering().handoverS());
+    periodGrains = grains(timing.periodS());
+    interval = grains(timing.periodS() - timing.toleranceS());
+    minInterval = grains(timing.steering().minIntervalS());
+    handover = grains(timing.steering().handoverS());
+    dead = grains(model.deadTimeS());
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     lastSteps = (int) Math.round(10 / timing.periodS());
-    lag = constant((float) model.lagS());
+    lag = constant(lagS);
     decayRate = constant((float) (-1 / model.lagS()));
     growthRate = constant((float) (1 / model.lagS()));
     periodDecay = constant((float) Math.exp(-timing.periodS() / model.lagS()));
     periodGain =
         constant((float) (model.lagS() * (1 - Math.exp(-timing.periodS() / model.lagS()))));
-    dead = constant((float) model.deadTimeS());
-    vehicles[EVADER] = new Vehicles(EVADER, duel.evader(), (float) model.gain());
-    vehicles[PURSUER] = new Vehicles(PURSUER, duel.pursuer(), (float) model.gain());
+    evader = new Vehicles(EVADER, duel.evader(), model.gain(), evaderPolicy);
+    pursuer = new Vehicles(PURSUER, duel.pursuer(), model.gain(), pursuerPolicy);
+    both = new Vehicles[] {evader, pursuer};
+  }
+
+  private static IntVector grains(double seconds) {
+    return IntVector.broadcast(INTS, LanePictures.grains(seconds));
   }
 
   /**
-   * Flies one episode in each of {@link #WORLDS} worlds.
+   * Flies one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
    *
    * @param worldKeys {@link WorldRandom#key} of each world
    * @param links of each world; {@link #canFly} must hold
-   * @param turnRates of each pursuer, rad/s ({@code PaperPursuer})
-   * @param radii that each evader assumes, m ({@code PaperEvader})
-   * @param captureRadiusM a distance of at most this is a capture
+   * @param captureRadius a distance of at most this is a capture, m
    */
-  public void fly(
-      int[] worldKeys,
-      DelayTable[] links,
-      float[] turnRates,
-      float[] radii,
-      float captureRadiusM) {
-    keys = worldKeys;
-    captureRadius = constant(captureRadiusM);
-    takeOver(links);
-    System.arraycopy(turnRates, 0, turnRate, 0, WORLDS);
-    System.arraycopy(radii, 0, radius, 0, WORLDS);
-    for (Vehicles each : vehicles) each.start();
+  void fly(int[] worldKeys, DelayTable[] links, float captureRadius) {
+    captureRadiusM = captureRadius;
+    pictures.start(worldKeys, links);
+    makeSlots(pictures.maxS);
+    evader.start();
+    pursuer.start();
+    firstBeat = 0;
+    beat = 0;
     Arrays.fill(least, FUTURE);
     Arrays.fill(sum, 0f);
     Arrays.fill(lastSum, 0f);
     Arrays.fill(captureS, Float.POSITIVE_INFINITY);
-    ask(0, ZERO);
-    nextQuestion(0);
-    for (int step = 0; step < steps; step++) step(step);
+    for (int step = 0; step < steps; step++) {
+      if (step > 0) {
+        advance(step);
+        score(step);
+      }
+      pictures.startRow(step);
+      do {
+        see(evader, step);
+        see(pursuer, step);
+        decide(step);
+      } while (pictures.nextBeat());
+    }
+    advance(steps);
+    score(steps);
     for (int i = 0; i < WORLDS; i++) {
       minDistance[i] = least[i];
       meanDistance[i] = sum[i] / steps;
       meanLast10s[i] = lastSum[i] / Math.min(lastSteps, steps);
-      pursuerEffortRad[i] = vehicles[PURSUER].effort[i];
-      evaderEffortRad[i] = vehicles[EVADER].effort[i];
+      pursuerEffortRad[i] = pursuer.effort[i];
+      evaderEffortRad[i] = evader.effort[i];
     }
   }
 
-  /** Makes room for these links' delays and for the commands that they keep under way. */
-  private void takeOver(DelayTable[] links) {
-    int count = 0;
-    float maxS = 0;
-    for (int i = 0; i < WORLDS; i++) {
-      int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
-      if (table == count) {
-        if (count >= tableCount || tables[count] != links[i]) {
-          int end = (count + 1) * DelayTable.Size();
-          if (delaysS.length < end) delaysS = Arrays.copyOf(delaysS, 2 * end);
-          System.arraycopy(
-              links[i].delaysS(), 0, delaysS, count * DelayTable.Size(), DelayTable.Size());
-          tables[count] = links[i];
-        }
-        maxS = Math.max(maxS, links[i].maxS());
-        count++;
-      }
-      tableOf[i] = table * DelayTable.Size();
-    }
-    tableCount = Math.max(tableCount, count);
-    double longest = longestS(timing, maxS, model);
-    if (longest > MOST_LAGS * model.lagS())
-      throw new IllegalArgumentException(
-          "the kernel needs a lag of at least "
-              + longest / MOST_LAGS
-              + " s over this link, got "
-              + model.lagS());
-    int needed = (int) Math.ceil(longest / timing.periodS()) + 1;
+  /** Makes room for the commands under way, and for those that early readings are without. */
+  private void makeSlots(double maxDelayS) {
+    double rows = (longestS(timing, maxDelayS, model) + pictureS(timing)) / timing.periodS();
+    int needed = 2 * (int) Math.ceil(rows) + 16;
     if (needed > slots) {
       slots = needed;
-      slotOf = new int[slots];
-      agedDecay = new float[slots + 1];
-      for (int age = 0; age <= slots; age++)
-        agedDecay[age] = (float) Math.exp(-age * timing.periodS() / model.lagS());
-      for (Vehicles each : vehicles) each.makeSlots();
+      rowOf = new int[slots];
+      soonest = new float[slots];
+      latest = new float[slots];
+      ageS = new float[slots];
+      youngerS = new float[slots];
+      agedDecay = new float[slots];
+      evader.makeSlots();
+      pursuer.makeSlots();
     }
   }
 
-  private void step(int step) {
-    Vehicles evader = vehicles[EVADER], pursuer = vehicles[PURSUER];
-    ask(step + 1, period);
-    for (int age = 0; age < slots; age++) slotOf[age] = (step + slots - age) % slots * WORLDS;
-    for (Vehicles each : vehicles) {
-      look(each);
-      due(each);
-      draw(step, Rollout.CommandPlace() + 2 * each.role, each.delay);
-      draw(step, Rollout.CommandPlace() + 2 * each.role + 1, each.backDelay);
-    }
-    relate();
-    turn(pursuer);
-    LaneMath.sinCos(pursuer.newHeading, pursuer.newSin, pursuer.newCos, WORLDS);
-    evade(evader, pursuer);
-    LaneMath.sinCos(evader.newHeading, evader.newSin, evader.newCos, WORLDS);
-    for (Vehicles each : vehicles) {
-      command(each, slotOf[0], constant((float) ((steps - step) * timing.periodS())));
-      LaneMath.exp(each.growth, slotOf[0], WORLDS);
-      fly(each);
-    }
-    score(step);
-    nextQuestion(step + 1);
+  /** Both decide, where it is their turn. */
+  private void decide(int step) {
+    if (beat - firstBeat == slots)
+      throw new IllegalStateException("more than " + slots + " commands are under way");
+    int slot = beat % slots;
+    rowOf[slot] = step;
+    ageS[slot] = 0;
+    agedDecay[slot] = 1;
+    soonest[slot] = FUTURE;
+    latest[slot] = -FUTURE;
+    due(pursuer);
+    relate(pursuer, evader);
+    pursuer.policy.decide(sight, pursuer.sent, 0, evader.sent, 0, pursuer.decided, 0);
+    due(evader);
+    relate(evader, pursuer);
+    evader.policy.decide(sight, evader.sent, 0, pursuer.sent, 0, evader.decided, 0);
+    command(pursuer, step, slot);
+    command(evader, step, slot);
+    beat++;
   }
 
-  private void draw(int step, int place, float[] into) {
-    LaneRandom.upperBits(keys, step * Rollout.Places() + place, DelayTable.Drop(), draws, WORLDS);
-    for (int i = 0; i < WORLDS; i++) into[i] = delaysS[tableOf[i] + draws[i]];
-  }
-
-  /**
-   * When question {@code step}, sent at {@code sentAt}, reaches the vehicles, and when all have
-   * answered.
-   */
-  private void ask(int step, FloatVector sentAt) {
-    for (Vehicles each : vehicles) {
-      draw(step, 2 * each.role, each.delay);
-      draw(step, 2 * each.role + 1, each.backDelay);
-      for (int i = 0; i < WORLDS; i += LANES) {
-        FloatVector asked =
-            FloatVector.fromArray(SPECIES, each.askedAt, i)
-                .max(FloatVector.fromArray(SPECIES, each.delay, i).add(sentAt));
-        asked.intoArray(each.nextAskedAt, i);
-        FloatVector.fromArray(SPECIES, each.answeredAt, i)
-            .max(asked.add(FloatVector.fromArray(SPECIES, each.backDelay, i)))
-            .intoArray(each.nextAnsweredAt, i);
-      }
-    }
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, vehicles[EVADER].nextAnsweredAt, i)
-          .max(FloatVector.fromArray(SPECIES, vehicles[PURSUER].nextAnsweredAt, i))
-          .intoArray(nextPictureAt, i);
-  }
-
-  /** Counts all times from the next question. */
-  private void nextQuestion(int step) {
-    FloatVector back = step == 0 ? ZERO : period;
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, nextPictureAt, i).sub(back).intoArray(pictureAt, i);
-    for (Vehicles each : vehicles) {
-      for (int i = 0; i < WORLDS; i += LANES) {
-        FloatVector.fromArray(SPECIES, each.nextAskedAt, i).sub(back).intoArray(each.askedAt, i);
-        FloatVector.fromArray(SPECIES, each.nextAnsweredAt, i)
-            .sub(back)
-            .intoArray(each.answeredAt, i);
-        FloatVector.fromArray(SPECIES, each.decidedAt, i).sub(back).intoArray(each.decidedAt, i);
-        FloatVector.fromArray(SPECIES, each.turnAt, i).sub(back).intoArray(each.turnAt, i);
-        FloatVector.fromArray(SPECIES, each.freeAt, i).sub(back).intoArray(each.freeAt, i);
-        FloatVector.fromArray(SPECIES, each.commandAt, i).sub(back).intoArray(each.commandAt, i);
-      }
-    }
-  }
-
-  /**
-   * When each controller decides, unless a newer picture comes before: then its decision is put off
-   * for ever.
-   */
+  /** When each controller decides, unless a newer picture comes before, and how long it waited. */
   private void due(Vehicles each) {
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector at =
-          FloatVector.fromArray(SPECIES, pictureAt, i)
-              .max(FloatVector.fromArray(SPECIES, each.turnAt, i))
-              .max(FloatVector.fromArray(SPECIES, each.freeAt, i));
-      at.blend(NEVER, at.compare(GT, FloatVector.fromArray(SPECIES, nextPictureAt, i)))
-          .intoArray(each.decideAt, i);
+      IntVector at =
+          IntVector.fromArray(INTS, pictures.joinedAt, i)
+              .max(IntVector.fromArray(INTS, each.turnAt, i))
+              .max(IntVector.fromArray(INTS, each.freeAt, i));
+      VectorMask<Integer> decides = at.compare(LT, IntVector.fromArray(INTS, pictures.nextAt, i));
+      NO.blend(YES, decides).intoArray(each.decides, i);
+      at.intoArray(each.decideAt, i);
+      FloatVector time = (FloatVector) at.convertShape(VectorOperators.I2F, SPECIES, 0);
+      VectorMask<Float> first =
+          IntVector.fromArray(INTS, each.hasDecided, i).compare(EQ, NO).cast(SPECIES);
+      time.fma(GRAIN_S, FloatVector.fromArray(SPECIES, each.decidedBefore, i))
+          .blend(ZERO, first)
+          .intoArray(sight.elapsed, i);
     }
   }
 
-  /** The evader as the answers show it, in a frame at the pursuer. */
-  private void relate() {
-    Vehicles evader = vehicles[EVADER], pursuer = vehicles[PURSUER];
+  /** The opponent as the readings show it. */
+  private void relate(Vehicles own, Vehicles opponent) {
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x =
-          FloatVector.fromArray(SPECIES, evader.seenX, i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenX, i));
-      FloatVector y =
-          FloatVector.fromArray(SPECIES, evader.seenY, i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenY, i));
-      FloatVector c = FloatVector.fromArray(SPECIES, pursuer.cos, i),
-          s = FloatVector.fromArray(SPECIES, pursuer.sin, i);
-      x.fma(c, y.mul(s)).intoArray(ahead, i);
-      y.fma(c, x.mul(s).neg()).intoArray(right, i);
+      FloatVector.fromArray(SPECIES, opponent.seenX, i)
+          .sub(FloatVector.fromArray(SPECIES, own.seenX, i))
+          .intoArray(sight.dx, i);
+      FloatVector.fromArray(SPECIES, opponent.seenY, i)
+          .sub(FloatVector.fromArray(SPECIES, own.seenY, i))
+          .intoArray(sight.dy, i);
     }
+    if (own.policy.needsVelocity())
+      for (int i = 0; i < WORLDS; i += LANES) {
+        FloatVector.fromArray(SPECIES, opponent.seenVx, i)
+            .sub(FloatVector.fromArray(SPECIES, own.seenVx, i))
+            .intoArray(sight.dvx, i);
+        FloatVector.fromArray(SPECIES, opponent.seenVy, i)
+            .sub(FloatVector.fromArray(SPECIES, own.seenVy, i))
+            .intoArray(sight.dvy, i);
+      }
   }
 
-  /** {@code PaperPursuer}. */
-  private void turn(Vehicles pursuer) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
-          y = FloatVector.fromArray(SPECIES, right, i),
-          before = FloatVector.fromArray(SPECIES, pursuer.decidedAt, i);
-      FloatVector elapsed =
-          FloatVector.fromArray(SPECIES, pursuer.decideAt, i)
-              .sub(before)
-              .blend(ZERO, before.compare(LT, LONG_AGO));
-      FloatVector side = ZERO.blend(ONE, x.compare(LT, ZERO));
-      side = side.blend(ONE, y.compare(GT, ZERO)).blend(MINUS_ONE, y.compare(LT, ZERO));
-      FloatVector old = FloatVector.fromArray(SPECIES, pursuer.heading, i);
-      FloatVector turned = elapsed.mul(FloatVector.fromArray(SPECIES, turnRate, i)).fma(side, old);
-      turned
-          .blend(old, FloatVector.fromArray(SPECIES, pursuer.decideAt, i).compare(GT, LATER))
-          .intoArray(pursuer.newHeading, i);
-    }
+  /** Sends what was decided. */
+  private void command(Vehicles each, int step, int slot) {
+    pictures.draw(
+        pictures.place[each.role], Rollout.CommandPlace() + 2 * each.role, delay, backDelay);
+    schedule(each, slot);
+    bound(slot);
+    LaneMath.exp(each.growth, slot * WORLDS, WORLDS);
+    change(each, slot * WORLDS);
+    remember(each, IntVector.broadcast(INTS, grainsToEnd(step)));
+    each.policy.commit(each.decides);
   }
 
-  /** {@code PaperEvader}. */
-  private void evade(Vehicles evader, Vehicles pursuer) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
-          y = FloatVector.fromArray(SPECIES, right, i),
-          r = FloatVector.fromArray(SPECIES, radius, i);
-      FloatVector xSquare = x.mul(x), rSquare = r.mul(r);
-      FloatVector toLeft = y.sub(r), toRight = y.add(r);
-      VectorMask<Float> inRight = toLeft.fma(toLeft, xSquare).compare(LT, rSquare);
-      VectorMask<Float> inLeft = toRight.fma(toRight, xSquare).compare(LT, rSquare);
-      FloatVector distance = y.fma(y, xSquare).mul(QUARTER);
-      VectorMask<Float> breakAway = distance.compare(LT, rSquare).andNot(inLeft.or(inRight));
-      y.blend(toLeft, inLeft).blend(toRight, inRight).intoArray(right, i);
-      ZERO.blend(HALF_PI, breakAway)
-          .add(FloatVector.fromArray(SPECIES, pursuer.heading, i))
-          .intoArray(aside, i);
-    }
-    LaneMath.atan2(right, ahead, evader.newHeading, WORLDS);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector away =
-          FloatVector.fromArray(SPECIES, evader.newHeading, i)
-              .add(FloatVector.fromArray(SPECIES, aside, i));
-      VectorMask<Float> skip =
-          FloatVector.fromArray(SPECIES, evader.decideAt, i).compare(GT, LATER);
-      away.blend(FloatVector.fromArray(SPECIES, evader.heading, i), skip)
-          .intoArray(evader.newHeading, i);
-    }
+  /** From a row's question to the end of the episode, as far as integers count. */
+  private int grainsToEnd(int step) {
+    double seconds = (steps - step) * timing.periodS();
+    return seconds < MOST_S ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
   }
 
-  /** Sends what was decided, and takes it over as known; the episode ends at {@code end}. */
-  private void command(Vehicles each, int slot, FloatVector end) {
+  /** When the commands act, and when the vehicle may be commanded again. */
+  private void schedule(Vehicles each, int slot) {
+    int from = slot * WORLDS;
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector at = FloatVector.fromArray(SPECIES, each.decideAt, i),
-          before = FloatVector.fromArray(SPECIES, each.commandAt, i);
-      VectorMask<Float> skip = at.compare(GT, LATER);
-      FloatVector reaches = before.max(at.add(FloatVector.fromArray(SPECIES, each.delay, i)));
-      // Even at no delay a command acts after its question, not with it: 0 is the past.
-      FloatVector acts = reaches.add(dead).max(SOON);
-      acts.blend(NONE, skip).intoArray(each.at, slot + i);
-      ZERO.blend(acts, skip.not()).mul(growthRate).intoArray(each.growth, slot + i);
-      FloatVector askX = FloatVector.fromArray(SPECIES, each.newCos, i).mul(each.speed);
-      FloatVector askY = FloatVector.fromArray(SPECIES, each.newSin, i).mul(each.speed);
-      FloatVector askedX = FloatVector.fromArray(SPECIES, each.askedX, i);
-      FloatVector askedY = FloatVector.fromArray(SPECIES, each.askedY, i);
-      askX.sub(askedX).blend(ZERO, skip).intoArray(each.changeX, slot + i);
-      askY.sub(askedY).blend(ZERO, skip).intoArray(each.changeY, slot + i);
-      askX.blend(askedX, skip).intoArray(each.askedX, i);
-      askY.blend(askedY, skip).intoArray(each.askedY, i);
+      VectorMask<Integer> decides = IntVector.fromArray(INTS, each.decides, i).compare(NE, NO);
+      IntVector at = IntVector.fromArray(INTS, each.decideAt, i);
+      IntVector before = IntVector.fromArray(INTS, each.reachesAt, i);
+      // Commands to one vehicle keep their order.
+      IntVector reaches = at.add(IntVector.fromArray(INTS, delay, i)).max(before);
+      before.blend(reaches, decides).intoArray(each.reachesAt, i);
+      IntVector actsAt = reaches.add(dead);
+      NEVER.blend(actsAt, decides).intoArray(actsFrom, i);
+      PAST.blend(actsAt, decides).intoArray(actsUpTo, i);
+      FloatVector acts =
+          ((FloatVector) actsAt.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(GRAIN_S);
+      VectorMask<Float> acting = decides.cast(SPECIES);
+      acts = ZERO.blend(acts, acting);
+      acts.intoArray(each.at, from + i);
+      acts.mul(growthRate).intoArray(each.growth, from + i);
       // The command before is acknowledged when this one has replaced it; the very first replaces
       // none.
-      FloatVector free = FloatVector.fromArray(SPECIES, each.freeAt, i);
-      FloatVector soonest = at.add(minInterval);
-      reaches
-          .add(FloatVector.fromArray(SPECIES, each.backDelay, i))
-          .add(handover)
-          .max(free)
-          .max(soonest)
-          .blend(soonest, before.compare(LT, LONG_AGO))
-          .blend(free, skip)
+      IntVector free = at.add(minInterval);
+      VectorMask<Integer> isFirst = IntVector.fromArray(INTS, each.hasDecided, i).compare(EQ, NO);
+      IntVector acknowledged =
+          reaches.add(IntVector.fromArray(INTS, backDelay, i)).add(handover).max(free);
+      IntVector.fromArray(INTS, each.freeAt, i)
+          .blend(acknowledged.blend(free, isFirst), decides)
           .intoArray(each.freeAt, i);
-      reaches.blend(before, skip).intoArray(each.commandAt, i);
-      at.add(interval)
-          .blend(FloatVector.fromArray(SPECIES, each.turnAt, i), skip)
+      IntVector.fromArray(INTS, each.turnAt, i)
+          .blend(at.add(interval), decides)
           .intoArray(each.turnAt, i);
-      at.blend(FloatVector.fromArray(SPECIES, each.decidedAt, i), skip)
-          .intoArray(each.decidedAt, i);
-      FloatVector newHeading = FloatVector.fromArray(SPECIES, each.newHeading, i);
-      FloatVector change = newHeading.sub(FloatVector.fromArray(SPECIES, each.heading, i));
-      FloatVector turns = change.fma(PER_TURN, ROUND).sub(ROUND);
-      ZERO.blend(turns.fma(MINUS_TURN, change).abs(), at.compare(LT, end))
-          .add(FloatVector.fromArray(SPECIES, each.effort, i))
+    }
+  }
+
+  /** Between which times the commands of a slot act. */
+  private void bound(int slot) {
+    int first = LanePictures.NONE, last = Integer.MIN_VALUE;
+    for (int i = 0; i < WORLDS; i++) first = Math.min(first, actsFrom[i]);
+    for (int i = 0; i < WORLDS; i++) last = Math.max(last, actsUpTo[i]);
+    // A little wider than floats are exact.
+    soonest[slot] = Math.min(soonest[slot], first * (DelayTable.GrainNs() * 1e-9f) * 0.999f);
+    latest[slot] = Math.max(latest[slot], last * (DelayTable.GrainNs() * 1e-9f) * 1.001f);
+  }
+
+  /** By how much the commands change the velocities asked for. */
+  private void change(Vehicles each, int from) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Float> yes =
+          IntVector.fromArray(INTS, each.decides, i).compare(NE, NO).cast(SPECIES);
+      FloatVector cos = FloatVector.fromArray(SPECIES, each.sent.cos, i),
+          sin = FloatVector.fromArray(SPECIES, each.sent.sin, i);
+      FloatVector newCos = cos.blend(FloatVector.fromArray(SPECIES, each.decided.cos, i), yes),
+          newSin = sin.blend(FloatVector.fromArray(SPECIES, each.decided.sin, i), yes);
+      // Before the first command the vehicle rests, whatever its heading.
+      VectorMask<Float> rests =
+          IntVector.fromArray(INTS, each.hasDecided, i).compare(EQ, NO).cast(SPECIES);
+      FloatVector oldX = cos.blend(ZERO, rests.and(yes)), oldY = sin.blend(ZERO, rests.and(yes));
+      newCos.sub(oldX).mul(each.speed).blend(ZERO, yes.not()).intoArray(each.changeX, from + i);
+      newSin.sub(oldY).mul(each.speed).blend(ZERO, yes.not()).intoArray(each.changeY, from + i);
+      newCos.intoArray(each.sent.cos, i);
+      newSin.intoArray(each.sent.sin, i);
+    }
+  }
+
+  /** Keeps what a decision leaves behind; the episode ends at {@code end}. */
+  private void remember(Vehicles each, IntVector end) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector decides = IntVector.fromArray(INTS, each.decides, i),
+          at = IntVector.fromArray(INTS, each.decideAt, i);
+      VectorMask<Float> yes = decides.compare(NE, NO).cast(SPECIES);
+      FloatVector effort = FloatVector.fromArray(SPECIES, each.effort, i);
+      effort
+          .add(FloatVector.fromArray(SPECIES, each.policy.turned, i))
+          .blend(effort, yes.not())
+          .blend(effort, at.compare(LT, end).cast(SPECIES).not())
           .intoArray(each.effort, i);
-      newHeading.intoArray(each.heading, i);
-      FloatVector.fromArray(SPECIES, each.newCos, i).intoArray(each.cos, i);
-      FloatVector.fromArray(SPECIES, each.newSin, i).intoArray(each.sin, i);
+      FloatVector time =
+          ((FloatVector) at.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(GRAIN_S).neg();
+      FloatVector.fromArray(SPECIES, each.decidedBefore, i)
+          .blend(time, yes)
+          .intoArray(each.decidedBefore, i);
+      decides.or(IntVector.fromArray(INTS, each.hasDecided, i)).intoArray(each.hasDecided, i);
     }
   }
 
   // The response to commanded velocities is linear: position and velocity are those without the
-  // commands under way,
-  // plus each such command's change times its step response, s(t) = t − lag·(1 − r(t)) and 1 −
-  // r(t), where
-  // r(t) = exp(−t / lag). With r(end − at) = exp(−end / lag) · growth(at) one exponential serves
-  // all commands.
+  // commands under way, plus each such command's change times its step response, s(t) = t − lag·(1 −
+  // r(t)) and 1 − r(t), where r(t) = exp(−t / lag), from the time on at which it acts. With
+  // r(end − at) = exp(−end / lag) · growth(at) one exponential serves all commands. What a world
+  // computes depends on its own commands alone, to the bit: those of others only decide whether
+  // zeros are added.
 
-  /** Where the vehicles are when the questions reach them. */
-  private void look(Vehicles each) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, each.askedAt, i).mul(decayRate).intoArray(decay, i);
-    LaneMath.exp(decay, 0, WORLDS);
+  /** Flies on to a row's question. */
+  private void advance(int step) {
+    for (int number = firstBeat; number < beat; number++) {
+      int slot = number % slots;
+      double age = (step - rowOf[slot]) * timing.periodS();
+      youngerS[slot] = rowOf[slot] == step - 1 ? -FUTURE : ageS[slot];
+      ageS[slot] = (float) age;
+      agedDecay[slot] = (float) Math.exp(-age / model.lagS());
+    }
+    for (Vehicles each : both) {
+      pass(each);
+      glide(each);
+      for (int number = firstBeat; number < beat; number++)
+        if (soonest[number % slots] <= ageS[number % slots]) feel(each, number % slots);
+    }
+    while (firstBeat < beat && latest[firstBeat % slots] <= ageS[firstBeat % slots]) firstBeat++;
+  }
+
+  private void pass(Vehicles each) {
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector end = FloatVector.fromArray(SPECIES, each.askedAt, i);
+      FloatVector.fromArray(SPECIES, each.decidedBefore, i)
+          .add(period)
+          .intoArray(each.decidedBefore, i);
+      IntVector.fromArray(INTS, each.turnAt, i).sub(periodGrains).max(PAST).intoArray(each.turnAt, i);
+      IntVector.fromArray(INTS, each.freeAt, i).sub(periodGrains).max(PAST).intoArray(each.freeAt, i);
+      IntVector.fromArray(INTS, each.reachesAt, i)
+          .sub(periodGrains)
+          .max(PAST)
+          .intoArray(each.reachesAt, i);
+    }
+  }
+
+  /** Flies one period, without the commands that begin to act in it. */
+  private void glide(Vehicles each) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector wantedX = FloatVector.fromArray(SPECIES, each.wantedX, i);
+      FloatVector wantedY = FloatVector.fromArray(SPECIES, each.wantedY, i);
+      FloatVector offX = FloatVector.fromArray(SPECIES, each.vx, i).sub(wantedX);
+      FloatVector offY = FloatVector.fromArray(SPECIES, each.vy, i).sub(wantedY);
+      offX.fma(periodGain, wantedX.fma(period, FloatVector.fromArray(SPECIES, each.x, i)))
+          .intoArray(each.x, i);
+      offY.fma(periodGain, wantedY.fma(period, FloatVector.fromArray(SPECIES, each.y, i)))
+          .intoArray(each.y, i);
+      offX.fma(periodDecay, wantedX).intoArray(each.vx, i);
+      offY.fma(periodDecay, wantedY).intoArray(each.vy, i);
+    }
+  }
+
+  /** Adds what a command changes where it began to act in the last period. */
+  private void feel(Vehicles each, int slot) {
+    FloatVector age = constant(ageS[slot]),
+        younger = constant(youngerS[slot]),
+        aged = constant(agedDecay[slot]);
+    int from = slot * WORLDS;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector at = FloatVector.fromArray(SPECIES, each.at, from + i);
+      VectorMask<Float> begins = at.compare(LE, age).and(at.compare(GT, younger));
+      FloatVector caughtUp =
+          ONE.sub(FloatVector.fromArray(SPECIES, each.growth, from + i).mul(aged));
+      FloatVector response = age.sub(at).sub(caughtUp.mul(lag));
+      FloatVector changeX =
+              ZERO.blend(FloatVector.fromArray(SPECIES, each.changeX, from + i), begins),
+          changeY = ZERO.blend(FloatVector.fromArray(SPECIES, each.changeY, from + i), begins);
+      changeX.fma(response, FloatVector.fromArray(SPECIES, each.x, i)).intoArray(each.x, i);
+      changeY.fma(response, FloatVector.fromArray(SPECIES, each.y, i)).intoArray(each.y, i);
+      changeX.fma(caughtUp, FloatVector.fromArray(SPECIES, each.vx, i)).intoArray(each.vx, i);
+      changeY.fma(caughtUp, FloatVector.fromArray(SPECIES, each.vy, i)).intoArray(each.vy, i);
+      changeX.add(FloatVector.fromArray(SPECIES, each.wantedX, i)).intoArray(each.wantedX, i);
+      changeY.add(FloatVector.fromArray(SPECIES, each.wantedY, i)).intoArray(each.wantedY, i);
+    }
+  }
+
+  /** Where the beat's pictures show the vehicles. */
+  private void see(Vehicles each, int step) {
+    boolean withVelocity = evader.policy.needsVelocity() || pursuer.policy.needsVelocity();
+    if (pictures.hasOld) each.keepSeen();
+    look(each);
+    if (withVelocity) lookAtVelocity(each);
+    if (pictures.hasEarly) lookBack(each, step, withVelocity);
+    if (pictures.hasOld) each.restoreSeen(pictures.isFresh[each.role]);
+  }
+
+  /** Where the vehicles are when the beat's questions reach them. */
+  private void look(Vehicles each) {
+    time(pictures.sampledAt[each.role]);
+    LaneMath.exp(decay, 0, WORLDS);
+    place(each);
+  }
+
+  private void place(Vehicles each) {
+    extrapolate(each);
+    for (int number = firstBeat; number < beat; number++)
+      if (isInSight(number % slots)) look(each, number % slots);
+  }
+
+  private void time(int[] sampledAt) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector end =
+          ((FloatVector)
+                  IntVector.fromArray(INTS, sampledAt, i)
+                      .convertShape(VectorOperators.I2F, SPECIES, 0))
+              .mul(GRAIN_S);
+      end.intoArray(lookAt, i);
+      end.mul(decayRate).intoArray(decay, i);
+    }
+  }
+
+  /** Without the commands that begin to act before. */
+  private void extrapolate(Vehicles each) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector end = FloatVector.fromArray(SPECIES, lookAt, i);
       FloatVector r = FloatVector.fromArray(SPECIES, decay, i);
       FloatVector wantedX = FloatVector.fromArray(SPECIES, each.wantedX, i);
       FloatVector wantedY = FloatVector.fromArray(SPECIES, each.wantedY, i);
@@ -530,68 +614,107 @@ public final class StreamDuelKernel {
       FloatVector offY = FloatVector.fromArray(SPECIES, each.vy, i).sub(wantedY);
       FloatVector x = offX.fma(gain, wantedX.fma(end, FloatVector.fromArray(SPECIES, each.x, i)));
       FloatVector y = offY.fma(gain, wantedY.fma(end, FloatVector.fromArray(SPECIES, each.y, i)));
-      for (int age = 1; age < slots; age++) {
-        int slot = slotOf[age] + i;
-        FloatVector at = FloatVector.fromArray(SPECIES, each.at, slot).sub(age * periodS);
-        VectorMask<Float> acts = at.compare(GT, ZERO).and(at.compare(LT, end));
-        if (acts.anyTrue()) {
-          FloatVector grown = FloatVector.fromArray(SPECIES, each.growth, slot).mul(agedDecay[age]);
-          FloatVector response = r.mul(grown).fma(lag, end.sub(at).sub(lag));
-          x = FloatVector.fromArray(SPECIES, each.changeX, slot).fma(ZERO.blend(response, acts), x);
-          y = FloatVector.fromArray(SPECIES, each.changeY, slot).fma(ZERO.blend(response, acts), y);
-        }
-      }
       x.intoArray(each.seenX, i);
       y.intoArray(each.seenY, i);
     }
   }
 
-  /** Flies one period, through the commands that begin to act in it. */
-  private void fly(Vehicles each) {
+  /** Whether a command may act before a reading of the beat is taken. */
+  private boolean isInSight(int slot) {
+    return soonest[slot] - ageS[slot] < pictures.latestSampleS;
+  }
+
+  /** Adds what a command changes until a vehicle is looked at. */
+  private void look(Vehicles each, int slot) {
+    FloatVector age = constant(ageS[slot]), aged = constant(agedDecay[slot]);
+    int from = slot * WORLDS;
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector wantedX = FloatVector.fromArray(SPECIES, each.wantedX, i);
-      FloatVector wantedY = FloatVector.fromArray(SPECIES, each.wantedY, i);
-      FloatVector offX = FloatVector.fromArray(SPECIES, each.vx, i).sub(wantedX);
-      FloatVector offY = FloatVector.fromArray(SPECIES, each.vy, i).sub(wantedY);
-      FloatVector x =
-          offX.fma(periodGain, wantedX.fma(period, FloatVector.fromArray(SPECIES, each.x, i)));
-      FloatVector y =
-          offY.fma(periodGain, wantedY.fma(period, FloatVector.fromArray(SPECIES, each.y, i)));
-      FloatVector vx = offX.fma(periodDecay, wantedX), vy = offY.fma(periodDecay, wantedY);
-      for (int age = 0; age < slots; age++) {
-        int slot = slotOf[age] + i;
-        FloatVector at = FloatVector.fromArray(SPECIES, each.at, slot).sub(age * periodS);
-        VectorMask<Float> acts = at.compare(GT, ZERO).and(at.compare(LE, period));
-        if (acts.anyTrue()) {
-          FloatVector changeX =
-              ZERO.blend(FloatVector.fromArray(SPECIES, each.changeX, slot), acts);
-          FloatVector changeY =
-              ZERO.blend(FloatVector.fromArray(SPECIES, each.changeY, slot), acts);
-          FloatVector remains =
-              FloatVector.fromArray(SPECIES, each.growth, slot).mul(agedDecay[age + 1]);
-          FloatVector response = remains.fma(lag, period.sub(at).sub(lag)),
-              caughtUp = ONE.sub(remains);
-          x = changeX.fma(response, x);
-          y = changeY.fma(response, y);
-          vx = changeX.fma(caughtUp, vx);
-          vy = changeY.fma(caughtUp, vy);
-          wantedX = wantedX.add(changeX);
-          wantedY = wantedY.add(changeY);
-        }
-      }
-      x.intoArray(each.x, i);
-      y.intoArray(each.y, i);
-      vx.intoArray(each.vx, i);
-      vy.intoArray(each.vy, i);
-      wantedX.intoArray(each.wantedX, i);
-      wantedY.intoArray(each.wantedY, i);
+      FloatVector wait = FloatVector.fromArray(SPECIES, each.at, from + i).sub(age);
+      FloatVector acted = FloatVector.fromArray(SPECIES, lookAt, i).sub(wait);
+      // What acts at the row's question is in the state.
+      VectorMask<Float> acts = wait.compare(GT, ZERO).and(acted.compare(GT, ZERO));
+      FloatVector remains =
+          FloatVector.fromArray(SPECIES, each.growth, from + i)
+              .mul(aged)
+              .mul(FloatVector.fromArray(SPECIES, decay, i));
+      FloatVector response = ZERO.blend(remains.fma(lag, acted.sub(lag)), acts);
+      FloatVector.fromArray(SPECIES, each.changeX, from + i)
+          .fma(response, FloatVector.fromArray(SPECIES, each.seenX, i))
+          .intoArray(each.seenX, i);
+      FloatVector.fromArray(SPECIES, each.changeY, from + i)
+          .fma(response, FloatVector.fromArray(SPECIES, each.seenY, i))
+          .intoArray(each.seenY, i);
     }
   }
 
+  /** How fast the vehicles fly when the beat's questions reach them. */
+  private void lookAtVelocity(Vehicles each) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector r = FloatVector.fromArray(SPECIES, decay, i);
+      FloatVector wantedX = FloatVector.fromArray(SPECIES, each.wantedX, i);
+      FloatVector wantedY = FloatVector.fromArray(SPECIES, each.wantedY, i);
+      FloatVector.fromArray(SPECIES, each.vx, i)
+          .sub(wantedX)
+          .fma(r, wantedX)
+          .intoArray(each.seenVx, i);
+      FloatVector.fromArray(SPECIES, each.vy, i)
+          .sub(wantedY)
+          .fma(r, wantedY)
+          .intoArray(each.seenVy, i);
+    }
+    for (int number = firstBeat; number < beat; number++)
+      if (isInSight(number % slots)) lookAtVelocity(each, number % slots);
+  }
+
+  private void lookAtVelocity(Vehicles each, int slot) {
+    FloatVector age = constant(ageS[slot]), aged = constant(agedDecay[slot]);
+    int from = slot * WORLDS;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector wait = FloatVector.fromArray(SPECIES, each.at, from + i).sub(age);
+      VectorMask<Float> acts =
+          wait.compare(GT, ZERO).and(wait.compare(LT, FloatVector.fromArray(SPECIES, lookAt, i)));
+      FloatVector remains =
+          FloatVector.fromArray(SPECIES, each.growth, from + i)
+              .mul(aged)
+              .mul(FloatVector.fromArray(SPECIES, decay, i));
+      FloatVector caughtUp = ZERO.blend(ONE.sub(remains), acts);
+      FloatVector.fromArray(SPECIES, each.changeX, from + i)
+          .fma(caughtUp, FloatVector.fromArray(SPECIES, each.seenVx, i))
+          .intoArray(each.seenVx, i);
+      FloatVector.fromArray(SPECIES, each.changeY, from + i)
+          .fma(caughtUp, FloatVector.fromArray(SPECIES, each.seenVy, i))
+          .intoArray(each.seenVy, i);
+    }
+  }
+
+  /** Takes commands back that had not acted when an early reading was taken. */
+  private void lookBack(Vehicles each, int step, boolean withVelocity) {
+    int[] isFresh = pictures.isFresh[each.role], sampledAt = pictures.sampledAt[each.role];
+    for (int world = 0; world < WORLDS; world++)
+      if (isFresh[world] != 0 && sampledAt[world] < 0) {
+        float end = sampledAt[world] * (DelayTable.GrainNs() * 1e-9f);
+        for (int number = beat - 1; number >= 0 && number >= beat - slots; number--) {
+          int slot = number % slots, from = slot * WORLDS + world;
+          float wait = each.at[from] - (float) ((step - rowOf[slot]) * timing.periodS());
+          float acted = end - wait;
+          if (wait <= 0 && acted < 0 && rowOf[slot] < step) {
+            float caughtUp = (float) -Math.expm1(-acted / lagS), response = acted - lagS * caughtUp;
+            each.seenX[world] -= each.changeX[from] * response;
+            each.seenY[world] -= each.changeY[from] * response;
+            if (withVelocity) {
+              each.seenVx[world] -= each.changeX[from] * caughtUp;
+              each.seenVy[world] -= each.changeY[from] * caughtUp;
+            }
+          }
+        }
+      }
+  }
+
+  /** The distance at a row's question. */
   private void score(int step) {
-    Vehicles evader = vehicles[EVADER], pursuer = vehicles[PURSUER];
-    boolean last = step >= steps - lastSteps;
-    FloatVector time = constant((float) ((step + 1) * timing.periodS()));
+    boolean last = step > steps - lastSteps;
+    FloatVector time = constant((float) (step * timing.periodS())),
+        captureRadius = constant(captureRadiusM);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
           x =

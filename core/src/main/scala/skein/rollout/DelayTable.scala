@@ -10,12 +10,17 @@ import skein.units.*
   *   ascending, s: half of the round trip's quantile in the middle of each 1024th
   */
 final class DelayTable private (val delaysS: Array[Float]) extends Delays:
-  private val delaysNs = delaysS.map(s => Span.ofSeconds(s).toNanos)
+  private val delaysNs =
+    delaysS.map(s => math.round(Span.ofSeconds(s).toNanos.toDouble / DelayTable.GrainNs) * DelayTable.GrainNs)
 
   /** The delay that these random bits choose, s. */
   def delayS(bits: Int): Float = delaysS(bits >>> DelayTable.Drop)
 
   def maxS: Float = delaysS.last
+
+  /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight seconds. */
+  private[rollout] def copyGrains(into: Array[Int], at: Int): Unit =
+    for i <- delaysNs.indices do into(at + i) = Math.toIntExact(delaysNs(i) / DelayTable.GrainNs)
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
     delaysNs(WorldRandom.bits(
@@ -25,6 +30,9 @@ final class DelayTable private (val delaysS: Array[Float]) extends Delays:
 
 object DelayTable:
   val Size = 1024
+
+  /** Delays are whole multiples of this, so that kernels count time exactly in 32 bits. */
+  private[rollout] val GrainNs: Int = 4
 
   /** Bits of a random number that are not used. */
   val Drop: Int = 32 - Integer.numberOfTrailingZeros(Size)

@@ -40,35 +40,35 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
 /** By [[StreamDuelKernel]], where a world's policies and link allow. */
 private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Reduced, scalar: DuelFlyer)
     extends DuelFlyer:
-  val batch: Int        = StreamDuelKernel.WORLDS
-  private val kernel    = StreamDuelKernel(duel, timing, model)
-  private val keys      = Array.ofDim[Int](batch)
-  private val links     = Array.ofDim[DelayTable](batch)
-  private val turnRates = Array.ofDim[Float](batch)
-  private val radii     = Array.ofDim[Float](batch)
-  private val ofLane    = Array.ofDim[Int](batch)
+  val batch: Int = StreamDuelKernel.WORLDS
 
-  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
-    var filled = 0
-    for world <- numbers do
-      (worlds.link(world), PaperParameters.of(worlds.pursuer(world), worlds.evader(world))) match
-        case (table: DelayTable, Some(PaperParameters(turnRate, 0, radius)))
-            if StreamDuelKernel.canFly(timing, table, model) =>
-          ofLane(filled) = world
-          keys(filled) = worlds.key(world)
-          links(filled) = table
-          turnRates(filled) = turnRate
-          radii(filled) = radius
-          filled += 1
-        case _ => scalar.fly(worlds, Array(world), captureRadiusM, into)
-    if filled > 0 then
+  /** Worlds of one form of pursuer and one of evader. */
+  private final class Group(pursuerPolicy: Policy, evaderPolicy: Policy):
+    private val pursuers = LanePolicy.of(pursuerPolicy)
+    private val evaders  = LanePolicy.of(evaderPolicy)
+    private val kernel   = StreamDuelKernel(duel, timing, model, pursuers, evaders, true)
+    private val keys     = Array.ofDim[Int](batch)
+    private val links    = Array.ofDim[DelayTable](batch)
+    private val ofLane   = Array.ofDim[Int](batch)
+    private var filled   = 0
+
+    def add(worlds: DuelWorlds, world: Int, link: DelayTable): Unit =
+      ofLane(filled) = world
+      keys(filled) = worlds.key(world)
+      links(filled) = link
+      pursuers.take(filled, worlds.pursuer(world))
+      evaders.take(filled, worlds.evader(world))
+      filled += 1
+
+    def fly(worlds: DuelWorlds, captureRadiusM: Float, into: DuelOutcomes): Unit =
+      val last = ofLane(filled - 1)
       // Lanes that no world needs fly the last one again.
       for lane <- filled until batch do
         keys(lane) = keys(filled - 1)
         links(lane) = links(filled - 1)
-        turnRates(lane) = turnRates(filled - 1)
-        radii(lane) = radii(filled - 1)
-      kernel.fly(keys, links, turnRates, radii, captureRadiusM)
+        pursuers.take(lane, worlds.pursuer(last))
+        evaders.take(lane, worlds.evader(last))
+      kernel.fly(keys, links, captureRadiusM)
       for lane <- 0 until filled do
         val world = ofLane(lane)
         into.minDistanceM(world) = kernel.minDistance(lane)
@@ -77,6 +77,23 @@ private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Re
         into.captureS(world) = kernel.captureS(lane)
         into.pursuerEffortRad(world) = kernel.pursuerEffortRad(lane)
         into.evaderEffortRad(world) = kernel.evaderEffortRad(lane)
+      filled = 0
+
+  private val groups = collection.mutable.LinkedHashMap.empty[(AnyRef, AnyRef), Group]
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
+    val filled = collection.mutable.LinkedHashSet.empty[Group]
+    for world <- numbers do
+      val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
+      val forms             = (LanePolicy.formOf(pursuer), LanePolicy.formOf(evader))
+      worlds.link(world) match
+        case table: DelayTable
+            if forms._1 != null && forms._2 != null && StreamDuelKernel.canFly(timing, table, model) =>
+          val group = groups.getOrElseUpdate(forms, Group(pursuer, evader))
+          group.add(worlds, world, table)
+          filled += group
+        case _ => scalar.fly(worlds, Array(world), captureRadiusM, into)
+    for group <- filled do group.fly(worlds, captureRadiusM, into)
 
 /** By [[TimetableKernel]], where a world's policies allow. All worlds of a batch have one key and one link. */
 private final class TimetableFlyer(

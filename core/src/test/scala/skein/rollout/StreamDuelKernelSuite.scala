@@ -19,9 +19,23 @@ class StreamDuelKernelSuite extends munit.FunSuite:
     durationS
   )
 
+  private def kernelOf(
+      turnRates: Array[Float],
+      radii: Array[Float],
+      durationS: Double = 60,
+      model: Reduced = lag,
+      shortCut: Boolean = true
+  ): StreamDuelKernel =
+    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    for world <- 0 until worlds do
+      pursuers.take(world, PaperPursuer(turnRates(world)))
+      evaders.take(world, PaperEvader(radii(world)))
+    val duel = Duel.paper.copy(durationS = durationS)
+    StreamDuelKernel(duel, LoopTiming.stream(0.1), model, pursuers, evaders, shortCut)
+
   private def fly(link: DelayTable, durationS: Double): StreamDuelKernel =
-    val kernel = StreamDuelKernel(Duel.paper.copy(durationS = durationS), LoopTiming.Stream(), lag)
-    kernel.fly(keys, Array.fill(worlds)(link), turnRates, radii, captureRadiusM)
+    val kernel = kernelOf(turnRates, radii, durationS)
+    kernel.fly(keys, Array.fill(worlds)(link), captureRadiusM)
     kernel
 
   for (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
@@ -60,36 +74,42 @@ class StreamDuelKernelSuite extends munit.FunSuite:
       )
       assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
 
-  // There answers overtake one another and questions fail, which the kernel leaves out.
-  for (meanMs, jitterMs, tolerance) <- Seq((150.0, 150.0, 0.005), (200.0, 300.0, 0.02), (300.0, 300.0, 0.02))
-  do
-    test(s"at $meanMs ms and $jitterMs ms of jitter both means of 60 s agree to ${tolerance * 100} %"):
-      val link   = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
-      val model  = Reduced.AirSim
-      val kernel = StreamDuelKernel(Duel.paper, LoopTiming.stream(0.1), model)
-      kernel.fly(keys, Array.fill(worlds)(link), Array.fill(worlds)(1f), Array.fill(worlds)(8f), 0)
-      val rollout = Rollout(Duel.paper, LoopTiming.stream(0.1), link, model)
-      val scalar  = keys.map(rollout.fly(_).meanLast10sM).sum / worlds
-      assertEqualsDouble(kernel.meanLast10s.sum / worlds / scalar, 1.0, tolerance)
+  private val badLinks = Seq((110.0, 60.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
+
+  // There answers overtake one another, questions fail, and vehicles answer in turns.
+  for (meanMs, jitterMs) <- badLinks do
+    val link = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+
+    test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
+      assert(StreamDuelKernel.canFly(LoopTiming.stream(0.1), link, lag), s"up to ${link.maxS} s")
+      val kernel = fly(link, 10)
+      val off    = (0 until worlds).map: world =>
+        val scalar = Rollout(duel(world, 10), LoopTiming.stream(0.1), link, lag).fly(keys(world))
+        (kernel.minDistance(world) - scalar.minDistanceM).abs max
+          (kernel.meanDistance(world) - scalar.meanDistanceM).abs max
+          (kernel.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs max
+          (kernel.evaderEffortRad(world) - scalar.evaderEffortRad).abs
+      assert(off.count(_ < 2e-3) >= 0.95 * worlds, off.sorted.mkString(" "))
+
+    test(s"at $meanMs ms and $jitterMs ms of jitter telling pictures by lanes is but a short cut"):
+      val kernel  = kernelOf(turnRates, radii)
+      val longWay = kernelOf(turnRates, radii, shortCut = false)
+      for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)
+      assertEquals(kernel.meanLast10s.toSeq, longWay.meanLast10s.toSeq)
+      assertEquals(kernel.pursuerEffortRad.toSeq, longWay.pursuerEffortRad.toSeq)
 
   test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
     val before   = kernel.meanLast10s.clone
-    val reversed = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), lag)
-    reversed.fly(
-      keys.reverse,
-      Array.fill(worlds)(DelayTable.vpn),
-      turnRates.reverse,
-      radii.reverse,
-      captureRadiusM
-    )
+    val reversed = kernelOf(turnRates.reverse, radii.reverse)
+    reversed.fly(keys.reverse, Array.fill(worlds)(DelayTable.vpn), captureRadiusM)
     assertEquals(reversed.meanLast10s.reverse.toSeq, before.toSeq)
 
   test("worlds of different links fly side by side as each would alone"):
     val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
-    val kernel = StreamDuelKernel(Duel.paper, LoopTiming.Stream(), lag)
+    val kernel = kernelOf(turnRates, radii)
     for _ <- 1 to 2 do
-      kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), turnRates, radii, captureRadiusM)
+      kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), captureRadiusM)
       val alone = links.map(link => fly(link, 60))
       for world <- 0 until worlds do
         assertEquals(kernel.meanLast10s(world), alone(world / 5 % 3).meanLast10s(world), s"world $world")
