@@ -100,7 +100,10 @@ lazy val app = project
 
 /** Measurements: plain programs that print a witness of what they did. */
 lazy val bench =
-  project.dependsOn(app).settings(Jvm.vectorModule).settings(publish / skip := true, libraryDependencies ++= munit)
+  project
+    .dependsOn(app)
+    .settings(Jvm.vectorModule, underAgent)
+    .settings(publish / skip := true, libraryDependencies ++= munit)
 
 /** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */
 lazy val benchJmh =

@@ -45,9 +45,11 @@ object FlyCommand
       out = options.out.fold(defaultFolder)(Path.of(_))
       landed <- options.clock match
         case "real" =>
-          flyLive(settings, simulator, out).flatMap(landed =>
-            flyTwins(landed, settings, options.twins, out).map(landed ++ _)
-          )
+          for
+            _      <- warmUp(settings)
+            landed <- flyLive(settings, simulator, out)
+            twins  <- flyTwins(landed, settings, options.twins, out)
+          yield landed ++ twins
         case "virtual" if simulator.isEmpty => flyVirtual(settings, out)
         case "virtual"                      =>
           Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
@@ -57,6 +59,15 @@ object FlyCommand
 
   private def defaultFolder: Path =
     Path.of("flights", LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss")))
+
+  private def warmUp(settings: FlySettings): Either[String, Unit] =
+    WarmUp
+      .fly(settings, WarmUp.Flights, Clock.system)
+      .map(flown =>
+        Console.err.println(
+          s"warmed up by $flown virtual flights, so that no decision waits for the compiler"
+        )
+      )
 
   private def flyLive(
       settings: FlySettings,

@@ -19,10 +19,12 @@ import skein.units.*
 /** What does the framework itself add between a reading and the command made from it? The `stream` loop flies twenty
   * vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the process. Measured at the
   * client's sockets: from the last bytes that arrived before a command to the write of the bytes that hold the
-  * command; so decoding, joining, deciding and encoding are in it, for all twenty.
+  * command; so decoding, joining, deciding and encoding are in it, for all twenty, from the first decision on. As in
+  * `./skein fly`, virtual flights warm the way up before.
   *
   * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10), threads
-  * that plan without a pause meanwhile, as the `plan` loop's do (default 0).
+  * that plan without a pause meanwhile, as the `plan` loop's do (default 0), virtual flights
+  * to warm up by (default [[skein.experiment.WarmUp.Flights]]; 0 for a cold start).
   */
 object FrameworkLatency:
 
@@ -40,6 +42,8 @@ object FrameworkLatency:
       pairs,
       false
     )
+    val warmUp = args.lift(3).fold(WarmUp.Flights)(_.toInt)
+    println(WarmUp.fly(settings, warmUp, Clock.system).map(flown => s"warmed up by $flown virtual flights"))
     val plan     = settings.plans.head
     val observed = ObservedTransport(TcpTransport(), Clock.system)
     val rigs     = FlightRigs(observed, Clock.system, settings, simulator = None)
@@ -51,8 +55,7 @@ object FrameworkLatency:
     for planned <- planning do
       val candidates = planned.finish().map(_.candidates).sum
       println(f"planned meanwhile: ${candidates / seconds / 10}%.0f candidates of 2 s per 100 ms")
-    // The first seconds belong to the compiler.
-    val nanos               = observed.latencies.asScala.toVector.drop(pairs * 2 * 10 * 5).sorted
+    val nanos               = observed.latencies.asScala.toVector.sorted
     def quantile(p: Double) = nanos((p * (nanos.size - 1)).toInt) / 1000
     println("vehicles   commands (witness)   p50 us   p99 us  p99.9 us   max us")
     println(
