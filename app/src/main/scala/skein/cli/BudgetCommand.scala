@@ -154,9 +154,7 @@ object BudgetCommand
           threads
         )
         def map(): Either[String, BudgetMap] =
-          val engine =
-            if isFast || batch.engine.startsWith("scalar") then batch.engine
-            else s"scalar: the lanes do not know ${policy.family.name} against ${opponent.family.name}"
+          val engine = batch.engine(pursuer, evader, shareEpisodes = false)
           Console.out.println(
             s"${named.loop} every ${PolicyFile.brief(named.periodMs)} ms, ${resolved.vehicle.description}\n" +
               s"$episodes episodes of ${PolicyFile.brief(named.durationS)} s in each of ${sweep.expected / episodes} cells; engine: $engine"

@@ -126,11 +126,14 @@ final case class SearchSetup(
 
   /** Whether this family's policies fly by lanes. */
   def isFast(batch: DuelBatch): Boolean =
-    def pair(own: Policy) = if role == Role.Pursuer then (own, opponent.policy) else (opponent.policy, own)
-    val (pursuer, evader) = pair(family.defaultPolicy)
+    val (pursuer, evader) = pair
     batch.fliesByLanes(pursuer, evader, shareEpisodes = true)
 
   /** A line that says what flies the candidates. */
   def engine(batch: DuelBatch): String =
-    if isFast(batch) || batch.engine.startsWith("scalar") then batch.engine
-    else s"scalar: the lanes do not know ${family.name} against ${opponent.family.name}"
+    val (pursuer, evader) = pair
+    batch.engine(pursuer, evader, shareEpisodes = true)
+
+  private def pair: (Policy, Policy) =
+    if role == Role.Pursuer then (family.defaultPolicy, opponent.policy)
+    else (opponent.policy, family.defaultPolicy)

@@ -10,9 +10,14 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
+import skein.policy.ChauffeurEvader;
+import skein.policy.LeadPursuit;
+import skein.policy.NeuralPolicy;
 import skein.policy.PaperEvader;
 import skein.policy.PaperPursuer;
 import skein.policy.Policy;
+import skein.policy.ProportionalNavigation;
+import skein.policy.PurePursuit;
 
 /**
  * Policies of one form in many worlds, each with parameters of its own. Their scalar references are
@@ -57,11 +62,11 @@ abstract class LanePolicy {
     return switch (policy) {
       case PaperPursuer p -> new PaperPursuerLanes();
       case PaperEvader p -> new PaperEvaderLanes();
-      // case PurePursuit p -> new PurePursuitLanes();
-      // case ProportionalNavigation p -> new ProportionalNavigationLanes();
-      // case LeadPursuit p -> new LeadPursuitLanes();
-      // case ChauffeurEvader p -> new ChauffeurEvaderLanes();
-      // case NeuralPolicy p -> new NeuralLanes(p.shape());
+      case PurePursuit p -> new PurePursuitLanes();
+      case ProportionalNavigation p -> new ProportionalNavigationLanes();
+      case LeadPursuit p -> new LeadPursuitLanes();
+      case ChauffeurEvader p -> new ChauffeurEvaderLanes();
+      case NeuralPolicy p -> new NeuralLanes(p.shape());
       default -> null;
     };
   }
@@ -72,13 +77,13 @@ abstract class LanePolicy {
    */
   static Object formOf(Policy policy) {
     return switch (policy) {
-      // case NeuralPolicy p -> p.shape();
+      case NeuralPolicy p -> p.shape();
       case PaperPursuer p -> PaperPursuer.class;
       case PaperEvader p -> PaperEvader.class;
-      // case PurePursuit p -> PurePursuit.class;
-      // case ProportionalNavigation p -> ProportionalNavigation.class;
-      // case LeadPursuit p -> LeadPursuit.class;
-      // case ChauffeurEvader p -> ChauffeurEvader.class;
+      case PurePursuit p -> PurePursuit.class;
+      case ProportionalNavigation p -> ProportionalNavigation.class;
+      case LeadPursuit p -> LeadPursuit.class;
+      case ChauffeurEvader p -> ChauffeurEvader.class;
       default -> null;
     };
   }

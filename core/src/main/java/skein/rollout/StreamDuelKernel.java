@@ -31,10 +31,7 @@ import jdk.incubator.vector.VectorOperators;
  * them extrapolated through the commands that act before. Nothing is allocated after construction but where
  * links need more room than any before; one instance per thread.
  */
-public final class StreamDuelKernel {
-  /** Worlds flown together. */
-  public static final int WORLDS = LanePolicy.WORLDS;
-
+final class StreamDuelKernel extends DuelKernel {
   private static final int EVADER = 0;
   private static final int PURSUER = 1;
   private static final float FUTURE = 1e9f;
@@ -162,21 +159,8 @@ public final class StreamDuelKernel {
     }
   }
 
-  /**
-   * Distances of the worlds flown last, m: the smallest, the mean, and the mean of the last 10 s.
-   */
-  public final float[] minDistance = new float[WORLDS], meanDistance = new float[WORLDS];
-
-  public final float[] meanLast10s = new float[WORLDS];
-
-  /** When the distance first was within the capture radius, s; infinite where it never was. */
-  public final float[] captureS = new float[WORLDS];
-
-  /** The sums of all changes of the commanded headings, by the shorter way, rad. */
-  public final float[] pursuerEffortRad = new float[WORLDS], evaderEffortRad = new float[WORLDS];
-
   /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
-  public static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
+  static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
     double longest = longestS(timing, link.maxS(), model);
     return model.lagS() > 0
         && !timing.decideThenPace()

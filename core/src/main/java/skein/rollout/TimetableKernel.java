@@ -1,25 +1,18 @@
 package skein.rollout;
 
-import static jdk.incubator.vector.VectorOperators.EQ;
-import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.rollout.LaneMath.LANES;
-import static skein.rollout.LaneMath.ONE;
-import static skein.rollout.LaneMath.PI;
 import static skein.rollout.LaneMath.SPECIES;
-import static skein.rollout.LaneMath.ZERO;
 import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
-import jdk.incubator.vector.VectorMask;
 
 /**
- * Flies many candidates through one episode, by its {@link Timetable}: the duel of the paper's
- * pursuer and evader with vehicles of first-order lag, exactly integrated between commands, under
- * any loop's timing. {@link Rollout} with the same delays and a {@code Reduced} model is its scalar
- * reference.
+ * Flies many candidates through one episode, by its {@link Timetable}: duels with vehicles of
+ * first-order lag, exactly integrated between commands, under any loop's timing. {@link Rollout}
+ * with the same delays and a {@code Reduced} model is its scalar reference.
  *
  * <p>What happens when is the same in all lanes, so that exponentials and everything else about
  * time are numbers of the timetable. A vehicle's state is kept as at the last command that acted:
@@ -27,29 +20,8 @@ import jdk.incubator.vector.VectorMask;
  * after construction but where a timetable needs more places than any before; one instance per
  * thread.
  */
-public final class TimetableKernel {
-  /** Worlds flown together. A multiple of every lane count. */
-  public static final int WORLDS = 128;
-
-  private static final FloatVector MINUS_ONE = constant(-1f),
-      QUARTER = constant(0.25f);
+final class TimetableKernel extends DuelKernel {
   private static final FloatVector INFINITE = constant(Float.POSITIVE_INFINITY);
-  private static final FloatVector PER_TURN = constant((float) (0.5 / Math.PI)),
-      MINUS_TURN = constant((float) (-2 * Math.PI)),
-      MINUS_TWO = constant(-2f);
-
-  /** 1.5·2²³: adding it and taking it away leaves a float's nearest integer. */
-  private static final FloatVector ROUND = constant(12582912f);
-
-  // arccos h = √(1 − h) · polynomial on 0…1, error below 2e-8: Abramowitz and Stegun, 4.4.46.
-  private static final FloatVector ACOS_0 = constant(1.5707963050f),
-      ACOS_1 = constant(-0.2145988016f),
-      ACOS_2 = constant(0.0889789874f),
-      ACOS_3 = constant(-0.0501743046f),
-      ACOS_4 = constant(0.0308918810f),
-      ACOS_5 = constant(-0.0170881256f),
-      ACOS_6 = constant(0.0066700901f),
-      ACOS_7 = constant(-0.0012624911f);
 
   /** Kinds of a timetable's operations. */
   static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3;
@@ -58,21 +30,21 @@ public final class TimetableKernel {
   private final int steps, lastSteps;
   private final Vehicles evader, pursuer;
 
-  // Per world: parameters of the policies, and what the episode came to.
-  private final float[] turnRate = new float[WORLDS], turnStep = new float[WORLDS];
-  private final float[] radius = new float[WORLDS];
-  private final float[] heading = new float[WORLDS];
-  private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
+  private final float perLag;
+  private final boolean withVelocity;
 
-  // Between the passes of one operation.
-  private final float[] ahead = new float[WORLDS], right = new float[WORLDS];
-  private final float[] newCos = new float[WORLDS], newSin = new float[WORLDS];
-  private final float[] chordSquare = new float[WORLDS], distance = new float[WORLDS];
+  private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
+  private final LaneSight sight = new LaneSight();
+
+  /** Between the passes of one operation. */
+  private final float[] distance = new float[WORLDS];
 
   /** All worlds' vehicles of one role. */
   private static final class Vehicles {
     final float startX, startY, startHeading;
     final FloatVector speed;
+    final LanePolicy policy;
+    final float[] effort;
     final float[] x = new float[WORLDS],
         y = new float[WORLDS],
         askedX = new float[WORLDS],
@@ -81,9 +53,13 @@ public final class TimetableKernel {
         errorY = new float[WORLDS];
 
     /** Readings and decided directions, by place. */
-    float[] seenX = {}, seenY = {}, cos = {}, sin = {};
+    float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
-    Vehicles(Duelist duelist, double gain) {
+    final Directions headings = new Directions(0);
+
+    Vehicles(Duelist duelist, double gain, LanePolicy policy, float[] effort) {
+      this.policy = policy;
+      this.effort = effort;
       startX = (float) duelist.startX();
       startY = (float) duelist.startY();
       startHeading = (float) duelist.startHeadingRad();
@@ -94,66 +70,48 @@ public final class TimetableKernel {
       if (seenX.length < timetable.readings() * WORLDS) {
         seenX = new float[timetable.readings() * WORLDS];
         seenY = new float[timetable.readings() * WORLDS];
+        seenVx = new float[timetable.readings() * WORLDS];
+        seenVy = new float[timetable.readings() * WORLDS];
       }
-      if (cos.length < timetable.headings() * WORLDS) {
-        cos = new float[timetable.headings() * WORLDS];
-        sin = new float[timetable.headings() * WORLDS];
-      }
+      headings.reserve(timetable.headings() * WORLDS);
       Arrays.fill(x, startX);
       Arrays.fill(y, startY);
       for (float[] zero : new float[][] {askedX, askedY, errorX, errorY}) Arrays.fill(zero, 0f);
       // The timetable keeps the first heading at place 0.
-      Arrays.fill(cos, 0, WORLDS, (float) Math.cos(startHeading));
-      Arrays.fill(sin, 0, WORLDS, (float) Math.sin(startHeading));
+      headings.fill(0, WORLDS, startHeading);
+      policy.start(startHeading);
     }
   }
 
   /**
-   * Distances of the worlds flown last, m: the smallest, the mean, and the mean of the last 10 s.
-   */
-  public final float[] minDistance = new float[WORLDS],
-      meanDistance = new float[WORLDS],
-      meanLast10s = new float[WORLDS];
-
-  /** When the distance first was within the capture radius, s; infinite where it never was. */
-  public final float[] captureS = new float[WORLDS];
-
-  /** The sums of all changes of the commanded headings, by the shorter way, rad. */
-  public final float[] pursuerEffortRad = new float[WORLDS], evaderEffortRad = new float[WORLDS];
-
-  /**
    * @param duel start, speeds and duration; its policies are not used
    * @param model lag above 0; the same as the timetables'
+   * @param pursuerPolicy takes the parameters of each candidate's pursuer before it flies
    */
-  public TimetableKernel(Duel duel, LoopTiming timing, Reduced model) {
+  TimetableKernel(
+      Duel duel,
+      LoopTiming timing,
+      Reduced model,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy) {
     if (!(model.lagS() > 0))
       throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     lastSteps = Math.min(steps, (int) Math.round(10 / timing.periodS()));
-    evader = new Vehicles(duel.evader(), model.gain());
-    pursuer = new Vehicles(duel.pursuer(), model.gain());
+    perLag = (float) (1 / model.lagS());
+    withVelocity = pursuerPolicy.needsVelocity() || evaderPolicy.needsVelocity();
+    evader = new Vehicles(duel.evader(), model.gain(), evaderPolicy, evaderEffortRad);
+    pursuer = new Vehicles(duel.pursuer(), model.gain(), pursuerPolicy, pursuerEffortRad);
   }
 
   /**
-   * Flies {@link #WORLDS} candidates through one episode.
+   * Flies {@link #WORLDS} candidates through one episode, by the policies' parameters.
    *
-   * @param turnRates of each pursuer, rad/s ({@code PaperPursuer})
-   * @param turnSteps by which each pursuer turns at every decision besides, rad
-   * @param radii that each evader assumes, m ({@code PaperEvader})
    * @param captureRadiusM a distance of at most this is a capture
    */
-  void fly(
-      Timetable timetable,
-      float[] turnRates,
-      float[] turnSteps,
-      float[] radii,
-      float captureRadiusM) {
-    System.arraycopy(turnRates, 0, turnRate, 0, WORLDS);
-    System.arraycopy(turnSteps, 0, turnStep, 0, WORLDS);
-    System.arraycopy(radii, 0, radius, 0, WORLDS);
+  void fly(Timetable timetable, float captureRadiusM) {
     evader.start(timetable);
     pursuer.start(timetable);
-    Arrays.fill(heading, pursuer.startHeading);
     Arrays.fill(minDistance, Float.POSITIVE_INFINITY);
     Arrays.fill(captureS, Float.POSITIVE_INFINITY);
     for (float[] zero : new float[][] {sum, lastSum, pursuerEffortRad, evaderEffortRad})
@@ -166,24 +124,24 @@ public final class TimetableKernel {
       Vehicles vehicle = operations[field + 1] == EVADER ? evader : pursuer;
       int place = operations[field + 2] * WORLDS;
       switch (operations[field]) {
-        case LOOK -> look(vehicle, place, times[number], times[number + 1]);
+        case LOOK -> {
+          look(vehicle, place, times[number], times[number + 1]);
+          if (withVelocity) lookAtVelocity(vehicle, place, times[number + 1]);
+        }
         case ACT -> act(vehicle, place, times[number], times[number + 1], times[number + 2]);
         case SCORE -> {
           score(times[number], times[number + 1], times[number + 2], times[number + 3]);
           keep(place != 0, Float.intBitsToFloat(operations[field + 3]), captureRadius);
         }
-        default -> {
-          relate(
-              place,
-              operations[field + 3] * WORLDS,
-              vehicle == pursuer ? operations[field + 5] * WORLDS : operations[field + 4] * WORLDS);
-          if (vehicle == pursuer) turn(times[number], operations[field + 6] * WORLDS);
-          else
-            evade(
+        default ->
+            decide(
+                vehicle,
+                place,
+                operations[field + 3] * WORLDS,
                 operations[field + 4] * WORLDS,
                 operations[field + 5] * WORLDS,
-                operations[field + 6] * WORLDS);
-        }
+                operations[field + 6] * WORLDS,
+                times[number]);
       }
     }
     for (int i = 0; i < WORLDS; i++) {
@@ -211,13 +169,27 @@ public final class TimetableKernel {
     }
   }
 
+  /** How fast it flies then. */
+  private void lookAtVelocity(Vehicles each, int place, float gainS) {
+    // What is left of the error, for the error's way is lag times what has died away.
+    FloatVector keep = constant(1 - gainS * perLag);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector.fromArray(SPECIES, each.errorX, i)
+          .fma(keep, FloatVector.fromArray(SPECIES, each.askedX, i))
+          .intoArray(each.seenVx, place + i);
+      FloatVector.fromArray(SPECIES, each.errorY, i)
+          .fma(keep, FloatVector.fromArray(SPECIES, each.askedY, i))
+          .intoArray(each.seenVy, place + i);
+    }
+  }
+
   /** Flies a vehicle for {@code dtS} and lets a command act from there on. */
   private void act(Vehicles each, int place, float dtS, float gainS, float keepShare) {
     FloatVector dt = constant(dtS), gain = constant(gainS), keep = constant(keepShare);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector askedX = FloatVector.fromArray(SPECIES, each.askedX, i);
       FloatVector errorX = FloatVector.fromArray(SPECIES, each.errorX, i);
-      FloatVector newX = FloatVector.fromArray(SPECIES, each.cos, place + i).mul(each.speed);
+      FloatVector newX = FloatVector.fromArray(SPECIES, each.headings.cos, place + i).mul(each.speed);
       errorX
           .fma(gain, askedX.fma(dt, FloatVector.fromArray(SPECIES, each.x, i)))
           .intoArray(each.x, i);
@@ -225,7 +197,7 @@ public final class TimetableKernel {
       newX.intoArray(each.askedX, i);
       FloatVector askedY = FloatVector.fromArray(SPECIES, each.askedY, i);
       FloatVector errorY = FloatVector.fromArray(SPECIES, each.errorY, i);
-      FloatVector newY = FloatVector.fromArray(SPECIES, each.sin, place + i).mul(each.speed);
+      FloatVector newY = FloatVector.fromArray(SPECIES, each.headings.sin, place + i).mul(each.speed);
       errorY
           .fma(gain, askedY.fma(dt, FloatVector.fromArray(SPECIES, each.y, i)))
           .intoArray(each.y, i);
@@ -234,98 +206,43 @@ public final class TimetableKernel {
     }
   }
 
-  /** The evader as the readings show it, in the frame of the pursuer on a heading. */
-  private void relate(int evaderSeen, int pursuerSeen, int frame) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x =
-          FloatVector.fromArray(SPECIES, evader.seenX, evaderSeen + i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenX, pursuerSeen + i));
-      FloatVector y =
-          FloatVector.fromArray(SPECIES, evader.seenY, evaderSeen + i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenY, pursuerSeen + i));
-      FloatVector c = FloatVector.fromArray(SPECIES, pursuer.cos, frame + i),
-          s = FloatVector.fromArray(SPECIES, pursuer.sin, frame + i);
-      x.fma(c, y.mul(s)).intoArray(ahead, i);
-      y.fma(c, x.mul(s).neg()).intoArray(right, i);
+  /** A vehicle decides on these readings, knowing the opponent's heading at a place. */
+  private void decide(
+      Vehicles own,
+      int evaderSeen,
+      int pursuerSeen,
+      int known,
+      int before,
+      int after,
+      float elapsedS) {
+    Vehicles opponent = own == evader ? pursuer : evader;
+    int ownSeen = own == evader ? evaderSeen : pursuerSeen,
+        opponentSeen = own == evader ? pursuerSeen : evaderSeen;
+    difference(opponent.seenX, opponentSeen, own.seenX, ownSeen, sight.dx);
+    difference(opponent.seenY, opponentSeen, own.seenY, ownSeen, sight.dy);
+    if (own.policy.needsVelocity()) {
+      difference(opponent.seenVx, opponentSeen, own.seenVx, ownSeen, sight.dvx);
+      difference(opponent.seenVy, opponentSeen, own.seenVy, ownSeen, sight.dvy);
     }
+    Arrays.fill(sight.elapsed, elapsedS);
+    own.policy.decide(
+        sight, own.headings, before, opponent.headings, known, own.headings, after);
+    own.policy.commit();
+    add(own.policy.turned, own.effort);
   }
 
-  /** {@code PaperPursuer}. */
-  private void turn(float elapsedS, int place) {
-    FloatVector elapsed = constant(elapsedS);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
-          y = FloatVector.fromArray(SPECIES, right, i);
-      FloatVector side = ZERO.blend(ONE, x.compare(LT, ZERO));
-      side = side.blend(ONE, y.compare(GT, ZERO)).blend(MINUS_ONE, y.compare(LT, ZERO));
-      FloatVector change =
-          FloatVector.fromArray(SPECIES, turnRate, i)
-              .fma(elapsed, FloatVector.fromArray(SPECIES, turnStep, i))
-              .mul(side);
-      change.add(FloatVector.fromArray(SPECIES, heading, i)).intoArray(heading, i);
-      change
-          .fma(PER_TURN, ROUND)
-          .sub(ROUND)
-          .fma(MINUS_TURN, change)
-          .abs()
-          .add(FloatVector.fromArray(SPECIES, pursuerEffortRad, i))
-          .intoArray(pursuerEffortRad, i);
-    }
-    LaneMath.sinCos(heading, newSin, newCos, WORLDS);
-    System.arraycopy(newSin, 0, pursuer.sin, place, WORLDS);
-    System.arraycopy(newCos, 0, pursuer.cos, place, WORLDS);
+  private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, of, ofAt + i)
+          .sub(FloatVector.fromArray(SPECIES, and, andAt + i))
+          .intoArray(into, i);
   }
 
-  /**
-   * {@code PaperEvader}: no angle is needed, for the heading of atan2(y, x) in a frame is the
-   * direction of (x, y) there.
-   */
-  private void evade(int frame, int before, int place) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x = FloatVector.fromArray(SPECIES, ahead, i),
-          y = FloatVector.fromArray(SPECIES, right, i),
-          r = FloatVector.fromArray(SPECIES, radius, i);
-      FloatVector xSquare = x.mul(x), rSquare = r.mul(r);
-      FloatVector toLeft = y.sub(r), toRight = y.add(r);
-      VectorMask<Float> inRight = toLeft.fma(toLeft, xSquare).compare(LT, rSquare);
-      VectorMask<Float> inLeft = toRight.fma(toRight, xSquare).compare(LT, rSquare);
-      VectorMask<Float> breakAway =
-          y.fma(y, xSquare).mul(QUARTER).compare(LT, rSquare).andNot(inLeft.or(inRight));
-      FloatVector aim = y.blend(toLeft, inLeft).blend(toRight, inRight);
-      FloatVector length = aim.fma(aim, xSquare).sqrt();
-      // At the very place of the pursuer the angle counts as 0.
-      VectorMask<Float> none = length.compare(EQ, ZERO);
-      FloatVector scale = ONE.div(length.blend(ONE, none));
-      FloatVector front = x.blend(ONE, none).mul(scale), side = aim.mul(scale);
-      FloatVector forward = front.blend(side.neg(), breakAway), aside = side.blend(front, breakAway);
-      FloatVector c = FloatVector.fromArray(SPECIES, pursuer.cos, frame + i),
-          s = FloatVector.fromArray(SPECIES, pursuer.sin, frame + i);
-      FloatVector cos = forward.fma(c, aside.mul(s).neg()),
-          sin = forward.fma(s, aside.mul(c));
-      FloatVector changeX = cos.sub(FloatVector.fromArray(SPECIES, evader.cos, before + i)),
-          changeY = sin.sub(FloatVector.fromArray(SPECIES, evader.sin, before + i));
-      changeX.fma(changeX, changeY.mul(changeY)).intoArray(chordSquare, i);
-      cos.intoArray(evader.cos, place + i);
-      sin.intoArray(evader.sin, place + i);
-    }
-    // Two directions a chord apart are at an angle of 2 arcsin(chord / 2) = π − 2 arccos(chord / 2).
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector half = FloatVector.fromArray(SPECIES, chordSquare, i).mul(QUARTER).sqrt().min(ONE);
-      FloatVector series =
-          half.fma(ACOS_7, ACOS_6)
-              .fma(half, ACOS_5)
-              .fma(half, ACOS_4)
-              .fma(half, ACOS_3)
-              .fma(half, ACOS_2)
-              .fma(half, ACOS_1)
-              .fma(half, ACOS_0);
-      ONE.sub(half)
-          .sqrt()
-          .mul(series)
-          .fma(MINUS_TWO, PI)
-          .add(FloatVector.fromArray(SPECIES, evaderEffortRad, i))
-          .intoArray(evaderEffortRad, i);
-    }
+  private static void add(float[] what, float[] to) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, to, i)
+          .add(FloatVector.fromArray(SPECIES, what, i))
+          .intoArray(to, i);
   }
 
   /** The distance so long after the two vehicles' states. */

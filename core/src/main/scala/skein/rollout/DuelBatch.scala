@@ -5,7 +5,7 @@ import skein.policy.Policy
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
-  * With a [[Reduced]] model the paper's policies fly by lanes: worlds that share episodes under any loop
+  * With a [[Reduced]] model the policies of `skein.policy` fly by lanes ([[LanePolicy]]): worlds that share episodes under any loop
   * ([[TimetableKernel]]), other worlds under `LoopTiming.Stream` ([[StreamDuelKernel]]). All else flies by the scalar
   * reference ([[Rollout]]). Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do
   * not depend on threads, on a call's other worlds or on their order. One call at a time.
@@ -45,23 +45,32 @@ final class DuelBatch(
   private val timetables = Timetables(MostTimetables)
   private val workers    = Vector.fill(threads)(Worker())
 
-  /** Which engine flies, and why, in a line for the user. Worlds of other policies than the paper's fly by the scalar
-    * engine in any case.
-    */
-  val engine: String = (lanes, timing) match
-    case (Right(_), _: LoopTiming.Stream) => s"SIMD, the paper's policies ${LaneMath.LANES} worlds at a time"
-    case (Right(_), _)                    =>
-      s"SIMD, the paper's policies ${LaneMath.LANES} candidates of an episode at a time; scalar for single worlds"
-    case (Left(reason), _) => s"scalar: $reason"
-
-  /** Whether worlds of these policies fly by lanes.
+  /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
     * @param shareEpisodes
     *   see [[DuelWorlds.shareEpisodes]]
     */
+  def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): String =
+    whyScalar(pursuer, evader, shareEpisodes) match
+      case Some(reason)          => s"scalar: $reason"
+      case None if shareEpisodes => s"SIMD, ${LaneMath.LANES} candidates of an episode at a time"
+      case None                  => s"SIMD, ${LaneMath.LANES} worlds at a time"
+
+  /** Whether worlds of these policies fly by lanes. */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean = false): Boolean =
-    lanes.isRight && PaperParameters.of(pursuer, evader).isDefined &&
-      (shareEpisodes || timing.isInstanceOf[LoopTiming.Stream])
+    whyScalar(pursuer, evader, shareEpisodes).isEmpty
+
+  private def whyScalar(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Option[String] = lanes match
+    case Left(reason) => Some(reason)
+    case Right(_)     =>
+      Seq(pursuer, evader).find(LanePolicy.formOf(_) == null) match
+        case Some(unknown) =>
+          Some(s"no lanes know the policy ${unknown.getClass.getSimpleName.stripSuffix("$")}")
+        case None => timing match
+            case _: LoopTiming.Stream => None
+            case _ if shareEpisodes   => None
+            case _                    =>
+              Some("worlds with delays of their own fly by lanes under the stream loop alone")
 
   /** Flies all worlds, unless it is cancelled.
     *

@@ -34,7 +34,7 @@ class DuelBatchSuite extends munit.FunSuite:
       val batch  = DuelBatch(short, timing, model, threads = 2)
       val worlds = mixed(20)
       val flown  = batch.fly(worlds, captureRadiusM = 5)
-      assert(batch.engine.contains("scalar"), batch.engine)
+      assert(batch.engine(PaperPursuer(), PaperEvader(), false).startsWith("scalar: "))
       assert(!batch.fliesByLanes(PaperPursuer(), PaperEvader()))
       for world <- 0 until worlds.size do
         assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
@@ -161,5 +161,5 @@ object DuelBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =
       DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSuite.lag, threads = 1)
-    println(batch.engine)
+    println(batch.engine(PaperPursuer(), PaperEvader(), false))
     println(DuelBatchSuite.numbers(batch.fly(DuelBatchSuite.mixed(1), captureRadiusM = 5), 0))

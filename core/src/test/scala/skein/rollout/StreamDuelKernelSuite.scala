@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.policy.{PaperEvader, PaperPursuer}
 
 class StreamDuelKernelSuite extends munit.FunSuite:
-  private val worlds = StreamDuelKernel.WORLDS
+  private val worlds = DuelKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val keys      = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))

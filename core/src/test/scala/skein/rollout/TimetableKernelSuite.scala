@@ -3,7 +3,7 @@ package skein.rollout
 import skein.policy.{PaperEvader, PaperPursuer}
 
 class TimetableKernelSuite extends munit.FunSuite:
-  private val worlds = TimetableKernel.WORLDS
+  private val worlds = DuelKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)
@@ -21,9 +21,12 @@ class TimetableKernelSuite extends munit.FunSuite:
     )
 
   private def fly(timing: LoopTiming, link: Delays, key: Int, durationS: Double): TimetableKernel =
-    val kernel = TimetableKernel(Duel.paper.copy(durationS = durationS), timing, lag)
-    val rates  = Array.tabulate(worlds)(i => if turnSteps(i) == 0 then turnRates(i) else 0f)
-    kernel.fly(Timetable.of(durationS, timing, link, key, lag), rates, turnSteps, radii, captureM)
+    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    for world <- 0 until worlds do
+      pursuers.take(world, duel(world, durationS).pursuer.policy)
+      evaders.take(world, duel(world, durationS).evader.policy)
+    val kernel = TimetableKernel(Duel.paper.copy(durationS = durationS), timing, lag, pursuers, evaders)
+    kernel.fly(Timetable.of(durationS, timing, link, key, lag), captureM)
     kernel
 
   private val loops =
