@@ -36,7 +36,15 @@ object Deviation:
     TextTable(
       Vector("<loop", "<link", "<clock", "flights", "mean %", "sd %", "least %", "most %"),
       deviations.map: one =>
-        Vector(one.name, one.link, one.clock, one.share.count.toString) ++
-          Vector(one.share.mean, one.share.sd, one.share.least, one.share.most)
-            .map(share => SummaryTables.signed(100 * share))
+        def percent(share: Double) = SummaryTables.signed(100 * share)
+        Vector(
+          one.name,
+          one.link,
+          one.clock,
+          one.share.count.toString,
+          percent(one.share.mean),
+          if one.share.count == 1 then "" else SummaryTables.fixed(100 * one.share.sd, 1),
+          percent(one.share.least),
+          percent(one.share.most)
+        )
     )

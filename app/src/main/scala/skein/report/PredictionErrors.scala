@@ -72,15 +72,25 @@ object PredictionGroup:
 
   def table(groups: Vector[PredictionGroup]): TextTable =
     TextTable(
-      Vector("<loop", "<link", "<of", "made", "unverified", "age ms", "p50 m", "p95 m", "p95 at 100 ms m"),
+      Vector(
+        "<loop",
+        "<link",
+        "<of",
+        "made",
+        "unverified",
+        "age ms",
+        "p50 mm",
+        "p95 mm",
+        "p95 at 100 ms, mm"
+      ),
       for
         group           <- groups
         (whose, errors) <- Vector("own vehicle" -> group.own, "others" -> group.others)
         if errors.made > 0
       yield Vector(group.name, group.link, whose, errors.made.toString, errors.unverified.toString) ++ Vector(
         Distribution.of(errors.samples.map(_._1)).map(_.median).fold("")(SummaryTables.brief),
-        errors.errors.fold("")(all => SummaryTables.fixed(all.median, 3)),
-        errors.errors.fold("")(all => SummaryTables.fixed(all.quantile(0.95), 3)),
-        errors.around(100).fold("")(all => SummaryTables.fixed(all.quantile(0.95), 3))
+        errors.errors.fold("")(all => SummaryTables.fixed(1000 * all.median, 1)),
+        errors.errors.fold("")(all => SummaryTables.fixed(1000 * all.quantile(0.95), 1)),
+        errors.around(100).fold("")(all => SummaryTables.fixed(1000 * all.quantile(0.95), 1))
       )
     )

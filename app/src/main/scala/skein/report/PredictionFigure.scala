@@ -18,7 +18,7 @@ object PredictionFigure:
     val (from, to) = (all.map(_._1).min, all.map(_._1).max)
     val panel      = Panel(
       Axis.around("carried forward by, ms", from.toDouble, to.toDouble.max(from + 1.0), 5),
-      Axis.around("error, m", 0, all.map(_._2.quantile(0.95)).max, 4),
+      Axis.around("error, mm", 0, 1000 * all.map(_._2.quantile(0.95)).max, 4),
       left = 52,
       top = 34,
       width = 290,
@@ -26,10 +26,10 @@ object PredictionFigure:
     )
     val lines = curves.flatMap: (bins, colour) =>
       Vector(
-        curve(panel, bins.map((age, errors) => (age.toDouble, errors.median)), Stroke(colour, 1.8)),
+        curve(panel, bins.map((age, errors) => (age.toDouble, 1000 * errors.median)), Stroke(colour, 1.8)),
         curve(
           panel,
-          bins.map((age, errors) => (age.toDouble, errors.quantile(0.95))),
+          bins.map((age, errors) => (age.toDouble, 1000 * errors.quantile(0.95))),
           Stroke(colour, 1.4, dashes)
         )
       ).flatten

@@ -59,7 +59,7 @@ class PredictionErrorsSuite extends munit.FunSuite:
   test("the sections stand in the text, on the report's page and on that of a spread"):
     val set  = FlightSet(flights)
     val text = SummaryTables.text(set)
-    assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms m"), text)
+    assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)
     val pages =
       Seq(HtmlReport.render(set, Figure.all(set)), HtmlReport.spread(flights, Nil, Figure.spread(flights)))
     for page <- pages do
