@@ -15,6 +15,7 @@ object Main:
     ExportCommand,
     IdentifyCommand,
     ReplayCommand,
+    DigestCommand,
     TortureCommand
   )
 

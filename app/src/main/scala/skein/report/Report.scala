@@ -2,6 +2,7 @@ package skein.report
 
 import java.io.IOException
 import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
 import skein.plot.{Png, Svg}
 import skein.record.{RecordError, Recording, RecordingReader}
 
@@ -10,7 +11,7 @@ object Report:
 
   /** Summarises recordings. All files are tried; every one that cannot be read is named. Blocks. */
   def read(files: Seq[Path]): Either[Seq[RecordError], FlightSet] =
-    val (unread, read) = files.map(RecordingReader.read).partitionMap(identity)
+    val (unread, read) = onAllCores(files)(RecordingReader.read).partitionMap(identity)
     Either.cond(unread.isEmpty, of(read), unread)
 
   def of(recordings: Seq[Recording]): FlightSet = FlightSet(recordings.map(FlightSummary.of))
@@ -52,7 +53,11 @@ object Report:
       for figure <- figures do
         Files.writeString(folder.resolve(s"${figure.name}.svg"), Svg.file(figure.drawing, figure.title))
       val (unpainted, painted) =
-        figures.map(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
+        onAllCores(figures)(figure => Png.bytes(figure.drawing).map(figure.name -> _)).partitionMap(identity)
       for (name, bytes) <- painted do Files.write(folder.resolve(s"$name.png"), bytes)
       Right(Output(page, unpainted.headOption))
     catch case failed: IOException => Left(s"cannot write the report to $page: $failed")
+
+  /** What `f` makes of each, in their order. */
+  private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =
+    items.asJava.parallelStream.map(f(_)).toList.asScala.toVector

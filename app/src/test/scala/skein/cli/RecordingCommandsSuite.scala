@@ -105,6 +105,18 @@ class RecordingCommandsSuite extends munit.FunSuite:
     assert(err.contains(s"$text is not a recording"), err)
     assert(!Files.exists(folder.resolve("report.html")))
 
+  recordings.test("digest shows the same for the same contents in another file, and another for others"):
+    folder =>
+      val again = folder.resolve("again.duckdb")
+      write(SyntheticFlight("stream", "vpn", seed = 1, seconds = 12), again)
+      val files = Seq(folder.resolve("stream-vpn.duckdb"), again, folder.resolve("paused-none.duckdb"))
+      val (status, text, err) = run(DigestCommand, files.map(_.toString)*)
+      assertEquals((status, err), (0, ""))
+      val lines = text.linesIterator.map(_.split("  ", 2).toSeq).toSeq
+      assertEquals(lines.map(_(1)), files.map(_.toString))
+      assertEquals(lines(0)(0), lines(1)(0))
+      assertNotEquals(lines(0)(0), lines(2)(0))
+
   recordings.test("export writes Parquet files of one recording"): folder =>
     val parquet = folder.resolve("parquet")
     assertEquals(

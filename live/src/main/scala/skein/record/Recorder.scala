@@ -25,9 +25,9 @@ final case class Written(rows: Map[String, Long]):
   def total: Long = rows.values.sum
 
   private[record] def ++(records: Seq[Record]): Written =
-    Written(records.foldLeft(rows)((rows, record) =>
-      rows.updatedWith(Table.of(record).name)(n => Some(n.getOrElse(0L) + 1))
-    ))
+    val more = records.groupMapReduce(Table.of(_).name)(_ => 1)(_ + _)
+    Written(more.foldLeft(rows):
+      case (rows, (table, count)) => rows.updated(table, rows.getOrElse(table, 0L) + count))
 
 private[record] object Written:
   val nothing: Written = Written(Map.empty)

@@ -10,6 +10,17 @@ private object VirtualConfig:
 
   /** Every dispatcher in `config` runs on the loop; one that needs threads, and sockets, are refused. */
   def apply(config: Config): Config =
+    val (of, made) = latest
+    if of eq config then made
+    else
+      val changed = change(config)
+      latest = (config, changed)
+      changed
+
+  // Most runs have the same configuration, and this takes as long as a second of a flight.
+  @volatile private var latest = (ConfigFactory.empty, ConfigFactory.empty)
+
+  private def change(config: Config): Config =
     val overrides = dispatchers(config.root, Nil).map: (path, kind) =>
       if kind == "PinnedDispatcher" then s"${ConfigUtil.joinPath((path :+ "type").asJava)} = $refused"
       else s"${ConfigUtil.joinPath((path :+ "executor").asJava)} = $loopExecutor"

@@ -60,9 +60,11 @@ final class Simulation(val settings: SimulatorSettings, startedAt: Instant):
   def nextWake(at: Instant): Option[Instant] =
     if continuing.nonEmpty then Some(at)
     else
-      val end  = if paused then None else world.nextEndAt.map(wallTime)
-      val keep = Option.unless(paused)(at + KeepUp)
-      (workers.nextHandover ++ end ++ keep).minOption.map(_.max(at))
+      val running =
+        if paused then None else Some(world.nextEndAt.fold(at + KeepUp)(wallTime(_).min(at + KeepUp)))
+      val handover = workers.nextHandover
+      val next     = if running.isEmpty then handover else running.map(end => handover.fold(end)(_.min(end)))
+      next.map(_.max(at))
 
   /** The answers since this was asked before. */
   def takeAnswers(): Seq[SimulatorAnswer] =

@@ -59,7 +59,10 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     if lock.waiting.nonEmpty then lock.handoverAt = Some(at + handover)
 
   /** When the next lock arrives at a move that waits for it. */
-  def nextHandover: Option[Instant] = locks.flatMap(_.handoverAt).minOption
+  def nextHandover: Option[Instant] =
+    var next = Option.empty[Instant]
+    for lock <- locks; at <- lock.handoverAt do if next.forall(at < _) then next = lock.handoverAt
+    next
 
   /** When the last of those under way arrives. */
   def lastHandover: Option[Instant] = locks.flatMap(_.handoverAt).maxOption

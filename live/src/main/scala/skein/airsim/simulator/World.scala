@@ -67,7 +67,11 @@ final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor 
 
   /** When, at the earliest, the next move can end. */
   def nextEndAt: Option[Instant] =
-    moves.flatten.map(running => running.dueAt.max(running.startedAt + running.move.lastsAtLeast)).minOption
+    var next = Option.empty[Instant]
+    for move <- moves; running <- move do
+      val end = running.dueAt.max(running.startedAt + running.move.lastsAtLeast)
+      if next.forall(end < _) then next = Some(end)
+    next
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)

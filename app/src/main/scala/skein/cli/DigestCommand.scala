@@ -1,0 +1,28 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{Leftover, ParserForClass, arg}
+import skein.record.Digest
+
+/** Options of `./skein digest`. */
+final case class DigestOptions(
+    @arg(doc = "recordings, for example flights/*.duckdb")
+    files: Leftover[String]
+)
+
+object DigestCommand
+    extends OptionsCommand[DigestOptions](
+      "digest",
+      "shows the SHA-256 of what recordings contain, by which equal flights are known",
+      ParserForClass[DigestOptions]
+    ):
+
+  protected def execute(options: DigestOptions): Either[String, Unit] =
+    val files             = options.files.value
+    val (unread, digests) =
+      files.map(file => Digest.ofFile(Path.of(file)).map(digest => s"$digest  $file")).partitionMap(identity)
+    digests.foreach(line => Console.out.println(line))
+    for
+      _ <- Either.cond(files.nonEmpty, (), "expected recordings, came none: ./skein digest FILE…")
+      _ <- Either.cond(unread.isEmpty, (), unread.map(_.message).mkString("\n"))
+    yield ()
