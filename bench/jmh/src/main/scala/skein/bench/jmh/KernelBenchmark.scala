@@ -6,7 +6,7 @@ import skein.bench.Works
 import skein.rollout.*
 
 /** How long does one call of a batch take, warm, on one thread? `stream` over `vpn`, 60 s, the reduced model: divide
-  * `worlds` times 1,200 agent-steps by it. Run: `./sbtw "benchJmh/Jmh/run -f 1 -wi 3 -i 5"`.
+  * `worlds` times 1,200 agent-steps by it. Run: `./sbtw "benchJmh/Jmh/run KernelBenchmark"`.
   */
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.AverageTime))
@@ -19,16 +19,22 @@ class KernelBenchmark:
   var worlds: Int = 0
 
   private var batch: DuelBatch = null
+  private var witness          = 0.0
 
   @Setup
   def prepare(): Unit = batch = Works.batch(LoopTiming.Stream(), 1)
 
+  @TearDown
+  def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")
+
   /** All candidates on one episode; its timetable is known after the first call. */
   @Benchmark
-  def candidates(): Float = fly(Works.Candidates(worlds, worlds, DelayTable.vpn, 1))
+  def candidates(): Double = fly(Works.Candidates(worlds, worlds, DelayTable.vpn, 1))
 
   /** Every world with delays of its own. */
   @Benchmark
-  def singleWorlds(): Float = fly(Works.Candidates(worlds, 1, DelayTable.vpn, 1))
+  def singleWorlds(): Double = fly(Works.Candidates(worlds, 1, DelayTable.vpn, 1))
 
-  private def fly(candidates: Works.Candidates): Float = batch.fly(candidates).meanLast10sM(0)
+  private def fly(candidates: Works.Candidates): Double =
+    witness = batch.fly(candidates).meanLast10sM.map(_.toDouble).sum / worlds
+    witness

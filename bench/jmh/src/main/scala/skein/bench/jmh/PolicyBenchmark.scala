@@ -1,0 +1,46 @@
+package skein.bench.jmh
+
+import java.util.concurrent.TimeUnit
+import org.openjdk.jmh.annotations.*
+import skein.bench.Works
+import skein.policy.{ChauffeurEvader, Policy, PolicyFamily}
+import skein.rollout.*
+
+/** What does a family of policies cost? 1,024 candidates of it, drawn from its space, fly one episode of 60 s of `stream`
+  * over `vpn` against the chauffeur's evader, warm, on one thread. Run: `./sbtw "benchJmh/Jmh/run PolicyBenchmark"`.
+  */
+@State(Scope.Benchmark)
+@BenchmarkMode(Array(Mode.AverageTime))
+@OutputTimeUnit(TimeUnit.MILLISECONDS)
+@Warmup(iterations = 3, time = 2)
+@Measurement(iterations = 5, time = 2)
+@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
+class PolicyBenchmark:
+  @Param(Array("paper-pursuer", "pure-pursuit", "proportional-navigation", "lead-pursuit", "neural:8x8"))
+  var family: String = ""
+
+  private var batch: DuelBatch  = null
+  private var worlds: DuelWorlds = null
+  private var witness           = 0.0
+
+  @Setup
+  def prepare(): Unit =
+    batch = Works.batch(LoopTiming.Stream(), 1)
+    val chosen   = PolicyFamily.parse(family).toOption.get
+    val policies = chosen.space.random(1024, 1).map(chosen.policy).toArray
+    val opponent = ChauffeurEvader()
+    worlds = new DuelWorlds:
+      def size: Int                       = policies.length
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = 1
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = policies(world)
+      def evader(world: Int): Policy      = opponent
+
+  @TearDown
+  def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")
+
+  @Benchmark
+  def candidates(): Double =
+    witness = batch.fly(worlds).meanLast10sM.map(_.toDouble).sum / worlds.size
+    witness
