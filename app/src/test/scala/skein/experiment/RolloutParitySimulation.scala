@@ -117,6 +117,22 @@ class RolloutParitySimulation extends munit.FunSuite:
     test(s"${loop.label} over $link"):
       check(loop, profile(link), seed)
 
+  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
+  // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides
+  // first, and sequential over 500 ms, where no answer comes in time.
+  private val ties = Seq(
+    LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms"),
+    LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),
+    LoopKind.Stream     -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
+    LoopKind.Predictive -> Seq("none", "constant:500ms")
+  )
+  for
+    (loop, links) <- ties
+    link          <- links
+  do
+    test(s"${loop.label} over $link, where times tie"):
+      check(loop, profile(link), 1)
+
   for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
     test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
       check(loop, LatencyProfile.vpn, 1, pairs = 2)

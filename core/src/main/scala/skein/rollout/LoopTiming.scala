@@ -38,7 +38,8 @@ enum LoopTiming:
 
   /** Every period one task per vehicle: it reads all vehicles one after the other, decides for its own at the last
     * answer and commands it. Tasks may overlap, `window` for each vehicle; what comes later waits, and further periods
-    * are missed. A decision waits for its turn to be sent.
+    * are missed. A decision waits for its turn to be sent. Where tasks of two vehicles end in the same nanosecond, which
+    * needs a link without jitter, the one asked first decides first; a flight's streams may choose otherwise.
     */
   case Futures(
       periodS: Double = 0.1,

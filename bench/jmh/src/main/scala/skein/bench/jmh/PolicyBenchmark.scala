@@ -12,16 +12,16 @@ import skein.rollout.*
 @State(Scope.Benchmark)
 @BenchmarkMode(Array(Mode.AverageTime))
 @OutputTimeUnit(TimeUnit.MILLISECONDS)
-@Warmup(iterations = 3, time = 2)
+@Warmup(iterations = 4, time = 4)
 @Measurement(iterations = 5, time = 2)
 @Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
 class PolicyBenchmark:
   @Param(Array("paper-pursuer", "pure-pursuit", "proportional-navigation", "lead-pursuit", "neural:8x8"))
   var family: String = ""
 
-  private var batch: DuelBatch  = null
+  private var batch: DuelBatch   = null
   private var worlds: DuelWorlds = null
-  private var witness           = 0.0
+  private var witness            = 0.0
 
   @Setup
   def prepare(): Unit =
