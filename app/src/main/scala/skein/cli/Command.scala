@@ -1,6 +1,6 @@
 package skein.cli
 
-import mainargs.{ParserForClass, Util}
+import mainargs.{ParserForClass, Result, Util}
 
 /** A command of `./skein`: one file each.
   *
@@ -45,11 +45,12 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       )
       0
     else
-      parser.constructEither(optionsFirst(arguments), autoPrintHelpAndExit = None) match
-        case Left(mistake) =>
-          Console.err.println(s"skein $name: ${mistake.trim}\nskein $name: --help tells the options")
+      parser.constructRaw(optionsFirst(arguments)) match
+        case failure: Result.Failure =>
+          Misuse.text(failure).linesIterator.foreach(mistake => Console.err.println(s"skein $name: $mistake"))
+          Console.err.println(s"skein $name: --help tells the options")
           2
-        case Right(options) =>
+        case Result.Success(options) =>
           execute(options) match
             case Right(())    => 0
             case Left(reason) =>

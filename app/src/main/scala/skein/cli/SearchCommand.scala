@@ -50,27 +50,22 @@ object SearchCommand
   protected def execute(options: SearchOptions): Either[String, Unit] =
     for
       threads <- options.forward.threadCount
-      _       <- Either.cond(
-        options.fresh.forall(count => count >= 2 && count <= 1_000_000),
-        (),
-        s"--fresh: expected 2 to 1000000, came ${options.fresh.getOrElse(0)}"
-      )
-      begun <- options.resume.fold(begin(options))(resume(options, _))
+      begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       setup <- question.setup
-      _     <- run(setup, folder, state.getOrElse(setup.search.start), threads, options.fresh)
+      _     <- run(setup, folder, state.getOrElse(setup.search.start), threads)
     yield ()
 
   private type Begun = (Path, SearchQuestion, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     import options.*
-    val others = Seq(family, role, method, link, period, candidates, episodes, population, out)
+    val others = Seq(family, role, method, link, period, candidates, episodes, population, fresh, out)
     for
       _ <- Either.cond(
         others.forall(_.isEmpty) && forward.isEmpty,
         (),
-        "--resume: everything but --threads and --fresh is taken from the folder; expected no other option"
+        "--resume: everything but --threads is taken from the folder; expected no other option"
       )
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
     yield (Path.of(folder), file.question, Some(file.state))
@@ -100,7 +95,8 @@ object SearchCommand
         options.population.getOrElse(
           CmaEs.defaultPopulation(family.space.dimension).max(40).min(candidates.max(4))
         ),
-        forward.seed.getOrElse(1)
+        forward.seed.getOrElse(1),
+        options.fresh
       )
       _ <- question.setup
       _ <- Either.cond(
@@ -117,8 +113,7 @@ object SearchCommand
       setup: SearchSetup,
       folder: Path,
       from: SearchState,
-      threads: Int,
-      fresh: Option[Int]
+      threads: Int
   ): Either[String, Unit] =
     val batch = setup.batch(threads)
     say(introduction(setup, batch))
@@ -136,7 +131,7 @@ object SearchCommand
           f"$flown%,d episodes of ${setup.conditions.duration}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
         if state.best.isEmpty then Right(goOn(folder))
-        else conclude(setup, batch, folder, state, fresh).map(_ => if !state.isDone then goOn(folder))
+        else conclude(setup, batch, folder, state).map(_ => if !state.isDone then goOn(folder))
 
   private def goOn(folder: Path): Unit =
     say(s"stopped; ./skein search --resume $folder goes on")
@@ -163,11 +158,11 @@ object SearchCommand
       setup: SearchSetup,
       batch: DuelBatch,
       folder: Path,
-      state: SearchState,
-      fresh: Option[Int]
+      state: SearchState
   ): Either[String, Unit] =
     val effort = Effort.of(setup, batch)
-    val result = SearchResult.measured(setup, batch, state, fresh.getOrElse(effort.freshEpisodes))
+    val result =
+      SearchResult.measured(setup, batch, state, setup.question.fresh.getOrElse(effort.freshEpisodes))
     for
       _ <- write(folder.resolve("policy.conf"), result.file.getBytes("UTF-8"))
       _ = say(result.summary)

@@ -15,6 +15,8 @@ import upickle.default.ReadWriter
   *   that each flies; when racing, in the first round
   * @param population
   *   of a generation, for the methods that have them
+  * @param fresh
+  *   episodes on which the winner is measured; without it, as many as the engine flies quickly
   */
 final case class SearchQuestion(
     family: String,
@@ -27,7 +29,8 @@ final case class SearchQuestion(
     candidates: Int,
     episodes: Int,
     population: Int,
-    seed: Long
+    seed: Long,
+    fresh: Option[Int] = None
 ) derives ReadWriter:
 
   /** @return or what was expected, what came, and in which option */
@@ -42,6 +45,11 @@ final case class SearchQuestion(
         .parse(if role == Role.Pursuer then Role.Evader else Role.Pursuer, opponent)
         .left
         .map("--opponent: " + _)
+      _ <- Either.cond(
+        fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode),
+        (),
+        s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
+      )
       method <- SearchQuestion.method(this, family.space.dimension)
     yield SearchSetup(this, family, role, objective, flown, delays, opponent, method)
 
