@@ -6,6 +6,8 @@ import skein.record.{Planned, Recording}
   *
   * @param candidates
   *   per plan
+  * @param slices
+  *   of all vehicles that were planned for together
   * @param tookMs
   *   from asking until the decision was there
   * @param missed
@@ -34,7 +36,7 @@ object PlanningSummary:
       candidates,
       slices,
       tookMs,
-      plans.count(slicesOf(_) == 0),
+      plans.count(_.candidates == 0),
       plans.count(_.breaches > 0)
     )
 
@@ -77,6 +79,6 @@ object PlanTable:
 
   /** How to read it. */
   val note: String =
-    "Candidate manoeuvres flown forward per tick, all searches together; ms from the tick to the decision; a deadline is " +
+    "Candidate manoeuvres flown forward per vehicle and tick, all searches together; slices are of all vehicles planned for together; ms from the tick to the decision; a deadline is " +
       "missed where no slice was ready, and the last plan went on or the policy decided; captured where the distance first is below 1.5 m, and " +
       "the share of the flight below it"

@@ -60,6 +60,13 @@ class TeamSimulation extends munit.FunSuite:
       val pauses = commands.map(_.sentAt).sorted.sliding(2).map(pair => pair(1).since(pair(0)))
       assert(pauses.forall(_ >= Span.ofMillis(20)), s"$vehicle is commanded faster than the rate cap allows")
 
+  test("twenty that plan cross over the VPN: the set separation is kept, and they are through sooner"):
+    val result = resultOf(fly(settings("crossing", LoopKind.Plan, LatencyProfile.vpn, 12.5)))
+    assertEquals(value(result, "violations"), 0.0, result.measures)
+    assert(value(result, "closest m") >= 2.5, result.measures)
+    // Avoiding one another by their policy, none of them is there before 13 s.
+    assert(value(result, "arrived") >= 15, result.measures)
+
   for (scenario, loop) <- Seq(
       "surround"  -> LoopKind.Paused,
       "formation" -> LoopKind.Futures,

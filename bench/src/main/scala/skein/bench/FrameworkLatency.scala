@@ -53,7 +53,7 @@ object FrameworkLatency:
       rigs.start(plan, recorder).flatMap(_.fold(reason => Future.failed(RuntimeException(reason)), _.landed))
     println(Await.result(outcome, Duration.Inf).outcome)
     for planned <- planning do
-      val candidates = planned.finish().map(_.candidates).sum
+      val candidates = planned.finish().flatMap(_.plans).map(_.candidates).sum
       println(f"planned meanwhile: ${candidates / seconds / 10}%.0f candidates of 2 s per 100 ms")
     val nanos               = observed.latencies.asScala.toVector.sorted
     def quantile(p: Double) = nanos((p * (nanos.size - 1)).toInt) / 1000

@@ -1,7 +1,7 @@
 package skein.bench
 
 import java.util.concurrent.atomic.AtomicLong
-import skein.flow.{BackgroundThread, PlanProblem, PlanSearch, ThreadedPlanWorkers}
+import skein.flow.{BackgroundThread, PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
 import skein.policy.PaperEvader
 import skein.vehicle.ReducedModel
@@ -20,19 +20,16 @@ object PlanBench:
   private def problem(behaviours: Int): PlanProblem =
     val settings  = PlannerSettings(blocksPerSlice = 4)
     val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
-    PlanProblem(
-      settings,
-      objective,
-      Situation(
-        Motion(0, 0, 8, 0),
-        0,
-        0.1,
-        ReducedModel.AirSim,
-        Behaviours.around(evader, behaviours, stream = 1)
-      ),
-      Planner(settings, objective).start,
-      stream = 1
+    val situation = Situation(
+      Motion(0, 0, 8, 0),
+      0,
+      0.1,
+      ReducedModel.AirSim,
+      Behaviours.around(evader, behaviours, stream = 1)
     )
+    PlanProblem(settings, Vector(Part(objective, situation, stream = 1)))
+
+  private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
 
   def main(args: Array[String]): Unit =
     val seconds = args.headOption.fold(2.0)(_.toDouble)
@@ -45,7 +42,9 @@ object PlanBench:
 
   /** A search that goes on until it is finished, on the `plan` loop's own threads. */
   def endlessly(threads: Int): Option[PlanSearch] =
-    Option.when(threads > 0)(new ThreadedPlanWorkers(threads).begin(problem(behaviours = 1)))
+    Option.when(threads > 0):
+      val problem = this.problem(behaviours = 1)
+      new ThreadedPlanWorkers(threads).begin(problem, warm(problem))
 
   private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Float) =
     val (candidates, cpuNanos) = (AtomicLong(), AtomicLong())
@@ -56,14 +55,14 @@ object PlanBench:
     val best                   = Array.fill(threads)(Float.PositiveInfinity)
     val workers                = Vector.tabulate(threads): search =>
       factory.newThread: () =>
-        val planner = Planner(problem.settings, problem.objective)
-        var plan    = problem.warm
+        val planner = JointPlanner()
+        var plan    = warm(problem)
         val before  = timer.getCurrentThreadCpuTime
         while System.nanoTime() < until do
-          plan = planner.improve(plan, problem.situation, problem.streamOf(search))
+          plan = planner.improved(problem, plan, search)
         cpuNanos.addAndGet(timer.getCurrentThreadCpuTime - before): Unit
-        candidates.addAndGet(plan.candidates): Unit
-        best(search) = plan.cost
+        candidates.addAndGet(plan.plans.head.candidates): Unit
+        best(search) = plan.plans.head.cost
     workers.foreach(_.start())
     workers.foreach(_.join())
     val wallNanos = System.nanoTime() - start

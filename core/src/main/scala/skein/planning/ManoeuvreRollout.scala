@@ -109,7 +109,8 @@ object ManoeuvreRollout:
     val length = math.sqrt(u * u + w * w + Tiny)
     ((u * c - w * s) / length, (u * s + w * c) / length)
 
-  private final class Flyer(start: Motion, response: ReducedModel, dtS: Double):
+  /** A vehicle under its commands, step by step. Mutable. */
+  private[planning] final class Flyer(start: Motion, response: ReducedModel, dtS: Double):
     var x  = start.x
     var y  = start.y
     var vx = start.vx

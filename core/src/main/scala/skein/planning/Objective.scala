@@ -51,6 +51,9 @@ object Geofence:
 final case class Separation(minimum: Double, margin: Double = 1, growth: Double = 0.5, price: Double = 20):
   require(minimum >= 0 && margin >= 0 && growth >= 0 && price >= 0, s"must not be negative: $this")
 
+  /** Whether there is anything to be kept. */
+  def isKept: Boolean = minimum > 0
+
   /** Within which coming nearer costs, m. */
   def clearance(aheadS: Double): Double = minimum + margin + growth * aheadS
 

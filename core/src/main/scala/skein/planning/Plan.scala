@@ -47,9 +47,4 @@ final case class Search(
   * @param candidates
   *   tried so far
   */
-final case class Plan(manoeuvre: Manoeuvre, cost: Float, search: Search, slices: Int, candidates: Long):
-
-  /** What `other` found, where that is better; on a tie this one. Counts what both have tried. */
-  def orBetter(other: Plan): Plan =
-    val better = if other.cost < cost then other else this
-    better.copy(slices = slices + other.slices, candidates = candidates + other.candidates)
+final case class Plan(manoeuvre: Manoeuvre, cost: Float, search: Search, slices: Int, candidates: Long)

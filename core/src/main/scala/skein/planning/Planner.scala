@@ -111,7 +111,7 @@ final class Planner private[planning] (
       for i <- 0 until size do
         keys(i) = WorldRandom.key(stream, plan.slices, number * size + i)
       block.draw(keys, plan.search, stepsPerKnot)
-      if number == 0 then known(plan).zipWithIndex.foreach(put)
+      if number == 0 then (known(plan) ++ situation.suggested).zipWithIndex.foreach(put)
       block.fly()
       if number == 0 then base = block.costs(0)
       val least = cheapest

@@ -80,6 +80,8 @@ final case class Behaviour(target: Target, weight: Double = 1)
   *   of the target, the same for all candidates, which makes their costs comparable
   * @param others
   *   vehicles to keep apart from
+  * @param suggested
+  *   manoeuvres that every slice tries besides its own, at most 16
   */
 final case class Situation(
     own: Motion,
@@ -87,6 +89,8 @@ final case class Situation(
     sinceDecisionS: Double,
     response: ReducedModel,
     behaviours: Vector[Behaviour],
-    others: Vector[PredictedTrack] = Vector.empty
+    others: Vector[PredictedTrack] = Vector.empty,
+    suggested: Vector[Manoeuvre] = Vector.empty
 ):
+  require(suggested.size <= 16, s"at most 16 manoeuvres may be suggested, came ${suggested.size}")
   require(sinceDecisionS >= 0, s"time since the last decision must not be negative, came $sinceDecisionS s")

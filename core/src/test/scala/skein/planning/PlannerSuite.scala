@@ -101,12 +101,12 @@ class PlannerSuite extends munit.FunSuite:
     val lanes    = new Planner(settings, objective, PlanKernel(settings.steps))
     assertEqualsDouble(improved(scalar, pursuit, 3).cost, improved(lanes, pursuit, 3).cost, 1e-3)
 
-  test("of two plans the cheaper one is kept, and all candidates are counted"):
-    val planner       = Planner(PlannerSettings(), objective)
-    val (short, long) = (improved(planner, pursuit, 1), improved(planner, pursuit, 6, stream = 9))
-    val better        = if long.cost < short.cost then long else short
-    assertEquals(short.orBetter(long).cost, better.cost)
-    assertEquals(short.orBetter(long).candidates, short.candidates + long.candidates)
+  test("a manoeuvre that is suggested is tried, and found where it is the best"):
+    val planner = Planner(PlannerSettings(), objective)
+    val good    = improved(planner, pursuit, 20, stream = 5).manoeuvre
+    val told    = improved(planner, pursuit.copy(suggested = Vector(good)), 1)
+    assert(told.cost <= costs(good, pursuit, planner) + 1e-3)
+    assert(told.cost < improved(planner, pursuit, 1).cost)
 
   test("a manoeuvre shifted by a part of a step is met in between"):
     val manoeuvre = Manoeuvre(IArray(0f, 1f, 2f), IArray(5f, 5f, 5f))

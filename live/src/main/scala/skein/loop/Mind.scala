@@ -1,50 +1,42 @@
 package skein.loop
 
-import skein.flow.{Plan, PlanProblem, Planners}
+import skein.flow.Plan
+import skein.planning.{JointPlanner, PlanProblem}
 import skein.record.Decision
 import skein.units.Instant
 
-/** What one vehicle's decisions are made by when they are made again, with its memory. Immutable but for scratch memory.
-  */
-private trait Mind:
+/** What one vehicle's decisions are made by when they are made again, with its memory. Immutable. */
+private final class Mind(decider: Decider, memory: Memory):
   /** Whether decisions depend on more vehicles than this one and its opponent. */
-  def regardsTeam: Boolean
+  def regardsTeam: Boolean = decider.regardsTeam
 
-  /** Whether decisions are searched for. */
-  def searches: Boolean
+  def decide(picture: Picture, now: Instant): (Mind, Decision) = decideBy(decider, picture, now)
 
-  /** @param slices
+  /** As another would in its place, this once. */
+  def decideBy(one: Decider, picture: Picture, now: Instant): (Mind, Decision) =
+    val (next, decision) = one.decide(memory, picture, now)
+    (Mind(decider, next), decision)
+
+/** What the decisions of vehicles that plan together are made by when they are made again. Immutable but for scratch
+  * memory.
+  */
+private final class JointMind private (
+    val planning: JointPlanning,
+    planner: JointPlanner,
+    memories: Vector[Memory],
+    last: Option[Plan.Answer]
+):
+  def this(planning: JointPlanning, memories: Vector[Memory]) = this(planning, JointPlanner(), memories, None)
+
+  /** @param pictures
+    *   by vehicle
+    * @param slices
     *   of each search
     */
-  def decide(picture: Picture, now: Instant, slices: Vector[Int]): (Mind, Decision)
-
-private object Mind:
-
-  final class Deciding(decider: Decider, memory: Memory) extends Mind:
-    def regardsTeam: Boolean = decider.regardsTeam
-    def searches: Boolean    = false
-
-    def decide(picture: Picture, now: Instant, slices: Vector[Int]): (Mind, Decision) =
-      decideBy(decider, picture, now)
-
-    /** As another would in its place, this once. */
-    def decideBy(one: Decider, picture: Picture, now: Instant): (Mind, Decision) =
-      val (next, decision) = one.decide(memory, picture, now)
-      (Deciding(decider, next), decision)
-
-  final class Searching(planning: Planning, planners: Planners, memory: Memory, last: Option[Plan.Answer])
-      extends Mind:
-    def this(planning: Planning, memory: Memory) = this(planning, Planners(), memory, None)
-
-    def regardsTeam: Boolean = planning.regardsTeam
-    def searches: Boolean    = true
-
-    def decide(picture: Picture, now: Instant, slices: Vector[Int]): (Mind, Decision) =
-      val (situation, stream) = planning.pose(memory, picture, now)
-      val planner             = planners.of(planning.planner, planning.objective)
-      val warm                = planner.resumed(last.fold(planner.start)(_.best), situation.sinceDecisionS)
-      val problem             = PlanProblem(planning.planner, planning.objective, situation, warm, stream)
-      val found  = slices.zipWithIndex.map((count, search) => planners.searched(problem, search, count))
-      val answer = Plan.Answer.of(found, situation, last)
-      val (next, planned) = planning.decide(memory, picture, now, situation, answer)
-      (Searching(planning, planners, next, Some(answer)), planned.decision)
+  def decide(pictures: Vector[Picture], now: Instant, slices: Vector[Int]): (JointMind, Vector[Decision]) =
+    val problem = PlanProblem(planning.planner, planning.pose(memories, pictures, now))
+    val warm    = planner.resumed(problem, last.map(_.best))
+    val found   = slices.zipWithIndex.map((count, search) => planner.searched(problem, warm, search, count))
+    val answer  = Plan.Answer.of(found, problem, last)
+    val (next, planned) = planning.decide(memories, pictures, now, problem.parts, answer)
+    (JointMind(planning, planner, next, Some(answer)), planned.map(_.decision))

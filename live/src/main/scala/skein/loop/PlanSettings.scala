@@ -17,7 +17,8 @@ import skein.vehicle.ReducedModel
   * @param searches
   *   side by side: as many threads as that in real time
   * @param slices
-  *   of each search in virtual time, where the clock does not end it
+  *   of each search in virtual time, where the clock does not end it; several vehicles share them, and get one each at
+  *   least
   * @param blocksPerSlice
   *   128 candidates each; between two slices a search looks whether its time is over
   * @param turningRadiusM

@@ -1,8 +1,7 @@
 package skein.loop
 
-import skein.flow.Plan
 import skein.planning.*
-import skein.policy.{GoalPolicy, PaperEvader, Policy, Role, Scenario}
+import skein.policy.{Agent, GoalPolicy, PaperEvader, Policy, Role, Scenario, TeamPolicy}
 import skein.record.Decision
 import skein.signal.Kinematics
 import skein.units.*
@@ -18,18 +17,23 @@ trait Planning:
   /** Whether plans depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean
 
-  /** What is planned upon, from a picture with the estimates of when the command will act, and a stream of random
-    * numbers.
-    */
-  def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long)
+  /** What is planned upon, from a picture with the estimates of when the command will act. */
+  def pose(memory: Memory, picture: Picture, now: Instant): Part
 
-  /** The decision for what was found. */
+  /** The decision for what was found.
+    *
+    * @param situation
+    *   in which it keeps apart from the planned ways of others too
+    * @param byPolicy
+    *   whether the vehicle's policy decides in the plan's place
+    */
   def decide(
       memory: Memory,
       picture: Picture,
       now: Instant,
       situation: Situation,
-      answer: Plan.Answer
+      plan: Plan,
+      byPolicy: Boolean
   ): (Memory, PlannedDecision)
 
 /** A decision that was planned, and how.
@@ -37,9 +41,15 @@ trait Planning:
   * @param byPolicy
   *   whether the last plan was too old to go on with
   */
-final case class PlannedDecision(decision: Decision, action: Action, answer: Plan.Answer, byPolicy: Boolean)
+final case class PlannedDecision(decision: Decision, action: Action, plan: Plan, byPolicy: Boolean)
 
 object Planning:
+
+  /** Whether a vehicle's decisions are planned; else its policy decides. */
+  private[loop] def plans(agent: Agent): Boolean = agent.policy match
+    case _: Policy     => agent.role == Role.Pursuer
+    case _: GoalPolicy => true
+    case _: TeamPolicy => false
 
   /** How a vehicle's decisions are planned; absent where its policy decides.
     *
@@ -48,10 +58,10 @@ object Planning:
     */
   def of(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
     val agent = scenario.agents(self)
-    agent.policy match
-      case _: Policy if agent.role == Role.Pursuer => Some(PursuitPlanning(scenario, self, settings, seed))
-      case team: GoalPolicy                        => Some(TeamPlanning(scenario, self, team, settings, seed))
-      case _                                       => None
+    Option.when(plans(agent)):
+      agent.policy match
+        case goal: GoalPolicy => TeamPlanning(scenario, self, goal, settings, seed)
+        case _                => PursuitPlanning(scenario, self, settings, seed)
 
   /** After a longer pause a vehicle turns no further at once than in this time, s. */
   private val LongestTurnS = 0.5
@@ -70,17 +80,18 @@ object Planning:
   private[loop] def straight(motion: Motion, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)
 
-  /** Whether nothing was searched for half a horizon. */
-  private[loop] def isOutdated(answer: Plan.Answer, planner: PlannerSettings): Boolean =
-    answer.unsearchedS > planner.horizonS / 2
+  /** The vehicles of which nothing is planned, but for one. */
+  private[loop] def unplanned(scenario: Scenario, but: Int): Vector[Int] =
+    scenario.agents.indices.toVector.filter(other => other != but && !plans(scenario.agents(other)))
 
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
   * horizon, and to capture it.
   *
   * Its turn rate stays below speed / turning radius. The evader is taken to fly by its policy where that is the paper's,
-  * which answers to the pursuer's commands; else to fly straight on. All other vehicles are taken to fly straight on.
+  * which answers to the pursuer's commands; else to fly straight on. Of all others, those that plan fly by their plans, the
+  * rest straight on.
   *
-  * Where nothing was searched for half a horizon, the vehicle's own policy decides, within the turn limit.
+  * In its place the vehicle's own policy decides within the turn limit.
   */
 private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
     extends Planning:
@@ -105,12 +116,11 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
 
   def regardsTeam: Boolean = settings.separationM > 0
 
-  def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long) =
+  def pose(memory: Memory, picture: Picture, now: Instant): Part =
     val opponent = scenario.opponentOf(self, picture.kinematics(_).positionNed)
     val stream   = Planning.stream(seed, self, memory)
     val others   =
-      if !regardsTeam then Vector.empty
-      else scenario.agents.indices.filter(other => other != self && other != opponent).toVector
+      if regardsTeam then Planning.unplanned(scenario, but = opponent) else Vector.empty
     val situation = Situation(
       motion(picture.kinematics(self)),
       memory.headingRad,
@@ -119,7 +129,7 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
       Behaviours.around(target(opponent, motion(picture.kinematics(opponent))), settings.behaviours, stream),
       others.map(other => straight(motion(picture.kinematics(other)), planner))
     )
-    (situation, stream)
+    Part(objective, situation, stream)
 
   private def target(opponent: Int, motion: Motion): Target = scenario.agents(opponent).policy match
     case paper: PaperEvader =>
@@ -131,11 +141,11 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
       picture: Picture,
       now: Instant,
       situation: Situation,
-      answer: Plan.Answer
+      plan: Plan,
+      byPolicy: Boolean
   ): (Memory, PlannedDecision) =
-    val byPolicy = Planning.isOutdated(answer, planner)
-    val action   =
-      if !byPolicy then Action.of(answer.best, situation, objective, planner.dtS)
+    val action =
+      if !byPolicy then Action.of(plan, situation, objective, planner.dtS)
       else
         val (_, decision) = decider.decide(memory, picture, now)
         val most          = objective.limits.turnRateAt(speed) * situation.sinceDecisionS
@@ -144,7 +154,7 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
     val chosen           = Option.when(settings.slowestShare < 1)(MetresPerSecond(action.speed))
     val (next, decision) =
       decider.decided(memory, picture, now, memory.headingRad + action.turned, chosen)
-    (next, PlannedDecision(decision, action, answer, byPolicy))
+    (next, PlannedDecision(decision, action, plan, byPolicy))
 
 private object PursuitPlanning:
   /** Weights of [[skein.planning.Objective]]; see there. */

@@ -35,34 +35,100 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
   private val planned =
     recording.planned.map(planned => (planned.vehicle, planned.decision) -> planned).toMap
 
+  private val joint = Option
+    .when(recording.flight.loop == LoopKind.Plan.label)(())
+    .flatMap(_ => JointPlanning.of(scenario, planning, recording.flight.seed))
+  private val planners = joint.fold(Vector.empty)(_.vehicles).map(scenario.agents(_).name)
+
+  /** Decisions made together, by their time and vehicle. */
+  private val together =
+    recording.decisions
+      .filter(decision => planners.contains(decision.vehicle))
+      .groupBy(_.decidedAt)
+      .view
+      .mapValues(_.map(decision => decision.vehicle -> decision).toMap)
+      .toMap
+
   /** The first decision that comes out differently. */
   def firstDifference: Option[Difference] =
-    recording.decisions.iterator
-      .scanLeft((scenario.agents.indices.map(mind).toVector, Option.empty[Difference])): (state, recorded) =>
-        val (minds, _) = state
-        again(minds, recorded) match
-          case Left(difference)        => (minds, Some(difference))
-          case Right((mind, decision)) =>
-            (minds.updated(indexOf(recorded.vehicle), mind), Difference.between(recorded, decision))
+    val minds = scenario.agents.indices.toVector.map: self =>
+      val decider = Decider(scenario, self)
+      Mind(decider, decider.start)
+    val jointly =
+      joint.map(planning => JointMind(planning, planning.vehicles.map(Decider(scenario, _).start)))
+    whole.iterator
+      .scanLeft((Minds(minds, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
+        again(state._1, recorded) match
+          case Left(difference)         => (state._1, Some(difference))
+          case Right((minds, decision)) => (minds, Difference.between(recorded, decision))
       .collectFirst { case (_, Some(difference)) => difference }
 
-  private def mind(self: Int): Mind =
-    val decider = Decider(scenario, self)
-    Option
-      .when(recording.flight.loop == LoopKind.Plan.label)(())
-      .flatMap(_ => Planning.of(scenario, self, planning, recording.flight.seed))
-      .fold(Mind.Deciding(decider, decider.start))(Mind.Searching(_, decider.start))
+  /** All decisions, but for those made together last of which a recording that broke off has not got all. */
+  private def whole: Vector[Decision] =
+    val cut = together.maxByOption(_._1).filter(_._2.size < planners.size).map(_._1)
+    recording.decisions.filterNot(decision =>
+      cut.contains(decision.decidedAt) && planners.contains(decision.vehicle)
+    )
 
-  private def again(minds: Vector[Mind], recorded: Decision): Either[Difference, (Mind, Decision)] =
+  private def again(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
+    (minds.decided.get(recorded.vehicle, recorded.sequence), minds.jointly) match
+      case (Some(decision), _)                                       => Right((minds, decision))
+      case (None, Some(mind)) if planners.contains(recorded.vehicle) => againTogether(minds, mind, recorded)
+      case _                                                         => againAlone(minds, recorded)
+
+  private def againAlone(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
     for
-      self     <- vehicle(recorded, "vehicle", recorded.vehicle)
+      self    <- vehicle(recorded, "vehicle", recorded.vehicle)
+      picture <- picture(recorded, self, minds.single(self).regardsTeam)
+    yield
+      val mind             = minds.single(self)
+      val (next, decision) =
+        if missed((recorded.vehicle, recorded.sequence)) then
+          mind.decideBy(instead(self), picture, recorded.decidedAt)
+        else mind.decide(picture, recorded.decidedAt)
+      (minds.copy(single = minds.single.updated(self, next)), decision)
+
+  private def againTogether(
+      minds: Minds,
+      mind: JointMind,
+      recorded: Decision
+  ): Either[Difference, (Minds, Decision)] =
+    val made = together(recorded.decidedAt)
+    for
+      all <- collected(planners): name =>
+        made.get(name).toRight(Difference(
+          where(recorded),
+          "vehicle",
+          name,
+          "expected to decide at that time too"
+        ))
+      pictures <- collected(all): decision =>
+        vehicle(decision, "vehicle", decision.vehicle).flatMap(self =>
+          picture(decision, self, mind.planning.regardsTeam(self))
+        )
+      slices <- searched(recorded)
+    yield
+      val (next, decisions) = mind.decide(pictures, recorded.decidedAt, slices)
+      val decided = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+      // Where its number is another, it differs from what is recorded.
+      val own = decisions(planners.indexOf(recorded.vehicle))
+      (minds.copy(jointly = Some(next), decided = decided), own)
+
+  private def collected[A, B](all: Vector[A])(one: A => Either[Difference, B])
+      : Either[Difference, Vector[B]] =
+    all.map(one).partitionMap(identity) match
+      case (Vector(), found) => Right(found)
+      case (missing, _)      => Left(missing.head)
+
+  /** What a decision was made from. */
+  private def picture(recorded: Decision, self: Int, regardsTeam: Boolean): Either[Difference, Picture] =
+    for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
       own      <- reading(recorded, "ownSequence", recorded.own)
       opponent <- reading(recorded, "opponentSequence", recorded.opponent)
       ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
       itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
-      others   <- if minds(self).regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
-      slices   <- searched(minds(self), recorded)
+      others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
     yield
       val empty = Picture.empty(scenario.agents.size)
       val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
@@ -72,25 +138,19 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
         alignment = recorded.trueAge.map(alignment)
       )
       val possible = pictures(known, recorded)
-      val picture  = possible
+      possible
         .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
-      minds(self) match
-        case deciding: Mind.Deciding if missed((recorded.vehicle, recorded.sequence)) =>
-          deciding.decideBy(instead(self), picture, recorded.decidedAt)
-        case mind => mind.decide(picture, recorded.decidedAt, slices)
 
-  /** How far each search of a decision went; empty where nothing is searched. */
-  private def searched(mind: Mind, of: Decision): Either[Difference, Vector[Int]] =
+  /** How far each search of a decision went. */
+  private def searched(of: Decision): Either[Difference, Vector[Int]] =
     def missing(found: String) = Difference(where(of), "slices", found, "expected in the table of plans")
-    if !mind.searches then Right(Vector.empty)
-    else
-      for
-        row    <- planned.get((of.vehicle, of.sequence)).toRight(missing("absent"))
-        slices <- row.slices.split(',').toVector.partitionMap(text => text.toIntOption.toRight(text)) match
-          case (Vector(), slices) => Right(slices)
-          case _                  => Left(missing(row.slices))
-      yield slices
+    for
+      row    <- planned.get((of.vehicle, of.sequence)).toRight(missing("absent"))
+      slices <- row.slices.split(',').toVector.partitionMap(text => text.toIntOption.toRight(text)) match
+        case (Vector(), slices) => Right(slices)
+        case _                  => Left(missing(row.slices))
+    yield slices
 
   /** Who decided where a deadline was missed. */
   private def instead(self: Int): Decider =
@@ -194,6 +254,17 @@ final class Replay(scenario: Scenario, recording: Recording, planning: PlanSetti
   private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
+  /** @param jointly
+    *   where some plan
+    * @param decided
+    *   together last, by vehicle and number
+    */
+  private final case class Minds(
+      single: Vector[Mind],
+      jointly: Option[JointMind],
+      decided: Map[(String, Long), Decision]
+  )
+
   /** The parameter that names what was done where deadlines were missed. */
   val Fallback: String = "fallback"
 

@@ -98,17 +98,24 @@ final class Team(
 
   /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
     * predictions turned out.
+    */
+  def predict(vehicle: Int): Flow[Sight, Sight, NotUsed] =
+    Flow[Sight]
+      .collect { case sight if sight.deciders(vehicle) => sight }
+      .via(predict(Vector(vehicle), lead = Span.Zero))
+
+  /** Carries sights forward to when the commands of some vehicles will act, and records how earlier predictions turned
+    * out.
     *
     * @param lead
     *   how much later that is because of what is done with the sight
     */
-  def predict(vehicle: Int, lead: Span = Span.Zero): Flow[Sight, Sight, NotUsed] =
+  def predict(deciders: Vector[Int], lead: Span): Flow[Sight, Sight, NotUsed] =
     Flow[Sight]
-      .collect(Function.unlift(sight =>
-        sight.picture.forecast.filter(_ => sight.deciders(vehicle)).map((sight, _))
-      ))
-      .via(Predict.whenActing(clock, verified(vehicle), lead)(verified =>
-        recorder.offer(prediction(vehicle, verified))
+      .collect(Function.unlift(sight => sight.picture.forecast.map((sight, _))))
+      .via(Predict.whenActing(clock, vehicle => deciders.exists(verified(_)(vehicle)), lead)(outcome =>
+        for decider <- deciders if verified(decider)(outcome.vehicle) do
+          recorder.offer(prediction(decider, outcome))
       ))
       .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
 
@@ -176,29 +183,26 @@ final class Team(
       .via(Tap(record(vehicle, _, _)))
       .map(_._1)
 
-  /** How a vehicle's decisions are planned, where they are. */
-  def planning(vehicle: Int): Option[Planning] =
-    Planning.of(scenario, vehicle, settings.planning, settings.seed)
+  /** How the decisions of those vehicles are planned that plan. */
+  val planning: Option[JointPlanning] = JointPlanning.of(scenario, settings.planning, settings.seed)
 
-  /** Plans for one vehicle on the sights that are meant for it, and records the decision and how it was planned. */
-  def plan(vehicle: Int, planning: Planning)(using ActorSystem): Flow[Sight, Decision, NotUsed] =
+  /** Plans upon each sight for all vehicles that plan, and records the decisions and how they were planned. */
+  def plan(planning: JointPlanning)(using ActorSystem): Flow[Sight, Vector[(Int, Decision)], NotUsed] =
     type Seen = (Picture, Instant)
+    val vehicles = planning.vehicles
     Flow[Sight]
-      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
-      .via(Plan.within(
-        settings.planning.deadline,
-        workers,
-        planning.planner,
-        planning.objective,
-        start(vehicle)
-      )(
-        (memory, seen: Seen) => planning.pose(memory, seen._1, seen._2),
-        (memory, seen: Seen, situation, answer) =>
-          val (next, planned) = planning.decide(memory, seen._1, seen._2, situation, answer)
-          (next, (planned, seen._1))
+      .map(sight => (sight.picture, clock.now()))
+      .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
+        (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
+        (memories, seen: Seen, parts, answer) =>
+          val (next, planned) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
+          (next, (planned, answer, seen._1))
       ))
-      .via(Tap((planned, picture) => record(vehicle, planning, planned, picture)))
-      .map((planned, _) => planned.decision)
+      .via(Tap((planned, answer, picture) =>
+        for (vehicle, one) <- vehicles.zip(planned) do
+          record(vehicle, one, answer, picture, planning.regardsTeam(vehicle))
+      ))
+      .map((planned, _, _) => vehicles.zip(planned.map(_.decision)))
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
@@ -307,21 +311,27 @@ final class Team(
     recorder.offer(decision)
     deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
 
-  private def record(vehicle: Int, planning: Planning, planned: PlannedDecision, picture: Picture): Unit =
-    val PlannedDecision(decision, action, answer, byPolicy) = planned
-    record(vehicle, decision, picture, planning.regardsTeam)
+  private def record(
+      vehicle: Int,
+      planned: PlannedDecision,
+      answer: Plan.Answer,
+      picture: Picture,
+      regardsTeam: Boolean
+  ): Unit =
+    val PlannedDecision(decision, action, plan, byPolicy) = planned
+    record(vehicle, decision, picture, regardsTeam)
     recorder.offer(
       Planned(
         name(vehicle),
         decision.sequence,
-        answer.best.candidates,
+        plan.candidates,
         answer.slices.mkString(","),
-        Option.when(answer.best.cost.isFinite)(answer.best.cost),
+        Option.when(plan.cost.isFinite)(plan.cost),
         clock.now().since(decision.decidedAt),
         action.breaches.size
       )
     )
-    if answer.isMissed then
+    if plan.slices == 0 then
       val instead = if byPolicy then "the policy decides" else "the last plan goes on"
       note(EventKind.DeadlineMissed, Some(vehicle), s"no slice was searched: $instead")
     for breach <- action.breaches.headOption do

@@ -1,18 +1,15 @@
 package skein.loop
 
-import skein.flow.Plan
 import skein.planning.*
-import skein.policy.{GoalPolicy, Scenario}
+import skein.policy.{GoalPolicy, Scenario, TeamSight}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Plans for one vehicle of a team, by itself: to be where its policy wants to be, and to keep the set separation from all
-  * others. They are taken to fly straight on: what is commanded to them changes faster than their velocities.
+/** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
+  * Those that plan fly by their plans, the rest are taken to fly straight on.
   *
-  * The separation planned for is wider than the set one by [[TeamPlanning.Doubt]], since the others plan too, and turn.
-  * Of the others, the nearest [[TeamPlanning.Regarded]] count, and only those that can be met within the horizon.
-  *
-  * Where nothing was searched for half a horizon, the vehicle's own policy decides.
+  * The separation planned for is wider than the set one by [[TeamPlanning.Doubt]], since vehicles do not follow their
+  * models exactly and commands come at other times than expected.
   */
 private final class TeamPlanning(
     scenario: Scenario,
@@ -36,8 +33,8 @@ private final class TeamPlanning(
     Limits(0, policy.mostMps, TeamPlanning.MostTurnRadps),
     distance = 1,
     carried = 0.5,
-    turning = 0.1,
-    speedChange = 0.05,
+    turning = 0.3,
+    speedChange = 0.1,
     cruiseSpeed = agent.speed.value,
     separation =
       if minimumM > 0 then Separation(minimumM + TeamPlanning.Doubt, margin = 0.8, growth = 0.5)
@@ -47,48 +44,52 @@ private final class TeamPlanning(
 
   def regardsTeam: Boolean = true
 
-  def pose(memory: Memory, picture: Picture, now: Instant): (Situation, Long) =
+  def pose(memory: Memory, picture: Picture, now: Instant): Part =
     val sight  = decider.sight(memory, picture, now)
     val own    = motion(picture.kinematics(self))
-    val stream = Planning.stream(seed, self, memory)
     val wanted = Vector.tabulate(planner.steps)(step => policy.wanted(sight, (step + 1) * planner.dtS))
-    val others = if minimumM == 0 then Vector.empty else near(own, picture)
-    (
-      Situation(
-        own,
-        memory.headingRad,
-        Planning.sinceDecisionS(memory, now),
-        response,
-        Vector(Behaviour(Target.Along(PredictedTrack(
-          IArray.from(wanted.map(_._1)),
-          IArray.from(wanted.map(_._2))
-        )))),
-        others
-      ),
-      stream
+    val others =
+      if minimumM == 0 then Vector.empty
+      else
+        Planning.unplanned(scenario, but = self).map(other =>
+          straight(motion(picture.kinematics(other)), planner)
+        )
+    val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
+    val alone = Situation(
+      own,
+      memory.headingRad,
+      Planning.sinceDecisionS(memory, now),
+      response,
+      Vector(Behaviour(Target.Along(along))),
+      others
+    )
+    Part(
+      // Other speeds than that of the place wanted are for catching up.
+      objective.copy(cruiseSpeed = speed(along)),
+      alone.copy(suggested = suggested(sight, alone)),
+      Planning.stream(seed, self, memory)
     )
 
-  private def near(own: Motion, picture: Picture): Vector[PredictedTrack] =
-    val reachM = minimumM + 2 * policy.mostMps * planner.horizonS
-    scenario.agents.indices.toVector
-      .filter(_ != self)
-      .map(other => motion(picture.kinematics(other)))
-      .map(other => (other, math.hypot(other.x - own.x, other.y - own.y)))
-      .filter(_._2 < reachM)
-      .sortBy(_._2)
-      .take(TeamPlanning.Regarded)
-      .map((other, _) => straight(other, planner))
+  /** From a track's first place to its last, m/s. */
+  private def speed(track: PredictedTrack): Double =
+    val last = track.steps - 1
+    math.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
+
+  /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
+  private def suggested(sight: TeamSight, situation: Situation): Vector[Manoeuvre] =
+    if policy.minimumM > 0 then Vector.empty
+    else Vector(PolicyManoeuvre.of(policy, sight, situation, objective.limits, planner.steps, planner.dtS))
 
   def decide(
       memory: Memory,
       picture: Picture,
       now: Instant,
       situation: Situation,
-      answer: Plan.Answer
+      plan: Plan,
+      byPolicy: Boolean
   ): (Memory, PlannedDecision) =
-    val byPolicy = Planning.isOutdated(answer, planner)
-    val action   =
-      if !byPolicy then Action.of(answer.best, situation, objective, planner.dtS)
+    val action =
+      if !byPolicy then Action.of(plan, situation, objective, planner.dtS)
       else
         val course = policy.course(decider.sight(memory, picture, now))
         Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
@@ -99,14 +100,11 @@ private final class TeamPlanning(
       memory.headingRad + action.turned,
       Some(MetresPerSecond(action.speed))
     )
-    (next, PlannedDecision(decision, action, answer, byPolicy))
+    (next, PlannedDecision(decision, action, plan, byPolicy))
 
 private object TeamPlanning:
   /** On top of the set separation, m. */
-  val Doubt = 1.3
-
-  /** Other vehicles that a plan regards. */
-  val Regarded = 8
+  val Doubt = 1.0
 
   /** Of a multirotor that turns on the spot: as fast as plans of 0.1 s steps can turn. */
   val MostTurnRadps = 4.0
