@@ -97,7 +97,7 @@ lazy val app = project
       // The experiment's seven flights of a minute in virtual time have landed before optimising them pays.
       """case " $* " in""",
       """  *" plan "*|*" --config"*|*" --duration"*|*" --pairs"*|*" --scenario"*) ;;""",
-      """  *" fly "*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;;""",
+      """  *" fly"*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;;""",
       """esac""",
       """addJava "-Xlog:disable""""
     )
