@@ -7,8 +7,9 @@ private object Misuse:
 
   def text(failure: Result.Failure): String = failure match
     case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>
+      // mainargs takes all that stands behind an unknown word for unknown, too.
       val all = missing.map(option => s"${name(option)}: expected, but not given") ++
-        unknown.map(word => s"$word: no such option or argument") ++
+        unknown.take(1).map(word => s"$word: no such option or argument") ++
         duplicate.map((option, words) =>
           s"${name(option)}: expected once, came ${words.mkString(" and ")}"
         ) ++

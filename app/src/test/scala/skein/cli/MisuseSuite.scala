@@ -21,7 +21,7 @@ class MisuseSuite extends munit.FunSuite:
         (BudgetCommand, Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
         (SearchCommand, Seq("--seed"), "--seed: expected a value behind it"),
         (SearchCommand, Seq("--seed", "1", "--seed", "2"), "--seed: expected once, came 1 and 2"),
-        (SearchCommand, Seq("--sed", "1"), "--sed: no such option or argument")
+        (SearchCommand, Seq("--sed", "1", "--period", "1s"), "--sed: no such option or argument")
       )
     do
       val (status, lines) = misused(command, arguments*)
