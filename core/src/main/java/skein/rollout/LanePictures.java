@@ -31,7 +31,16 @@ final class LanePictures {
   /** As late as a time counts. */
   private static final int LATEST = 2_000_000_000;
 
-  private static final int ROWS = 4;
+  /** Rows kept: more than are looked ahead. */
+  private static final int ROWS = 8;
+
+  /**
+   * Rows within which questions are answered where all is regular, at most: no question of a later
+   * row can be answered before, and the window is never full.
+   */
+  private static final int MOST_AHEAD = 4;
+
+  private final int ahead;
 
   private static final IntVector MULTIPLIER_1 =
           IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
@@ -93,11 +102,16 @@ final class LanePictures {
   float latestSampleS;
 
   private int row;
+
+  /** Steps that were looked at for what is irregular. */
+  private int lookedAt;
+
   private boolean more;
 
   LanePictures(LoopTiming.Stream timing, double durationS, boolean shortCut) {
     this.shortCut = shortCut;
     periodNs = Math.round(timing.periodS() * 1e9);
+    ahead = Math.min(MOST_AHEAD, timing.asking().window());
     int periodGrains = grains(timing.periodS());
     period = IntVector.broadcast(INTS, periodGrains);
     patience = IntVector.broadcast(INTS, grains(timing.patienceS()));
@@ -106,8 +120,8 @@ final class LanePictures {
             INTS,
             Math.min(
                 grains(timing.asking().timeoutS()),
-                Math.min(2, timing.asking().window()) * periodGrains - 1));
-    for (int i = 0; i < WORLDS; i++) sources[i] = new PictureSource(timing, durationS);
+                ahead * periodGrains - 1));
+    for (int i = 0; i < WORLDS; i++) sources[i] = new PictureSource(timing, durationS, ahead);
   }
 
   static int grains(double seconds) {
@@ -127,9 +141,9 @@ final class LanePictures {
     irregularCount = 0;
     Arrays.fill(irregularUpTo, -1);
     Arrays.fill(hasNext, false);
-    ask(0);
-    ask(1);
-    findIrregular(0);
+    row = -1;
+    for (int step = 0; step < ahead; step++) ask(step);
+    for (int step = 0; step < ahead - 1; step++) findIrregular(step);
   }
 
   private void takeOver() {
@@ -199,11 +213,16 @@ final class LanePictures {
     }
   }
 
-  /** Looks for worlds whose picture of a step is not simply that of the step's questions. */
+  /**
+   * Looks for worlds whose picture of a step is not simply that of the step's questions. An answer of
+   * the step after it may have come before pictures of the steps before, but not before the one of
+   * the row now.
+   */
   private void findIrregular(int step) {
     int[][] to = reached[step % ROWS], from = answered[step % ROWS];
     int[][] nextTo = reached[(step + 1) % ROWS], nextFrom = answered[(step + 1) % ROWS];
     int[] last = both[step % ROWS];
+    lookedAt = step + 1;
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector end = IntVector.fromArray(INTS, last, i);
       IntVector first =
@@ -225,7 +244,7 @@ final class LanePictures {
       if (irregularHere.anyTrue() || !shortCut)
         for (int lane = 0; lane < LANES; lane++)
           if ((irregularHere.laneIsSet(lane) || !shortCut) && irregularUpTo[i + lane] < step)
-            makeIrregular(i + lane, step);
+            makeIrregular(i + lane, row + 1);
     }
   }
 
@@ -251,14 +270,31 @@ final class LanePictures {
     PictureSource source = sources[world];
     source.next();
     hasNext[world] = true;
-    irregularUpTo[world] = source.isRegular && shortCut ? source.row : Integer.MAX_VALUE;
+    boolean isRegular = source.isRegular && shortCut;
+    for (int step = source.row + 1; isRegular && step < lookedAt; step++)
+      isRegular = isRegular(world, step);
+    if (isRegular) irregularUpTo[world] = source.row;
+    else stayIrregular(world);
+  }
+
+  /** What {@link #findIrregular} looks for, of one world. */
+  private boolean isRegular(int world, int step) {
+    int[][] to = reached[step % ROWS], from = answered[step % ROWS];
+    int[][] nextTo = reached[(step + 1) % ROWS], nextFrom = answered[(step + 1) % ROWS];
+    int end = both[step % ROWS][world], first = Math.min(from[0][world], from[1][world]);
+    int periodGrains = period.lane(0);
+    return end < Math.min(nextFrom[0][world], nextFrom[1][world]) + periodGrains
+        && end - first < patience.lane(0)
+        && end <= latest.lane(0)
+        && to[0][world] < nextTo[0][world] + periodGrains
+        && to[1][world] < nextTo[1][world] + periodGrains;
   }
 
   /** To the first beat of a row; rows are taken in turn, from 0. */
   void startRow(int number) {
     row = number;
-    ask(row + 2);
-    findIrregular(row + 1);
+    ask(row + ahead);
+    findIrregular(row + ahead - 1);
     int slot = row % ROWS, next = (row + 1) % ROWS;
     int[] after = both[next];
     for (int i = 0; i < WORLDS; i += LANES)

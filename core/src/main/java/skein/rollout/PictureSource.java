@@ -17,7 +17,7 @@ final class PictureSource {
   static final long NEVER = Long.MAX_VALUE;
 
   private final long periodNs, timeoutNs, patienceNs, endNs;
-  private final int window;
+  private final int window, ahead;
   private int key;
   private DelayTable link;
 
@@ -64,7 +64,11 @@ final class PictureSource {
    */
   int row;
 
-  PictureSource(LoopTiming.Stream timing, double durationS) {
+  /**
+   * @param ahead rows within which the questions of a regular picture are answered
+   */
+  PictureSource(LoopTiming.Stream timing, double durationS, int ahead) {
+    this.ahead = ahead;
     periodNs = nanos(timing.periodS());
     timeoutNs = nanos(timing.asking().timeoutS());
     patienceNs = nanos(timing.patienceS());
@@ -184,7 +188,7 @@ final class PictureSource {
     patienceEnds = NEVER;
     joinedAt = now;
     row = Math.max(row, Math.max(askedAtTick[0], askedAtTick[1]));
-    isRegular = now < (row + 2) * periodNs;
+    isRegular = now < (row + ahead) * periodNs;
     for (int v = 0; v < VEHICLES; v++) {
       isFresh[v] = renewed[v];
       renewed[v] = false;

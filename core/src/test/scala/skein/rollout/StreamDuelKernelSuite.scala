@@ -74,7 +74,7 @@ class StreamDuelKernelSuite extends munit.FunSuite:
       )
       assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
 
-  private val badLinks = Seq((110.0, 60.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
+  private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
 
   // There answers overtake one another, questions fail, and vehicles answer in turns.
   for (meanMs, jitterMs) <- badLinks do
