@@ -15,7 +15,7 @@ object Works:
 
   /** What `yardstick/chauffeur.c` does: ages drawn, positions interpolated, decisions, one exact lag step, distance. */
   val yardstick: Work = Work("yardstick, SIMD", AgentStep): thread =>
-    val blocks = 512
+    val blocks = 2048
     val worlds = blocks * ChauffeurKernel.BLOCK
     (worlds * ChauffeurKernel.TICKS * 2.0, ChauffeurKernel().run(thread, blocks) / worlds)
 

@@ -305,8 +305,7 @@ final class LanePictures {
     for (int v = 0; v < VEHICLES; v++) Arrays.fill(place[v], placeOf(row));
     hasOld = false;
     hasEarly = false;
-    // A question that had to wait was sent after its tick.
-    latestSampleS = irregularCount > 0 ? Float.POSITIVE_INFINITY : maxS;
+    latestSampleS = maxS;
     more = irregularCount > 0;
     if (more) {
       Arrays.fill(isFresh[0], 1);
@@ -367,6 +366,9 @@ final class LanePictures {
       isFresh[v][world] = source.isFresh[v] ? 1 : 0;
       hasOld |= !source.isFresh[v];
       hasEarly |= source.isFresh[v] && at < 0;
+      // A question that had to wait was sent after its tick.
+      if (source.isFresh[v])
+        latestSampleS = Math.max(latestSampleS, at * (DelayTable.GrainNs() * 1.001e-9f));
     }
   }
 
