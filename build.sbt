@@ -11,7 +11,9 @@ ThisBuild / scalacOptions ++= Seq(
   "-feature",
   "-unchecked"
 )
-ThisBuild / Compile / doc / sources   := Nil
+// What is built at its first start need not wait for archives that nobody publishes.
+ThisBuild / packageDoc / publishArtifact := false
+ThisBuild / packageSrc / publishArtifact := false
 ThisBuild / Test / fork               := true
 ThisBuild / run / fork                := true
 ThisBuild / Test / testForkedParallel := false
