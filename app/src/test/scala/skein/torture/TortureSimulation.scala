@@ -1,6 +1,8 @@
 package skein.torture
 
 import scala.concurrent.duration.*
+import skein.loop.{LoopKind, Outcome}
+import skein.signal.LatencyProfile
 import skein.units.*
 
 /** Whole flights through seeded trouble, in virtual time. */
@@ -23,6 +25,25 @@ class TortureSimulation extends munit.FunSuite:
         val again = s"./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration 8s"
         failed :+= (verdict.ordeal.toString +: verdict.violations :+ again).mkString("\n  ")
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
+
+  test("a disk that is full when the last answers come has failed the flight"):
+    val full   = Disk.Fails(duration - Span.ofMillis(8))
+    val ordeal = Ordeal.of(seed = 1, duration).copy(
+      loop = LoopKind.Futures,
+      link = LatencyProfile.vpn,
+      faults = Vector.empty,
+      meddling = Meddling.None,
+      restarts = Vector.empty,
+      disk = full,
+      stopAt = None
+    )
+    val seen = TortureFlight.fly(ordeal)
+    assertEquals(
+      seen.outcome,
+      Outcome.Failed("cannot write to recording flight.duckdb: the disk is full"),
+      ordeal.toString
+    )
+    assertEquals(Checks.violations(seen), Vector.empty, ordeal.toString)
 
   test("the same seed gives the same flight"):
     for seed <- Seq(3L, 11L) do

@@ -69,7 +69,7 @@ object Flight:
       system.scheduler.scheduleOnce(duration.toDuration)(stopping.trySuccess(Outcome.Completed): Unit)
     stopping.future.foreach(_ => switch.shutdown())
 
-    val outcome = running.transformWith: ended =>
+    val landed = running.transformWith: ended =>
       timer.foreach(_.cancel())
       ended match
         case Success(_) =>
@@ -79,7 +79,13 @@ object Flight:
           stopping.trySuccess(Outcome.Failed(error.getMessage))
           team.note(EventKind.Aborted, None, error.getMessage)
           team.hoverAll().transformWith(_ => stopping.future)
-    Flight(stopping, outcome)
+    Flight(stopping, landed.map(recorded(recorder, _)))
+
+  /** The last answers come after the flight's time is over; where they could not be kept, it has failed all the same. */
+  private def recorded(recorder: Recorder, outcome: Outcome): Outcome =
+    recorder.failure.value.flatMap(_.toOption) match
+      case Some(error) if !outcome.isInstanceOf[Outcome.Failed] => Outcome.Failed(error.message)
+      case _                                                    => outcome
 
   private def loop(
       kind: LoopKind,
