@@ -216,8 +216,8 @@ final class PlanKernel implements CandidateBlock {
     FloatVector drag = constant((float) (model.dragPerM() * dtS));
     FloatVector brake = constant((float) (model.dragPerM() * model.lagS()));
     FloatVector startVx = constant((float) own.vx()), startVy = constant((float) own.vy());
-    FloatVector startCos = constant((float) Math.cos(situation.headingRad()));
-    FloatVector startSin = constant((float) Math.sin(situation.headingRad()));
+    FloatVector startCos = constant((float) StrictMath.cos(situation.headingRad()));
+    FloatVector startSin = constant((float) StrictMath.sin(situation.headingRad()));
     float firstTurnS = (float) situation.sinceDecisionS();
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector px = ZERO, py = ZERO, vx = startVx, vy = startVy, c = startCos, s = startSin;

@@ -46,7 +46,7 @@ final class ChauffeurEvaderLanes extends LanePolicy {
     radius[world] = (float) evader.turningRadiusM();
     dodgeSquare[world] = (float) (evader.dodgeM() * evader.dodgeM());
     leastCos[world] = (float) evader.speedRatio();
-    halfCos[world] = (float) Math.cos(Math.acos(evader.speedRatio()) / 2);
+    halfCos[world] = (float) StrictMath.cos(StrictMath.acos(evader.speedRatio()) / 2);
   }
 
   @Override

@@ -20,7 +20,7 @@ final class Directions {
   }
 
   void fill(int from, int to, double headingRad) {
-    Arrays.fill(cos, from, to, (float) Math.cos(headingRad));
-    Arrays.fill(sin, from, to, (float) Math.sin(headingRad));
+    Arrays.fill(cos, from, to, (float) StrictMath.cos(headingRad));
+    Arrays.fill(sin, from, to, (float) StrictMath.sin(headingRad));
   }
 }

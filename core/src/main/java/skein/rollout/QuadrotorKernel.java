@@ -63,7 +63,7 @@ public final class QuadrotorKernel {
   private static final FloatVector GYRO_DOWN =
       constant((float) ((FRAME.inertiaFront() - FRAME.inertiaRight()) / FRAME.inertiaDown()));
   private static final FloatVector ROTOR_KEEP =
-      constant((float) Math.exp(-REFERENCE.stepS() / FRAME.rotorTimeConstantS()));
+      constant((float) StrictMath.exp(-REFERENCE.stepS() / FRAME.rotorTimeConstantS()));
 
   private static final FloatVector RATE_P = constant((float) GAINS.rateP()),
       MAX_RATE = constant((float) GAINS.maxRate());

@@ -237,9 +237,9 @@ final class StreamDuelKernel extends DuelKernel {
     lag = constant(lagS);
     decayRate = constant((float) (-1 / model.lagS()));
     growthRate = constant((float) (1 / model.lagS()));
-    periodDecay = constant((float) Math.exp(-timing.periodS() / model.lagS()));
+    periodDecay = constant((float) StrictMath.exp(-timing.periodS() / model.lagS()));
     periodGain =
-        constant((float) (model.lagS() * (1 - Math.exp(-timing.periodS() / model.lagS()))));
+        constant((float) (model.lagS() * (1 - StrictMath.exp(-timing.periodS() / model.lagS()))));
     evader = new Vehicles(EVADER, duel.evader(), model.gain(), evaderPolicy);
     pursuer = new Vehicles(PURSUER, duel.pursuer(), model.gain(), pursuerPolicy);
     both = new Vehicles[] {evader, pursuer};
@@ -486,7 +486,7 @@ final class StreamDuelKernel extends DuelKernel {
       double age = (step - rowOf[slot]) * timing.periodS();
       youngerS[slot] = rowOf[slot] == step - 1 ? -FUTURE : ageS[slot];
       ageS[slot] = (float) age;
-      agedDecay[slot] = (float) Math.exp(-age / model.lagS());
+      agedDecay[slot] = (float) StrictMath.exp(-age / model.lagS());
     }
     for (Vehicles each : both) {
       pass(each);
@@ -682,7 +682,7 @@ final class StreamDuelKernel extends DuelKernel {
           float wait = each.at[from] - (float) ((step - rowOf[slot]) * timing.periodS());
           float acted = end - wait;
           if (wait <= 0 && acted < 0 && rowOf[slot] < step) {
-            float caughtUp = (float) -Math.expm1(-acted / lagS), response = acted - lagS * caughtUp;
+            float caughtUp = (float) -StrictMath.expm1(-acted / lagS), response = acted - lagS * caughtUp;
             each.seenX[world] -= each.changeX[from] * response;
             each.seenY[world] -= each.changeY[from] * response;
             if (withVelocity) {

@@ -85,8 +85,8 @@ object HorizonErrors:
         // The tenth of a microsecond includes the nearest sight whatever the rounding.
         flown.predict(flight, model.deadTimeS, from, sight.atS - flown.sights(from).atS + 1e-7)(_ => ())
         (
-          math.hypot(flight.x - sight.x, flight.y - sight.y),
-          math.hypot(flight.vx - sight.vx, flight.vy - sight.vy)
+          StrictMath.hypot(flight.x - sight.x, flight.y - sight.y),
+          StrictMath.hypot(flight.vx - sight.vx, flight.vy - sight.vy)
         )
 
   private def quantile(sorted: Vector[Double], p: Double): Double =

@@ -25,7 +25,7 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       val (turnRate, speed) = (manoeuvre.turnRates(step).toDouble, manoeuvre.speeds(step).toDouble)
       before(step) = heading
       heading += turnRate * (if step == 0 then situation.sinceDecisionS else dtS)
-      own.fly(speed * math.cos(heading), speed * math.sin(heading))
+      own.fly(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
       xs(step) = own.x
       ys(step) = own.y
       val slow = speed - objective.cruiseSpeed
@@ -34,7 +34,7 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
       if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
       for (other, index) <- situation.others.zipWithIndex do
-        val distance = math.hypot(own.x - other.x(step), own.y - other.y(step))
+        val distance = StrictMath.hypot(own.x - other.x(step), own.y - other.y(step))
         val missing  = objective.separation.clearance((step + 1) * dtS) - distance
         if missing > 0 then cost += missing * missing * objective.separation.price * dtS
         if distance < objective.separation.minimum then
@@ -71,9 +71,9 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
           tx(step) = along.track.x(step)
           ty(step) = along.track.y(step)
         (along.track.carriedX(lagS, dtS), along.track.carriedY(lagS, dtS))
-    val distances = (0 until steps).map(step => math.hypot(tx(step) - xs(step), ty(step) - ys(step)))
+    val distances = (0 until steps).map(step => StrictMath.hypot(tx(step) - xs(step), ty(step) - ys(step)))
     val least     = distances.min
-    val end       = math.hypot(
+    val end       = StrictMath.hypot(
       tx(steps - 1) + carriedX - xs(steps - 1) - own.vx * lagS,
       ty(steps - 1) + carriedY - ys(steps - 1) - own.vy * lagS
     )
@@ -98,7 +98,7 @@ object ManoeuvreRollout:
     *   the evader's place minus the pursuer's
     */
   private def evade(dx: Double, dy: Double, headingRad: Double, radius: Double): (Double, Double) =
-    val (c, s)              = (math.cos(headingRad), math.sin(headingRad))
+    val (c, s)              = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
     val (ahead, right)      = (dx * c + dy * s, dy * c - dx * s)
     def inCircle(y: Double) = ahead * ahead + y * y < radius * radius
     val (u, w)              =
@@ -117,8 +117,8 @@ object ManoeuvreRollout:
     var vy = start.vy
 
     def fly(commandedX: Double, commandedY: Double): Unit =
-      val rate               = 1 / response.lagS + response.dragPerM * math.hypot(vx, vy)
-      val left               = math.exp(-rate * dtS)
+      val rate               = 1 / response.lagS + response.dragPerM * StrictMath.hypot(vx, vy)
+      val left               = StrictMath.exp(-rate * dtS)
       val glide              = (1 - left) / rate
       val reached            = response.gain / (response.lagS * rate)
       val (wantedX, wantedY) = (reached * commandedX, reached * commandedY)

@@ -45,7 +45,7 @@ object PolicyManoeuvre:
       turns(step) = rate.toFloat
       speeds(step) = speed.toFloat
       heading += rate * turnS
-      flyer.fly(speed * math.cos(heading), speed * math.sin(heading))
+      flyer.fly(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
   private def later(places: IArray[Double], velocities: IArray[Double], aheadS: Double): IArray[Double] =

@@ -53,7 +53,7 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
   def weigh(base: Float, temperature: Float): Unit =
     for i <- 0 until size do
       val exponent = math.min(math.max((base - costs(i)) / temperature, -80f), 20f)
-      val weight   = math.exp(exponent).toFloat
+      val weight   = StrictMath.exp(exponent).toFloat
       weightSums(i) += weight
       for at <- i until steps * size by size do
         turnSums(at) += weight * turnRates(at)

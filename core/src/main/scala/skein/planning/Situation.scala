@@ -40,8 +40,12 @@ object PredictedTrack:
     else
       val angles = IArray.tabulate(steps)(step => turnRateRadPerS * dtS * (step + 1))
       PredictedTrack(
-        angles.map(a => from.x + (from.vx * math.sin(a) - from.vy * (1 - math.cos(a))) / turnRateRadPerS),
-        angles.map(a => from.y + (from.vx * (1 - math.cos(a)) + from.vy * math.sin(a)) / turnRateRadPerS)
+        angles.map(a =>
+          from.x + (from.vx * StrictMath.sin(a) - from.vy * (1 - StrictMath.cos(a))) / turnRateRadPerS
+        ),
+        angles.map(a =>
+          from.y + (from.vx * (1 - StrictMath.cos(a)) + from.vy * StrictMath.sin(a)) / turnRateRadPerS
+        )
       )
 
   def standing(x: Double, y: Double, steps: Int): PredictedTrack =

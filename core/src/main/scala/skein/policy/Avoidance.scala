@@ -43,13 +43,13 @@ final case class Avoidance(
 
   def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
-    val distance      = math.hypot(north, east)
+    val distance      = StrictMath.hypot(north, east)
     val share         = if distance == 0 then 1.0 else (cruiseMps * aheadS / distance).min(1)
     (seen.northM(seen.self) + share * north, seen.eastM(seen.self) + share * east)
 
   private def preferred(seen: TeamSight): Velocity =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
-    val distance      = math.hypot(north, east)
+    val distance      = StrictMath.hypot(north, east)
     if distance == 0 then Velocity(0, 0)
     else Velocity(north, east) * (cruiseMps.min(arrivePerS * distance) / distance)
 
@@ -61,7 +61,7 @@ final case class Avoidance(
       other <- Array.range(0, seen.count) if other != self
       north = seen.northM(other) - seen.northM(self)
       east  = seen.eastM(other) - seen.eastM(self)
-      if math.hypot(north, east) < reach
+      if StrictMath.hypot(north, east) < reach
     yield bound(north, east, own, Velocity(seen.northMps(other), seen.eastMps(other))))
 
   /** The half plane of velocities that is this vehicle's half of keeping clear of another one: the smallest change u of

@@ -29,7 +29,7 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
   require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
 
   /** The least angle to the pursuer's heading while it dodges. */
-  private val leastAside = math.acos(speedRatio)
+  private val leastAside = StrictMath.acos(speedRatio)
 
   def heading(
       dxM: Double,
@@ -40,8 +40,8 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
       opponentHeadingRad: Double,
       elapsedS: Double
   ): Double =
-    val cos    = math.cos(opponentHeadingRad)
-    val sin    = math.sin(opponentHeadingRad)
+    val cos    = StrictMath.cos(opponentHeadingRad)
+    val sin    = StrictMath.sin(opponentHeadingRad)
     val x      = -dxM * cos - dyM * sin
     val signed = dxM * sin - dyM * cos
     val side   = if signed < 0 then -1.0 else 1.0
@@ -65,9 +65,9 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
     */
   private def turn(x: Double, toCentre: Double): Double =
     val square = x * x + toCentre * toCentre - turningRadiusM * turningRadiusM
-    if square < 0 then math.atan2(toCentre, -x)
+    if square < 0 then StrictMath.atan2(toCentre, -x)
     // The tangent point's direction from the centre is a quarter turn behind that of the tangent.
-    else math.atan2(-toCentre, x) + math.atan2(turningRadiusM, math.sqrt(square))
+    else StrictMath.atan2(-toCentre, x) + StrictMath.atan2(turningRadiusM, math.sqrt(square))
 
 object ChauffeurEvader:
   private val Rounding = 1e-9

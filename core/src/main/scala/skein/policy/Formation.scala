@@ -15,9 +15,9 @@ final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Dou
   def course(seen: TeamSight): Course =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
     val (toNorth, toEast) = circuit.point(circuit.nearest(north, east) + aheadM)
-    val direction         = math.hypot(toNorth - north, toEast - east)
+    val direction         = StrictMath.hypot(toNorth - north, toEast - east)
     if direction == 0 then Course(seen.headingRad, speedMps)
-    else Course(math.atan2(toEast - east, toNorth - north), speedMps)
+    else Course(StrictMath.atan2(toEast - east, toNorth - north), speedMps)
 
 /** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is, the second
   * to the right; it turns as the leader moves along, and the slot's velocity follows from both: the leader's velocity
@@ -45,7 +45,7 @@ final case class KeepSlot(
     val self                      = seen.self
     val place                     = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val heading                   = circuit.headingRad(place)
-    val (cos, sin)                = (math.cos(heading), math.sin(heading))
+    val (cos, sin)                = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
     // How fast the place on the circuit moves when the leader flies beside it.
     val (nearNorth, nearEast) = circuit.point(place)
@@ -74,16 +74,17 @@ final case class KeepSlot(
 
   /** The slot when the leader has flown on along the circuit at its present speed. */
   def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
-    val here       = circuit.nearest(seen.northM(leader), seen.eastM(leader))
-    val direction  = circuit.headingRad(here)
-    val alongMps   = seen.northMps(leader) * math.cos(direction) + seen.eastMps(leader) * math.sin(direction)
-    val place      = here + alongMps * aheadS
-    val heading    = circuit.headingRad(place)
-    val (cos, sin) = (math.cos(heading), math.sin(heading))
+    val here      = circuit.nearest(seen.northM(leader), seen.eastM(leader))
+    val direction = circuit.headingRad(here)
+    val alongMps  =
+      seen.northMps(leader) * StrictMath.cos(direction) + seen.eastMps(leader) * StrictMath.sin(direction)
+    val place                 = here + alongMps * aheadS
+    val heading               = circuit.headingRad(place)
+    val (cos, sin)            = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (nearNorth, nearEast) = circuit.point(here)
     // The leader's distance from the circuit is kept, to its right.
-    val beside = -(seen.northM(leader) - nearNorth) * math.sin(direction) +
-      (seen.eastM(leader) - nearEast) * math.cos(direction) + rightM
+    val beside = -(seen.northM(leader) - nearNorth) * StrictMath.sin(direction) +
+      (seen.eastM(leader) - nearEast) * StrictMath.cos(direction) + rightM
     val (north, east) = circuit.point(place)
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 

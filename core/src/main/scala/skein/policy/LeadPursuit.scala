@@ -27,6 +27,6 @@ final case class LeadPursuit(speedRatio: Double = 0.5, lead: Double = 1.0, turnR
       opponentHeadingRad: Double,
       elapsedS: Double
   ): Double =
-    val sight = math.atan2(dyM, dxM)
-    val ahead = math.asin((speedRatio * math.sin(opponentHeadingRad - sight)).max(-1.0).min(1.0))
+    val sight = StrictMath.atan2(dyM, dxM)
+    val ahead = StrictMath.asin((speedRatio * StrictMath.sin(opponentHeadingRad - sight)).max(-1.0).min(1.0))
     Turn.towards(ownHeadingRad, sight + lead * ahead, turnRateRadPerS * elapsedS)

@@ -34,8 +34,8 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
 
   /** rad/s, to the right. */
   def turnRate(dxM: Double, dyM: Double, dvxMps: Double, dvyMps: Double, ownHeadingRad: Double): Double =
-    val cos    = math.cos(ownHeadingRad)
-    val sin    = math.sin(ownHeadingRad)
+    val cos    = StrictMath.cos(ownHeadingRad)
+    val sin    = StrictMath.sin(ownHeadingRad)
     var input  = Array.ofDim[Double](shape.widest)
     var output = Array.ofDim[Double](shape.widest)
     input(0) = (dxM * cos + dyM * sin) / NeuralPolicy.LengthM
@@ -53,7 +53,7 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
           sum += weights(at) * input(i)
           at += 1
           i += 1
-        output(neuron) = math.tanh(sum + weights(at))
+        output(neuron) = StrictMath.tanh(sum + weights(at))
         at += 1
         neuron += 1
       val spare = input

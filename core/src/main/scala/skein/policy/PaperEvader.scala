@@ -24,13 +24,13 @@ final case class PaperEvader(turningRadiusM: Double = 8.0) extends Policy:
       elapsedS: Double
   ): Double =
     val radius = turningRadiusM
-    val cos    = math.cos(opponentHeadingRad)
-    val sin    = math.sin(opponentHeadingRad)
+    val cos    = StrictMath.cos(opponentHeadingRad)
+    val sin    = StrictMath.sin(opponentHeadingRad)
     val x      = -dxM * cos - dyM * sin
     val y      = dxM * sin - dyM * cos
-    if inCircle(x, y - radius) then opponentHeadingRad + math.atan2(y + radius, x)
-    else if inCircle(x, y + radius) then opponentHeadingRad + math.atan2(y - radius, x)
-    else if x * x + y * y < 4 * radius * radius then opponentHeadingRad + math.atan2(y, x) + math.Pi / 2
-    else opponentHeadingRad + math.atan2(y, x)
+    if inCircle(x, y - radius) then opponentHeadingRad + StrictMath.atan2(y + radius, x)
+    else if inCircle(x, y + radius) then opponentHeadingRad + StrictMath.atan2(y - radius, x)
+    else if x * x + y * y < 4 * radius * radius then opponentHeadingRad + StrictMath.atan2(y, x) + math.Pi / 2
+    else opponentHeadingRad + StrictMath.atan2(y, x)
 
   private def inCircle(x: Double, y: Double): Boolean = x * x + y * y < turningRadiusM * turningRadiusM

@@ -23,8 +23,8 @@ final case class PaperPursuer(turnRateRadPerS: Double = 1.0, stepRad: Option[Dou
       opponentHeadingRad: Double,
       elapsedS: Double
   ): Double =
-    val cos  = math.cos(ownHeadingRad)
-    val sin  = math.sin(ownHeadingRad)
+    val cos  = StrictMath.cos(ownHeadingRad)
+    val sin  = StrictMath.sin(ownHeadingRad)
     val x    = dxM * cos + dyM * sin
     val y    = -dxM * sin + dyM * cos
     val side = if y != 0 then math.signum(y) else if x < 0 then 1.0 else 0.0

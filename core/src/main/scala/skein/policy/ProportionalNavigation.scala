@@ -30,4 +30,4 @@ final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Dou
     if isClosing then
       val sightRate = (dxM * dvyMps - dyM * dvxMps) / (dxM * dxM + dyM * dyM)
       ownHeadingRad + Turn.limited(gain * sightRate * elapsedS, most)
-    else Turn.towards(ownHeadingRad, math.atan2(dyM, dxM), most)
+    else Turn.towards(ownHeadingRad, StrictMath.atan2(dyM, dxM), most)

@@ -16,4 +16,4 @@ final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends Policy:
       ownHeadingRad: Double,
       opponentHeadingRad: Double,
       elapsedS: Double
-  ): Double = Turn.towards(ownHeadingRad, math.atan2(dyM, dxM), turnRateRadPerS * elapsedS)
+  ): Double = Turn.towards(ownHeadingRad, StrictMath.atan2(dyM, dxM), turnRateRadPerS * elapsedS)

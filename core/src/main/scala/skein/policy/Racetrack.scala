@@ -14,9 +14,9 @@ final case class Racetrack(straightM: Double, radiusM: Double):
 
   /** The place on the circuit nearest to a point, m from the origin, 0 to [[lengthM]]. */
   def nearest(northM: Double, eastM: Double): Double =
-    if northM > straightM then straightM + radiusM * math.atan2(northM - straightM, radiusM - eastM)
+    if northM > straightM then straightM + radiusM * StrictMath.atan2(northM - straightM, radiusM - eastM)
     else if northM < 0 then
-      2 * straightM + turnM + radiusM * math.atan2(-northM, eastM - radiusM)
+      2 * straightM + turnM + radiusM * StrictMath.atan2(-northM, eastM - radiusM)
     else if eastM < radiusM then northM
     else straightM + turnM + (straightM - northM)
 
@@ -26,11 +26,11 @@ final case class Racetrack(straightM: Double, radiusM: Double):
     if along < straightM then (along, 0)
     else if along < straightM + turnM then
       val angle = (along - straightM) / radiusM
-      (straightM + radiusM * math.sin(angle), radiusM * (1 - math.cos(angle)))
+      (straightM + radiusM * StrictMath.sin(angle), radiusM * (1 - StrictMath.cos(angle)))
     else if along < 2 * straightM + turnM then (2 * straightM + turnM - along, 2 * radiusM)
     else
       val angle = (along - 2 * straightM - turnM) / radiusM
-      (-radiusM * math.sin(angle), radiusM * (1 + math.cos(angle)))
+      (-radiusM * StrictMath.sin(angle), radiusM * (1 + StrictMath.cos(angle)))
 
   /** Direction of flight at a place, from north towards east. */
   def headingRad(placeM: Double): Double =

@@ -32,7 +32,7 @@ final case class Agent(
     */
   def velocityNed(headingRad: Double, chosen: Option[MetresPerSecond] = None): Vector3 =
     val commanded = chosen.getOrElse(speed).value
-    Vector3(commanded * math.cos(headingRad), commanded * math.sin(headingRad), 0)
+    Vector3(commanded * StrictMath.cos(headingRad), commanded * StrictMath.sin(headingRad), 0)
 
   /** The policy of an agent that plays against one other. */
   def duelPolicy: Policy = policy match
@@ -89,7 +89,7 @@ object Scenario:
           Role.Evader,
           MetresPerSecond(5),
           Vector3(21, 0, -20),
-          Radians(math.cos(0.5)),
+          Radians(StrictMath.cos(0.5)),
           PaperEvader()
         ),
         Agent("Pursuer", Role.Pursuer, MetresPerSecond(10), Vector3(0, 0, -20), Radians(0), pursuer)

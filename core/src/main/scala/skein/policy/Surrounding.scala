@@ -17,8 +17,8 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
 
   def course(seen: TeamSight): Course =
     val slot  = slotRad(seen)
-    val north = seen.northM(evader) + ringM * math.cos(slot)
-    val east  = seen.eastM(evader) + ringM * math.sin(slot)
+    val north = seen.northM(evader) + ringM * StrictMath.cos(slot)
+    val east  = seen.eastM(evader) + ringM * StrictMath.sin(slot)
     val self  = seen.self
     Course.of(
       pursuit.along(north, seen.northMps(evader), seen.northM(self), seen.northMps(self)),
@@ -30,8 +30,8 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
   def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
     val slot = slotRad(seen)
     (
-      seen.northM(evader) + seen.northMps(evader) * aheadS + ringM * math.cos(slot),
-      seen.eastM(evader) + seen.eastMps(evader) * aheadS + ringM * math.sin(slot)
+      seen.northM(evader) + seen.northMps(evader) * aheadS + ringM * StrictMath.cos(slot),
+      seen.eastM(evader) + seen.eastMps(evader) * aheadS + ringM * StrictMath.sin(slot)
     )
 
   /** The own slot's bearing from the evader, from north towards east. */
@@ -47,7 +47,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
     sum / n + (before - (n - 1) / 2.0) * 2 * math.Pi / n
 
   private def bearing(seen: TeamSight, vehicle: Int): Double =
-    math.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))
+    StrictMath.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))
 
 /** Flees straight away from whoever of the others is nearest, the first of equals. */
 final case class Flee(speedMps: Double) extends TeamPolicy:
@@ -55,9 +55,9 @@ final case class Flee(speedMps: Double) extends TeamPolicy:
   def course(seen: TeamSight): Course =
     val self                  = seen.self
     def distanceM(other: Int) =
-      math.hypot(seen.northM(other) - seen.northM(self), seen.eastM(other) - seen.eastM(self))
+      StrictMath.hypot(seen.northM(other) - seen.northM(self), seen.eastM(other) - seen.eastM(self))
     val nearest               = (0 until seen.count).filter(_ != self).minBy(distanceM)
     val (awayNorth, awayEast) =
       (seen.northM(self) - seen.northM(nearest), seen.eastM(self) - seen.eastM(nearest))
     if awayNorth == 0 && awayEast == 0 then Course(seen.headingRad, speedMps)
-    else Course(math.atan2(awayEast, awayNorth), speedMps)
+    else Course(StrictMath.atan2(awayEast, awayNorth), speedMps)

@@ -62,9 +62,9 @@ object Course:
 
   /** A velocity as a course, no faster than allowed. One without a direction keeps the heading. */
   def of(northMps: Double, eastMps: Double, mostMps: Double, headingRad: Double): Course =
-    val speed = math.hypot(northMps, eastMps)
+    val speed = StrictMath.hypot(northMps, eastMps)
     if speed < 1e-9 then Course(headingRad, 0)
-    else Course(math.atan2(eastMps, northMps), speed.min(mostMps))
+    else Course(StrictMath.atan2(eastMps, northMps), speed.min(mostMps))
 
 /** How a vehicle that answers late to its commands follows a point that moves: the point's velocity, and shares of how
   * far it lags behind in place and in speed (proportional-derivative control with feed-forward).

@@ -236,7 +236,7 @@ object TeamScenario:
       )
 
   private def onLane(crossing: Crossing, headingRad: Double, alongM: Double): (Double, Double) =
-    val (cos, sin) = (math.cos(headingRad), math.sin(headingRad))
+    val (cos, sin) = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
     (alongM * cos - crossing.laneM * sin, alongM * sin + crossing.laneM * cos)
 
   private def agent(

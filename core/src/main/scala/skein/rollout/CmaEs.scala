@@ -20,7 +20,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
   private val n       = dimension
   private val parents = population / 2
   private val weights =
-    val raw = Array.tabulate(parents)(i => math.log((population + 1) / 2.0) - math.log(i + 1))
+    val raw = Array.tabulate(parents)(i => StrictMath.log((population + 1) / 2.0) - StrictMath.log(i + 1))
     raw.map(_ / raw.sum)
   private val effective    = 1 / weights.map(w => w * w).sum                   // μ_eff
   private val pathRate     = (4 + effective / n) / (n + 4 + 2 * effective / n) // c_c
@@ -63,10 +63,10 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
       val gain  = math.sqrt(sizePathRate * (2 - sizePathRate) * effective)
       Vector.tabulate(n)(i => (1 - sizePathRate) * state.sizePath(i) + gain * white(i))
     val length = math.sqrt(sizePath.map(p => p * p).sum)
-    val size   = state.size * math.exp((sizePathRate / damping * (length / normalLength - 1)).min(1))
+    val size   = state.size * StrictMath.exp((sizePathRate / damping * (length / normalLength - 1)).min(1))
 
     // h_σ: the covariance's path stands still while the step size grows fast.
-    val settled = math.sqrt(1 - math.pow(1 - sizePathRate, 2.0 * (state.generation + 1)))
+    val settled = math.sqrt(1 - StrictMath.pow(1 - sizePathRate, 2.0 * (state.generation + 1)))
     val moves   = if length / settled < (1.4 + 2.0 / (n + 1)) * normalLength then 1.0 else 0.0
     val path    =
       val gain = moves * math.sqrt(pathRate * (2 - pathRate) * effective)
@@ -91,7 +91,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
 
 object CmaEs:
   /** The tutorial's λ for a dimension; noise asks for more. */
-  def defaultPopulation(dimension: Int): Int = 4 + (3 * math.log(dimension)).toInt
+  def defaultPopulation(dimension: Int): Int = 4 + (3 * StrictMath.log(dimension)).toInt
 
   /** Where it stands, before a generation.
     *

@@ -69,7 +69,7 @@ private final class Controller(
   /** What is decided upon, and how far away it shows another vehicle. */
   private var upon                    = held
   private val distance: Int => Double =
-    other => math.hypot(upon.x(agent) - upon.x(other), upon.y(agent) - upon.y(other))
+    other => StrictMath.hypot(upon.x(agent) - upon.x(other), upon.y(agent) - upon.y(other))
   private var turned = 0.0
 
   /** Rad. */

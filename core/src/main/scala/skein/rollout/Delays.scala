@@ -82,7 +82,7 @@ final case class AlternatingDelays(
     while
       stretch += 1
       // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
-      until -= math.log1p(-uniform(worldKey, stretch)) * (if isBusy then busyLastsS else quietLastsS)
+      until -= StrictMath.log1p(-uniform(worldKey, stretch)) * (if isBusy then busyLastsS else quietLastsS)
       until * 1e9 <= timeNs
     do isBusy = !isBusy
     isBusy

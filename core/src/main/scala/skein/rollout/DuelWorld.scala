@@ -151,7 +151,7 @@ private final class DuelWorld(
   private def command(agent: Int, headingRad: Double): Unit =
     val speed = agents(agent).speed
     vehicles(agent).advance(nowS)
-    vehicles(agent).command(speed * math.cos(headingRad), speed * math.sin(headingRad))
+    vehicles(agent).command(speed * StrictMath.cos(headingRad), speed * StrictMath.sin(headingRad))
 
 private object DuelWorld:
   // Kinds of events.

@@ -89,7 +89,8 @@ final case class Trajectory(
     pursuer: Vector[(Double, Double)],
     outcome: Outcome
 ):
-  def distancesM: Vector[Double] = evader.zip(pursuer).map((e, p) => math.hypot(e._1 - p._1, e._2 - p._2))
+  def distancesM: Vector[Double] =
+    evader.zip(pursuer).map((e, p) => StrictMath.hypot(e._1 - p._1, e._2 - p._2))
 
 object Trajectory:
   private[rollout] final class Builder extends Rollout.Listener:

@@ -70,12 +70,12 @@ object LatencyBudget:
       for _ <- 0 until 60 do
         val middle = (low + high) / 2
         if jitterOverMean(middle) * meanMs < jitterMs then low = middle else high = middle
-      val median = meanMs * math.exp(-low * low / 2)
+      val median = meanMs * StrictMath.exp(-low * low / 2)
       Some(LatencyDistribution.LogNormal(Span.ofMillis(median), low))
 
   /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1); grows with σ up to 2.3. */
   private def jitterOverMean(sigma: Double): Double =
-    math.exp(-sigma * sigma / 2) * (math.exp(Z99 * sigma) - 1)
+    StrictMath.exp(-sigma * sigma / 2) * (StrictMath.exp(Z99 * sigma) - 1)
 
   /** Beyond, a few round trips of seconds would make up the mean. */
   val MostSigma = 1.0

@@ -61,8 +61,8 @@ private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorl
   override def sent(agent: Int, number: Int, headingRad: Double): Unit =
     val duelist  = world.agents(agent)
     val setpoint = Setpoint.velocityZ(
-      duelist.speed * math.cos(headingRad),
-      duelist.speed * math.sin(headingRad),
+      duelist.speed * StrictMath.cos(headingRad),
+      duelist.speed * StrictMath.sin(headingRad),
       duelist.altitudeDownM
     )
     forecast = forecast.withEvidence(

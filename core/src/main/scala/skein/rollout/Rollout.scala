@@ -102,7 +102,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       var nearest = Double.PositiveInfinity
       for agent <- pursuers do
         val pursuer = world.vehicles(agent)
-        nearest = math.min(nearest, math.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
+        nearest = math.min(nearest, StrictMath.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
       tallies(index).add(world.nowS, nearest)
     val (evader, pursuer) = (world.vehicles(evaders(0)), world.vehicles(pursuers(0)))
     listener.scored(world.nowS, evader.x, evader.y, pursuer.x, pursuer.y)

@@ -74,7 +74,7 @@ private[rollout] object Timetable:
       private var reading                              = 0
       def start(x: Double, y: Double, z: Double): Unit = who = x.toInt
       def command(vx: Double, vy: Double): Unit        =
-        note(ACT, who, now + deadTimeS, (math.atan2(vy, vx) / Turn).round.toInt)
+        note(ACT, who, now + deadTimeS, (StrictMath.atan2(vy, vx) / Turn).round.toInt)
       def advance(timeS: Double): Unit =
         now = timeS
         reading = 0
@@ -207,7 +207,7 @@ private[rollout] object Timetable:
       val vehicle = notes.agent(event)
       val dt      = notes.atS(event) - stateAtS(vehicle)
       operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
-      numbers(dt, gain(dt), math.exp(-dt / lagS))
+      numbers(dt, gain(dt), StrictMath.exp(-dt / lagS))
       stateAtS(vehicle) = notes.atS(event)
       headings(vehicle).release(notes.number(event), at)
 
@@ -219,7 +219,7 @@ private[rollout] object Timetable:
       numbers(evader, gain(evader), pursuer, gain(pursuer))
 
     /** How far a velocity's error carries a vehicle, over the error. */
-    private def gain(dt: Double): Double = -lagS * math.expm1(-dt / lagS)
+    private def gain(dt: Double): Double = -lagS * StrictMath.expm1(-dt / lagS)
 
     private def operation(
         kind: Int,

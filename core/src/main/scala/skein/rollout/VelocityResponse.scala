@@ -114,7 +114,7 @@ private final class LagVehicle(model: Reduced) extends Vehicle:
   private def glide(until: Double): Unit =
     val dt = until - now
     if model.lagS > 0 then
-      val keep = math.exp(-dt / model.lagS)
+      val keep = StrictMath.exp(-dt / model.lagS)
       val gain = model.lagS * (1 - keep)
       x += wantedX * dt + (vx - wantedX) * gain
       y += wantedY * dt + (vy - wantedY) * gain

@@ -28,7 +28,7 @@ enum LatencyDistribution:
     case Constant(roundTrip)      => roundTrip
     case Uniform(least, most)     => least + Span.ofNanos(math.round((most - least).toNanos * p))
     case LogNormal(median, sigma) =>
-      Span.ofMillis(median.toMillis * math.exp(sigma * NormalQuantile(p.max(1e-12).min(1 - 1e-12))))
+      Span.ofMillis(median.toMillis * StrictMath.exp(sigma * NormalQuantile(p.max(1e-12).min(1 - 1e-12))))
     case Quantiles(probabilities, roundTripsMs) =>
       val above = probabilities.indexWhere(_ >= p).max(1)
       val share = (p - probabilities(above - 1)) / (probabilities(above) - probabilities(above - 1))
@@ -37,7 +37,7 @@ enum LatencyDistribution:
   def mean: Span = this match
     case Constant(roundTrip)      => roundTrip
     case Uniform(least, most)     => (least + most) / 2
-    case LogNormal(median, sigma) => Span.ofMillis(median.toMillis * math.exp(sigma * sigma / 2))
+    case LogNormal(median, sigma) => Span.ofMillis(median.toMillis * StrictMath.exp(sigma * sigma / 2))
     case Quantiles(probabilities, roundTripsMs) =>
       val pieces = probabilities.zip(roundTripsMs).sliding(2).collect:
         case Vector((p0, t0), (p1, t1)) => (p1 - p0) * (t0 + t1) / 2

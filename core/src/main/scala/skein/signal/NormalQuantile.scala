@@ -9,8 +9,8 @@ private[skein] object NormalQuantile:
 
   /** `p` in (0, 1). */
   def apply(p: Double): Double =
-    if p < tail then lower(math.sqrt(-2 * math.log(p)))
-    else if p > 1 - tail then -lower(math.sqrt(-2 * math.log1p(-p)))
+    if p < tail then lower(math.sqrt(-2 * StrictMath.log(p)))
+    else if p > 1 - tail then -lower(math.sqrt(-2 * StrictMath.log1p(-p)))
     else centre(p - 0.5)
 
   private def centre(q: Double): Double =

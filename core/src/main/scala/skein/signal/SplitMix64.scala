@@ -23,7 +23,7 @@ final class SplitMix64(seed: Long):
   def nextInt(bound: Int): Int = (nextDouble() * bound).toInt
 
   /** Exponentially distributed with this mean: the time to the next event of a Poisson process. */
-  def nextExponential(mean: Double): Double = -mean * math.log1p(-nextDouble())
+  def nextExponential(mean: Double): Double = -mean * StrictMath.log1p(-nextDouble())
 
 object SplitMix64:
   private val Step  = 1.0 / (1L << 53)

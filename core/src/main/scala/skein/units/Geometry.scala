@@ -10,7 +10,7 @@ final case class Vector3(x: Double, y: Double, z: Double):
   def norm: Double               = math.sqrt(x * x + y * y + z * z)
 
   /** Distance in the horizontal plane, m: the distance of the paper's game. */
-  def horizontalDistance(other: Vector3): Double = math.hypot(x - other.x, y - other.y)
+  def horizontalDistance(other: Vector3): Double = StrictMath.hypot(x - other.x, y - other.y)
 
 object Vector3:
   val Zero: Vector3 = Vector3(0, 0, 0)

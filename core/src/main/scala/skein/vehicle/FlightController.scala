@@ -102,11 +102,11 @@ final class FlightController(val gains: ControllerGains, stepS: Double):
         val right = r01 * state.vx + r11 * state.vy + r21 * state.vz
         roll = unit(velocityP * (rightGoal - right)) * maxTilt
         pitch = -unit(velocityP * (frontGoal - front)) * maxTilt
-      rollRate = rateTowards(clamp(roll, maxTilt), math.atan2(r21, r22))
-      pitchRate = rateTowards(clamp(pitch, maxTilt), -math.asin(unit(r20)))
+      rollRate = rateTowards(clamp(roll, maxTilt), StrictMath.atan2(r21, r22))
+      pitchRate = rateTowards(clamp(pitch, maxTilt), -StrictMath.asin(unit(r20)))
     val yawRate =
       if setpoint.yaw eq YawMode.Rate then setpoint.yawGoal
-      else rateTowards(setpoint.yawGoal, math.atan2(r10, r00))
+      else rateTowards(setpoint.yawGoal, StrictMath.atan2(r10, r00))
 
     val rollCommand  = torque(rollRate, state.wx)
     val pitchCommand = torque(pitchRate, state.wy)

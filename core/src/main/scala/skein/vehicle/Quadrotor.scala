@@ -17,7 +17,7 @@ final class Quadrotor(
   import airframe.*
 
   private val controller     = FlightController(gains, stepS)
-  private val rotorKeep      = math.exp(-stepS / rotorTimeConstantS)
+  private val rotorKeep      = StrictMath.exp(-stepS / rotorTimeConstantS)
   private val rollTorque     = rotorOffsetM * maxThrustN
   private val halfStep       = stepS / 2
   private val halfStepSquare = halfStep * halfStep
@@ -76,7 +76,7 @@ final class Quadrotor(
   private def atRest(positionNed: Vector3, yawRad: Double): QuadrotorState =
     val state = QuadrotorState()
     state.x = positionNed.x; state.y = positionNed.y; state.z = positionNed.z
-    state.qw = math.cos(yawRad / 2); state.qz = math.sin(yawRad / 2)
+    state.qw = StrictMath.cos(yawRad / 2); state.qz = StrictMath.sin(yawRad / 2)
     state
 
   /** AirSim hands a rotor's output on twice, so a control acts two steps after its lag: 6 ms that the step responses
@@ -183,7 +183,7 @@ final class Quadrotor(
       state.grounded = true
       state.vx = 0; state.vy = 0; state.vz = 0
       state.wx = 0; state.wy = 0; state.wz = 0
-      state.qw = math.cos(yaw / 2); state.qx = 0; state.qy = 0; state.qz = math.sin(yaw / 2)
+      state.qw = StrictMath.cos(yaw / 2); state.qx = 0; state.qy = 0; state.qz = StrictMath.sin(yaw / 2)
     else
       state.vx *= 1 - friction; state.vy *= 1 - friction
       state.vz *= -restitution

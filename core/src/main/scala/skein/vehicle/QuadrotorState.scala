@@ -74,10 +74,10 @@ final class QuadrotorState:
   def kinematics: Kinematics = Kinematics(positionNed, velocityNed, orientation, angularVelocityFrd)
 
   /** Angle between the rotors' thrust and straight up, rad. */
-  def tiltRad: Double = math.acos((1 - 2 * (qx * qx + qy * qy)).max(-1.0).min(1.0))
+  def tiltRad: Double = StrictMath.acos((1 - 2 * (qx * qx + qy * qy)).max(-1.0).min(1.0))
 
   /** Rad from north towards east, −π to π. */
-  def yawRad: Double = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
+  def yawRad: Double = StrictMath.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
   /** Places the vehicle elsewhere, at this yaw and level, its motion and controller untouched (as AirSim's
     * `simSetVehiclePose` does).

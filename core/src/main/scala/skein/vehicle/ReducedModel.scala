@@ -116,8 +116,8 @@ final class ReducedFlight(model: ReducedModel):
     crossVx = vx - along * alongX; crossVy = vy - along * alongY
 
   private def fly(spanS: Double): Unit =
-    val leftAlong  = math.exp(-rateAlong * spanS)
-    val leftCross  = if rateCross == rateAlong then leftAlong else math.exp(-rateCross * spanS)
+    val leftAlong  = StrictMath.exp(-rateAlong * spanS)
+    val leftCross  = if rateCross == rateAlong then leftAlong else StrictMath.exp(-rateCross * spanS)
     val movedAlong = goal * spanS + excess * (1 - leftAlong) / rateAlong
     val movedCross = (1 - leftCross) / rateCross
     val along      = goal + excess * leftAlong

@@ -32,21 +32,21 @@ object ConstantTurn extends VehicleModel[ConstantTurn.Turning]:
     val t        = span.toSeconds
     val angle    = state.turnRateRadps * t
     // sin a / a and (1 − cos a) / a, by their series where a is too small to divide by.
-    val along  = if math.abs(angle) < 1e-6 then 1.0 else math.sin(angle) / angle
-    val across = if math.abs(angle) < 1e-6 then angle / 2 else (1 - math.cos(angle)) / angle
+    val along  = if math.abs(angle) < 1e-6 then 1.0 else StrictMath.sin(angle) / angle
+    val across = if math.abs(angle) < 1e-6 then angle / 2 else (1 - StrictMath.cos(angle)) / angle
     val moved  = Vector3(
       (velocity.x * along - velocity.y * across) * t,
       (velocity.x * across + velocity.y * along) * t,
       velocity.z * t
     )
-    val (cos, sin) = (math.cos(angle), math.sin(angle))
+    val (cos, sin) = (StrictMath.cos(angle), StrictMath.sin(angle))
     val turned = Vector3(velocity.x * cos - velocity.y * sin, velocity.x * sin + velocity.y * cos, velocity.z)
     state.copy(now = state.now.copy(positionNed = state.now.positionNed + moved, velocityNed = turned))
 
   def corrected(state: Turning, seen: Kinematics, sinceSeen: Span): Turning =
     val (before, after) = (state.seen.velocityNed, seen.velocityNed)
     val turned          =
-      math.atan2(before.x * after.y - before.y * after.x, before.x * after.x + before.y * after.y)
+      StrictMath.atan2(before.x * after.y - before.y * after.x, before.x * after.x + before.y * after.y)
     Turning(seen, if sinceSeen > Span.Zero then turned / sinceSeen.toSeconds else state.turnRateRadps, seen)
 
   def kinematics(state: Turning): Kinematics = state.now

@@ -164,7 +164,7 @@ final class Decider(scenario: Scenario, self: Int, policy: Policy | TeamPolicy):
     val (toEvader, pursuerHeading) = agent.role match
       case Role.Evader => (toOpponent * -1, opponentHeading)
       case _           => (toOpponent, memory.headingRad)
-    val (cos, sin) = (math.cos(pursuerHeading), math.sin(pursuerHeading))
+    val (cos, sin) = (StrictMath.cos(pursuerHeading), StrictMath.sin(pursuerHeading))
     val decision   = Decision(
       sequence = memory.decisions,
       vehicle = agent.name,

@@ -73,7 +73,7 @@ private final class TeamPlanning(
   /** From a track's first place to its last, m/s. */
   private def speed(track: PredictedTrack): Double =
     val last = track.steps - 1
-    math.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
+    StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
   /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
   private def suggested(sight: TeamSight, situation: Situation): Vector[Manoeuvre] =

@@ -89,5 +89,5 @@ final case class BackOff(
 
   /** The pause after the given number of failures in a row (at least 1); `uniform` in [0, 1). */
   def pause(failures: Int, uniform: Double): Span =
-    val doubled = first.toNanos * math.pow(2, math.min(failures - 1, 40))
+    val doubled = first.toNanos * StrictMath.pow(2, math.min(failures - 1, 40))
     Span.ofNanos((math.min(doubled, longest.toNanos.toDouble) * (1 - jitter * uniform)).toLong)

@@ -16,22 +16,24 @@ private[simulator] object Globe:
     val altitude = Metres(origin.altitude.value - pointNed.z)
     val north    = pointNed.x / RadiusM
     val east     = pointNed.y / RadiusM
-    val angle    = math.hypot(north, east)
+    val angle    = StrictMath.hypot(north, east)
     if angle < 1e-12 then origin.copy(altitude = altitude)
     else
       val latitude = math.toRadians(origin.latitudeDeg)
-      val sine     = math.sin(angle) / angle
-      val there    = math.asin(math.cos(angle) * math.sin(latitude) + north * sine * math.cos(latitude))
-      val around   = math.atan2(
+      val sine     = StrictMath.sin(angle) / angle
+      val there    = StrictMath.asin(
+        StrictMath.cos(angle) * StrictMath.sin(latitude) + north * sine * StrictMath.cos(latitude)
+      )
+      val around = StrictMath.atan2(
         east * sine,
-        math.cos(latitude) * math.cos(angle) - north * math.sin(latitude) * sine
+        StrictMath.cos(latitude) * StrictMath.cos(angle) - north * StrictMath.sin(latitude) * sine
       )
       GeoLocation(math.toDegrees(there), origin.longitudeDeg + math.toDegrees(around), altitude)
 
   /** The point in NED, m, around `origin` of a nearby place (`GeodeticToNedFast`). */
   def toNed(place: GeoLocation, origin: GeoLocation): Vector3 = Vector3(
     math.toRadians(place.latitudeDeg - origin.latitudeDeg) * RadiusM,
-    math.toRadians(place.longitudeDeg - origin.longitudeDeg) * RadiusM * math.cos(
+    math.toRadians(place.longitudeDeg - origin.longitudeDeg) * RadiusM * StrictMath.cos(
       math.toRadians(place.latitudeDeg)
     ),
     origin.altitude.value - place.altitude.value
@@ -42,14 +44,14 @@ private[simulator] object Globe:
 
   /** Standard pressure below 11 km, Pa (Stull, Practical Meteorology). */
   def pressurePa(altitudeM: Double): Double =
-    SeaLevelPressure * math.pow(288.15 / temperatureK(altitudeM), -5.255877)
+    SeaLevelPressure * StrictMath.pow(288.15 / temperatureK(altitudeM), -5.255877)
 
   /** kg/m³ */
   def airDensity(altitudeM: Double): Double = pressurePa(altitudeM) / 287.053 / temperatureK(altitudeM)
 
   /** Altitude of a pressure, m: the altimeter's formula. */
   def pressureAltitudeM(pressurePa: Double): Double =
-    (1 - math.pow(pressurePa / SeaLevelPressure, 0.190284)) * 145366.45 * 0.3048
+    (1 - StrictMath.pow(pressurePa / SeaLevelPressure, 0.190284)) * 145366.45 * 0.3048
 
   /** The field of a dipole whose pole lies at 80.31° N, 72.62° W, NED, gauss. Its direction errs by some 10°, its
     * strength by up to a third.
@@ -59,19 +61,22 @@ private[simulator] object Globe:
     val fromPole = math.toRadians(place.longitudeDeg + 72.62)
     val pole     = math.toRadians(80.31)
     val cosColat =
-      math.cos(latitude) * math.cos(pole) + math.sin(latitude) * math.sin(pole) * math.cos(fromPole)
-    val colatitude = math.acos(cosColat)
-    val strength   = 0.312 * math.pow(RadiusM / (RadiusM + place.altitude.value), 3) *
+      StrictMath.cos(latitude) * StrictMath.cos(
+        pole
+      ) + StrictMath.sin(latitude) * StrictMath.sin(pole) * StrictMath.cos(fromPole)
+    val colatitude = StrictMath.acos(cosColat)
+    val strength   = 0.312 * StrictMath.pow(RadiusM / (RadiusM + place.altitude.value), 3) *
       math.sqrt(1 + 3 * cosColat * cosColat)
-    val ratio       = math.cos(pole) / math.sin(colatitude)
+    val ratio       = StrictMath.cos(pole) / StrictMath.sin(colatitude)
     val declination =
-      if cosColat > math.sin(pole) * math.sin(latitude) then math.asin(math.sin(fromPole) * ratio)
-      else math.asin(math.cos(fromPole) * ratio)
-    val inclination = math.atan(2 / math.tan(colatitude))
+      if cosColat > StrictMath.sin(pole) * StrictMath.sin(latitude) then
+        StrictMath.asin(StrictMath.sin(fromPole) * ratio)
+      else StrictMath.asin(StrictMath.cos(fromPole) * ratio)
+    val inclination = StrictMath.atan(2 / StrictMath.tan(colatitude))
     Vector3(
-      strength * math.cos(inclination) * math.cos(declination),
-      strength * math.cos(inclination) * math.sin(declination),
-      strength * math.sin(inclination)
+      strength * StrictMath.cos(inclination) * StrictMath.cos(declination),
+      strength * StrictMath.cos(inclination) * StrictMath.sin(declination),
+      strength * StrictMath.sin(inclination)
     )
 
   private def geopotentialKm(altitudeM: Double): Double =

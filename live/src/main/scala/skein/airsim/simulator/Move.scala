@@ -95,7 +95,7 @@ private[simulator] object Move:
     else
       YawMode(
         false,
-        normalized(yaw.yaw_or_rate + math.toDegrees(math.atan2(travelNed.y, travelNed.x)).toFloat)
+        normalized(yaw.yaw_or_rate + math.toDegrees(StrictMath.atan2(travelNed.y, travelNed.x)).toFloat)
       )
 
   val ForwardOnly = 1

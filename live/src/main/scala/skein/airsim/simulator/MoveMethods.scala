@@ -107,4 +107,7 @@ private[simulator] object MoveMethods:
   /** North and east of a velocity to the front and to the right, by the heading now. */
   private def turned(vehicle: SimulatedVehicle, front: Double, right: Double): (Double, Double) =
     val yaw = vehicle.state.yawRad
-    (front * math.cos(yaw) - right * math.sin(yaw), front * math.sin(yaw) + right * math.cos(yaw))
+    (
+      front * StrictMath.cos(yaw) - right * StrictMath.sin(yaw),
+      front * StrictMath.sin(yaw) + right * StrictMath.cos(yaw)
+    )

@@ -107,7 +107,7 @@ final private[simulator] class SimulatedVehicle(
     * it falls.
     */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
-    val yaw = 2 * math.atan2(orientation.z, orientation.w)
+    val yaw = 2 * StrictMath.atan2(orientation.z, orientation.w)
     if positionNed.z < environment.groundDownM then
       val hold = positionNed - Vector3(0, 0, quadrotor.hoverSagM(positionNed.z, environment))
       state.copyFrom(quadrotor.hovering(hold, yaw, environment))
