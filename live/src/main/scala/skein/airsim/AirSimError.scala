@@ -14,8 +14,13 @@ enum AirSimError:
   /** What it sent as its settings cannot be read. */
   case Settings(error: SettingsError)
 
+  /** It did not come to rest where it was sent: so far from there, m, and so fast, m/s. */
+  case NotAtStart(name: String, offM: Double, speedMps: Double)
+
   def message: String = this match
     case Call(error)                    => error.message
     case UnknownVehicle(name, existing) =>
       s"the simulator has no vehicle '$name'; it has ${existing.map(n => s"'$n'").mkString(", ")}"
-    case Settings(error) => s"the simulator's settings: ${error.message}"
+    case Settings(error)                  => s"the simulator's settings: ${error.message}"
+    case NotAtStart(name, offM, speedMps) =>
+      f"'$name' did not come to rest at its start: $offM%.1f m off, at $speedMps%.2f m/s; is something in its way?"
