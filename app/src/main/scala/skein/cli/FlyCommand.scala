@@ -6,9 +6,11 @@ import java.time.format.DateTimeFormatter
 import mainargs.{ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
+import scala.concurrent.{Future, Promise}
 import skein.experiment.*
 import skein.link.{Address, Clock, TcpTransport}
 import skein.loop.Outcome
+import skein.record.RecordError
 import skein.report.{Report, SummaryTables}
 
 /** Options of `./skein fly`. */
@@ -43,19 +45,30 @@ object FlyCommand
       simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
       _         <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
       out = options.out.fold(defaultFolder)(Path.of(_))
-      landed <- options.clock match
+      flown <- options.clock match
         case "real" =>
           for
-            _      <- warmUp(settings)
-            landed <- flyLive(settings, simulator, out)
-            twins  <- flyTwins(landed, settings, options.twins, out)
-          yield landed ++ twins
-        case "virtual" if simulator.isEmpty => flyVirtual(settings, out)
-        case "virtual"                      =>
+            _     <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
+            _     <- warmUp(settings)
+            flown <- flyLive(settings, simulator, out)
+            twins <- flyTwins(flown.landed, settings, options.twins, out)
+          yield flown.copy(landed = flown.landed ++ twins)
+        case "virtual" if simulator.isEmpty =>
+          nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
+        case "virtual" =>
           Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
         case other => Left(s"--clock: expected real or virtual, came '$other'")
-      _ <- report(landed, out)
+      _ <- report(flown.landed, out)
+      _ <- flown.grounded.toLeft(())
     yield ()
+
+  /** @param grounded
+    *   why the flights that are not among those that landed were not flown, if any was not
+    */
+  private case class Flown(landed: Vector[Landed], grounded: Option[String])
+
+  private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
+    plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
 
   private def defaultFolder: Path =
     Path.of("flights", LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss")))
@@ -73,24 +86,42 @@ object FlyCommand
       settings: FlySettings,
       simulator: Option[Address],
       out: Path
-  ): Either[String, Vector[Landed]] =
+  ): Either[String, Flown] =
     Files.createDirectories(out): Unit
     given system: ActorSystem = ActorSystem("skein")
     val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator)
     try
-      // Flights on one simulator that runs already follow each other; built-in ones fly side by side.
-      val rounds = if simulator.isDefined then settings.plans.map(Vector(_)) else Vector(settings.plans)
-      rounds.foldLeft[Either[String, Vector[Landed]]](Right(Vector.empty)): (soFar, plans) =>
-        soFar.flatMap(before => flyTogether(rigs, plans, settings, out).map(before ++ _))
+      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out).map(Flown(_, None))
+      else flyInTurn(rigs, settings, out)
     finally
       val _ = Edge.await(system.terminate())
+
+  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
+  private def flyInTurn(rigs: FlightRigs, settings: FlySettings, out: Path)(using
+      system: ActorSystem
+  ): Either[String, Flown] =
+    val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
+      if before.grounded.isDefined then before
+      else if Edge.isInterrupted then
+        before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
+      else
+        Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
+        flyTogether(rigs, Vector(plan), settings, out) match
+          case Left(reason)  => before.copy(grounded = Some(reason))
+          case Right(landed) => before.copy(landed = before.landed ++ landed)
+    flown.grounded match
+      case Some(reason) if flown.landed.isEmpty => Left(reason)
+      case _                                    => Right(flown)
 
   private def flyTogether(rigs: FlightRigs, plans: Vector[FlightPlan], settings: FlySettings, out: Path)(using
       system: ActorSystem
   ): Either[String, Vector[Landed]] =
     import system.dispatcher
+    val abandoned = Promise[Either[String, LiveFlights]]()
+    def abandon() = abandoned.trySuccess(Left(s"${plans.head.id}: ended from outside before it began")): Unit
     Edge
-      .await(LiveFlights.start(rigs, plans, out))
+      .untilInterrupted(() => abandon()):
+        Edge.await(Future.firstCompletedOf(Seq(LiveFlights.start(rigs, plans, out), abandoned.future)))
       .map: flights =>
         val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
         val timer =
