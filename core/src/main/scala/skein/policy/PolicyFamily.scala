@@ -79,6 +79,22 @@ object PolicyFamily:
     parameters => LeadPursuit(parameters(0), parameters(1), parameters(2))
   )
 
+  /** Flown by the scalar engine alone. */
+  val chauffeurPursuer: PolicyFamily = PolicyFamily(
+    "chauffeur-pursuer",
+    "turns hard towards the opponent and dashes; flies off first where it would slip by",
+    Set(Role.Pursuer),
+    SearchSpace(
+      Vector(
+        Axis("turningRadiusM", 1.0, 24.0, 8.0),
+        Axis("speedRatio", 0.05, 0.95, 0.5),
+        Axis("captureRadiusM", 0.0, 12.0, 1.5),
+        Axis("turnRateRadPerS", 0.2, 3.0, 1.25)
+      )
+    ),
+    parameters => ChauffeurPursuer(parameters(0), parameters(1), parameters(2), parameters(3))
+  )
+
   val chauffeurEvader: PolicyFamily = PolicyFamily(
     "chauffeur-evader",
     "runs along the line on which the chase will end; dodges near the pursuer",
@@ -106,7 +122,15 @@ object PolicyFamily:
 
   /** All that have a fixed number of parameters, in the order in which they are listed to people. */
   val all: Vector[PolicyFamily] =
-    Vector(paperPursuer, purePursuit, proportionalNavigation, leadPursuit, paperEvader, chauffeurEvader)
+    Vector(
+      paperPursuer,
+      purePursuit,
+      proportionalNavigation,
+      leadPursuit,
+      chauffeurPursuer,
+      paperEvader,
+      chauffeurEvader
+    )
 
   /** The family of this name.
     *

@@ -140,7 +140,13 @@ class GuidanceSuite extends munit.FunSuite:
   test("every policy mirrors what it does where everything is mirrored"):
     val source   = SplitMix64(3)
     val policies =
-      Seq(PurePursuit(1), ProportionalNavigation(3, 1), LeadPursuit(0.5, 1, 1), ChauffeurEvader())
+      Seq(
+        PurePursuit(1),
+        ProportionalNavigation(3, 1),
+        LeadPursuit(0.5, 1, 1),
+        ChauffeurPursuer(),
+        ChauffeurEvader()
+      )
     for policy <- policies; _ <- 1 to 200 do
       val v        = Vector.fill(6)(20 * source.nextDouble() - 10)
       val here     = policy.heading(v(0), v(1), v(2), v(3), v(4), v(5), 0.1)
@@ -154,6 +160,7 @@ class GuidanceSuite extends munit.FunSuite:
       PurePursuit(1),
       ProportionalNavigation(3, 1),
       LeadPursuit(0.5, 1, 1),
+      ChauffeurPursuer(turnRateRadPerS = 1),
       NeuralPolicy(NeuralShape(Vector(3)), Vector.tabulate(19)(i => math.sin(i)), 1)
     )
     for policy <- policies do

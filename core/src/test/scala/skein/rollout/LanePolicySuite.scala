@@ -8,7 +8,9 @@ class LanePolicySuite extends munit.FunSuite:
   private val network = NeuralShape.parse("8x8").toOption.get
 
   private val families: Seq[(String, SplitMix64 => Policy)] =
-    PolicyFamily.all.map(family => family.name -> drawn(family)) ++ Seq(
+    PolicyFamily.all.filter(_ != PolicyFamily.chauffeurPursuer).map(family =>
+      family.name -> drawn(family)
+    ) ++ Seq(
       "paper-pursuer as published" -> (_ => PaperPursuer.asPublished),
       "neural:8x8"                 -> drawn(PolicyFamily.neural(network))
     )
@@ -55,8 +57,9 @@ class LanePolicySuite extends munit.FunSuite:
       assert(off.sorted.apply(off.size / 2) < 1e-5, off.sorted.apply(off.size / 2))
 
   test("a policy that no lanes know has none"):
-    assertEquals(LanePolicy.of(KeepHeading), null)
-    assertEquals(LanePolicy.formOf(KeepHeading), null)
+    for policy <- Seq(KeepHeading, ChauffeurPursuer()) do
+      assertEquals(LanePolicy.of(policy), null)
+      assertEquals(LanePolicy.formOf(policy), null)
 
   for
     (name, draw)       <- families if name != "paper-evader" && name != "chauffeur-evader"
