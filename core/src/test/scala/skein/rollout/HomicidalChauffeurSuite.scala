@@ -200,7 +200,7 @@ class HomicidalChauffeurSuite extends munit.FunSuite:
       if without - within < 1e-9 then middle
       else if game.radiusNeededM(middle, 0) < captureM then meet(middle, without)
       else meet(within, middle)
-    val metres              = meet(captureM, dodgeM)
+    val metres                         = meet(captureM, dodgeM)
     def capture(share: Double): Double =
       captureS(chauffeur(captureM), steepest, Start(share * metres, 1e-3, 0), captureM, 20)
     for share <- Seq(0.5, 0.8, 0.95, 0.98) do assert(capture(share) < 1, s"$share of $metres m")
