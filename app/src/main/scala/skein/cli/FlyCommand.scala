@@ -74,13 +74,16 @@ object FlyCommand
     Path.of("flights", LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss")))
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
-    WarmUp
-      .fly(settings, WarmUp.Flights, Clock.system)
-      .map(flown =>
-        Console.err.println(
-          s"warmed up by $flown virtual flights, so that no decision waits for the compiler"
-        )
+    given system: ActorSystem = ActorSystem("skein-warm-up")
+    try
+      for
+        flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
+        decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), Clock.system))
+      yield Console.err.println(
+        s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
       )
+    finally
+      val _ = Edge.await(system.terminate())
 
   private def flyLive(
       settings: FlySettings,

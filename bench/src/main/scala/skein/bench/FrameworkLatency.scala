@@ -21,11 +21,11 @@ import skein.units.*
   * vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the process. Measured at the
   * client's sockets: from the last bytes that arrived before a command to the write of the bytes that hold the
   * command; so decoding, joining, deciding and encoding are in it, for all twenty, from the first decision on. As in
-  * `./skein fly`, virtual flights warm the way up before.
+  * `./skein fly`, virtual flights and a rehearsal warm the way up before.
   *
   * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10), threads
   * that plan without a pause meanwhile, as the `plan` loop's do (default 0), virtual flights
-  * to warm up by (default [[skein.experiment.WarmUp.Flights]]; 0 for a cold start).
+  * to warm up by before the rehearsal (default [[skein.experiment.WarmUp.Flights]]; 0 for a cold start without one).
   */
 object FrameworkLatency:
 
@@ -45,6 +45,9 @@ object FrameworkLatency:
     )
     val warmUp = args.lift(3).fold(WarmUp.Flights)(_.toInt)
     println(WarmUp.fly(settings, warmUp, Clock.system).map(flown => s"warmed up by $flown virtual flights"))
+    if warmUp > 0 then
+      val rehearsed = Await.result(WarmUp.rehearse(settings, TcpTransport(), Clock.system), Duration.Inf)
+      println(rehearsed.map(decisions => s"and by $decisions decisions over loopback"))
     val plan     = settings.plans.head
     val observed = ObservedTransport(TcpTransport(), Clock.system)
     val rigs     = FlightRigs(observed, Clock.system, settings, simulator = None)
