@@ -35,6 +35,8 @@ final case class FlightOptions(
     pairs: Option[Int],
     @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
     asPublished: Flag,
+    @arg(doc = "at which all fly, above where they start, in metres (default: 20 for the duel, 5 for teams)")
+    altitude: Option[Double],
     @arg(doc =
       "by which `predictive` predicts: quadrotor, reduced, constant-velocity, constant-turn, or a model file of `skein identify`"
     )
@@ -77,12 +79,15 @@ final case class FlightOptions(
       "scenario"        -> scenario,
       "policies"        -> strings(policy),
       "pairs"           -> pairs,
+      "altitude-m"      -> altitude,
       "model"           -> model,
       "moves-in-flight" -> movesInFlight,
       "deadline"        -> deadline,
       "fallback"        -> fallback,
       "as-published"    -> Option.when(asPublished.value)(true)
-    ) ++ TeamScenario.names.map(name => s"$name.vehicles" -> vehicles)).foldLeft(ConfigFactory.empty):
+    ) ++ TeamScenario.names.flatMap(name =>
+      Seq(s"$name.vehicles" -> vehicles, s"$name.altitude-m" -> altitude)
+    )).foldLeft(ConfigFactory.empty):
       case (config, (key, Some(value))) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
       case (config, _) => config

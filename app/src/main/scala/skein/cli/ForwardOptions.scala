@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.{ParserForClass, arg}
 import skein.experiment.PolicyFile
-import skein.policy.{PolicyFamily, Role}
+import skein.policy.{PolicyFamily, Role, Scenario}
 import skein.search.{Conditions, SearchQuestion}
 import skein.units.Span
 
@@ -19,6 +19,10 @@ final case class ForwardOptions(
       "the vehicles: reduced, drag, quadrotor, ideal, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"
     )
     model: Option[String],
+    @arg(doc =
+      "at which all fly, in metres (default: 20); a model holds at the altitude of the flights it was fitted to"
+    )
+    altitude: Option[Double],
     @arg(doc = "a policy file or the name of a family: whom the policy plays against (default: the paper's)")
     opponent: Option[String],
     @arg(doc = "of an episode (default: 60s)")
@@ -28,7 +32,7 @@ final case class ForwardOptions(
     @arg(doc = "that fly at once; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
-  def isEmpty: Boolean = Seq(objective, loop, model, opponent, duration, seed).forall(_.isEmpty)
+  def isEmpty: Boolean = Seq(objective, loop, model, altitude, opponent, duration, seed).forall(_.isEmpty)
 
   def conditions(period: Span): Either[String, Conditions] =
     for duration <- Arguments.span(duration.getOrElse("60s")).left.map("--duration: " + _)
@@ -36,7 +40,8 @@ final case class ForwardOptions(
       loop.getOrElse("stream"),
       model.getOrElse("reduced"),
       period.toMillis,
-      duration.toNanos / 1e9
+      duration.toNanos / 1e9,
+      altitude.getOrElse(Scenario.DuelAltitudeM)
     )
 
   def threadCount: Either[String, Int] =

@@ -58,7 +58,8 @@ object IdentifyCommand
         files.zip(recordings).map(described),
         flights.map(_.name),
         horizon.toSeconds,
-        version(recordings)
+        version(recordings),
+        altitude(flights)
       )
       paths <- write(
         out,
@@ -107,6 +108,10 @@ object IdentifyCommand
   private def clocks(recordings: Vector[Recording]): String =
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
     byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")
+
+  private def altitude(flights: Vector[Flown]): Option[Double] =
+    val all = flights.map(-_.downM)
+    Option.when(all.max - all.min < 0.5)(all.sum / all.size)
 
   private def version(recordings: Vector[Recording]): String =
     recordings.map(_.flight.version).distinct.mkString(", ")

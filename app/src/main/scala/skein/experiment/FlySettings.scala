@@ -22,6 +22,8 @@ import skein.vehicle.ReducedModel
   *   with which the duel is flown too, beside the paper's
   * @param scenario
   *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
+  * @param altitudeM
+  *   of the duel
   * @param model
   *   by which `predictive` predicts
   * @param movesInFlight
@@ -41,6 +43,7 @@ final case class FlySettings(
     pairs: Int,
     asPublished: Boolean,
     scenario: String = FlySettings.Duel,
+    altitudeM: Double = Scenario.DuelAltitudeM,
     surround: TeamScenario.Surround = TeamScenario.Surround(),
     formation: TeamScenario.Formation = TeamScenario.Formation(),
     crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
@@ -54,21 +57,22 @@ final case class FlySettings(
 
   /** Plans are flown by the model that readings are carried forward by, where one is set. */
   def planningByModel: PlanSettings = planning.copy(response = model match
-    case PredictionModel.Reduced(model) => model
-    case _                              => ReducedModel.AirSim)
+    case PredictionModel.Reduced(model, _) => model
+    case _                                 => ReducedModel.AirSim)
 
   /** Absent for the duel. */
   def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
 
   /** Who flies. */
-  def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished))(_.scenario)
+  def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished, altitudeM))(_.scenario)
 
   /** How the loops are run. */
   def loopSettings: LoopSettings =
-    val timely = LoopSettings
+    val altitudes = agents.agents.map(-_.startPositionNed.z)
+    val timely    = LoopSettings
       .every(period)
       .copy(
-        model = _ => model.vehicleModel,
+        model = vehicle => model.at(altitudes(vehicle)),
         planning = planningByModel,
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
@@ -133,6 +137,9 @@ final case class FlightPlan(
 object FlySettings:
   val Duel = "duel"
 
+  /** The air of forward simulation and of the built-in simulator is that at the ground. */
+  val MostAltitudeM = 1000.0
+
   /** What a forecast remembers of commands has room for more. */
   val MostMovesInFlight = 32
 
@@ -162,6 +169,9 @@ object FlySettings:
       Option.when(
         settings.pairs < 1 || settings.pairs > 50
       )(s"pairs: expected 1 to 50, came ${settings.pairs}"),
+      Option.when(!(settings.altitudeM > 0 && settings.altitudeM <= MostAltitudeM))(
+        s"altitude-m: expected more than 0 and up to $MostAltitudeM m, came ${settings.altitudeM}"
+      ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
@@ -179,7 +189,16 @@ object FlySettings:
       )
     ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys) ++
       settings.planning.mistakes.map(mistake => inKeys(s"planning.$mistake"))
-    Either.cond(mistakes.isEmpty, settings, mistakes.mkString("skein.fly.", "\nskein.fly.", ""))
+    val all = if mistakes.isEmpty then modelMistake(settings).toSeq else mistakes
+    Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
+
+  private def modelMistake(settings: FlySettings): Option[String] = settings.model match
+    case PredictionModel.Reduced(_, flownAtM) =>
+      settings.agents.agents
+        .flatMap(agent => ModelFile.mistake(flownAtM, -agent.startPositionNed.z))
+        .headOption
+        .map("model: " + _)
+    case _ => None
 
   /** A mistake that begins with a setting's name, by its key in the configuration. */
   private def inKeys(mistake: String): String =

@@ -9,8 +9,14 @@ import skein.vehicle.ReducedModel
   *
   * @param use
   *   which of them to fly by
+  * @param altitudeM
+  *   at which was flown what it was fitted to; files of older versions do not say
   */
-final case class ModelFile(use: Structure, models: Map[Structure, ReducedModel]):
+final case class ModelFile(
+    use: Structure,
+    models: Map[Structure, ReducedModel],
+    altitudeM: Option[Double] = None
+):
 
   /** The model to predict and simulate by. */
   def model: ReducedModel = models(use)
@@ -20,9 +26,21 @@ final case class ModelFile(use: Structure, models: Map[Structure, ReducedModel])
     models.get(Structure.Lag).map(lag => Reduced(lag.gain, lag.lagS, lag.deadTimeS))
 
 object ModelFile:
+  /** Within a metre, a lag of AirSim's changes by 0.1 s. */
+  private val SameAltitudeM = 1.0
+
+  /** What is wrong with flying at an altitude by a model of another, if anything. */
+  def mistake(flownAtM: Option[Double], altitudeM: Double): Option[String] =
+    flownAtM
+      .filter(flown => math.abs(flown - altitudeM) > SameAltitudeM)
+      .map(flown =>
+        s"expected a model of flights at ${number(altitudeM)} m altitude, since the vehicles' lag depends on it, came one of ${number(flown)} m"
+      )
 
   /** Where a fit came from.
     *
+    * @param altitudeM
+    *   of all flights, if they had the same
     * @param recordings
     *   files, each with what was flown
     */
@@ -30,7 +48,8 @@ object ModelFile:
       recordings: Vector[String],
       vehicles: Vector[String],
       horizonS: Double,
-      version: String
+      version: String,
+      altitudeM: Option[Double] = None
   )
 
   /** The text of a file. */
@@ -61,6 +80,9 @@ object ModelFile:
        |
        |  version = ${quoted(from.version)}
        |  horizon = ${number(from.horizonS)} s
+       |${from.altitudeM.fold("  # The flights had several altitudes.")(metres =>
+        s"  altitude-m = ${number(metres)}"
+      )}
        |  recordings = [
        |${from.recordings.map("    " + quoted(_)).mkString("\n")}
        |  ]
@@ -91,7 +113,11 @@ object ModelFile:
           (),
           s"$path: use = ${use.label}, but there is no section ${use.label}"
         )
-      yield ModelFile(use, models.toMap)
+      yield ModelFile(
+        use,
+        models.toMap,
+        Option.when(section.hasPath("altitude-m"))(section.getDouble("altitude-m"))
+      )
     catch
       case wrong: ConfigException          => Left(s"$path is no model file: ${wrong.getMessage}")
       case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")

@@ -3,23 +3,38 @@ package skein.experiment
 import skein.vehicle.*
 
 /** By which model `predictive` carries the readings of a vehicle forward. */
-enum PredictionModel(val vehicleModel: VehicleModel[?]):
+enum PredictionModel:
   /** AirSim's vehicle with its flight controller. */
-  case Quadrotor extends PredictionModel(QuadrotorModel.AirSim)
+  case Quadrotor
 
-  /** A first-order response, identified from flights. */
-  case Reduced(model: ReducedModel) extends PredictionModel(ReducedVehicleModel(model))
+  /** [[skein.vehicle.ReducedModel.airSimAt]] the altitude at which a vehicle flies. */
+  case AirSimReduced
+
+  /** A first-order response, identified from flights.
+    *
+    * @param flownAtM
+    *   the altitude of these flights, where it is known: no other is flown by it, since AirSim's lag depends on it
+    */
+  case Reduced(model: ReducedModel, flownAtM: Option[Double] = None)
 
   /** Straight on, whatever was commanded. */
-  case ConstantVelocity extends PredictionModel(skein.vehicle.ConstantVelocity)
+  case ConstantVelocity
 
   /** Along an arc, whatever was commanded. */
-  case ConstantTurn extends PredictionModel(skein.vehicle.ConstantTurn)
+  case ConstantTurn
+
+  /** Of a vehicle that keeps an altitude. */
+  def at(altitudeM: Double): VehicleModel[?] = this match
+    case Quadrotor         => QuadrotorModel.AirSim
+    case AirSimReduced     => ReducedVehicleModel(ReducedModel.airSimAt(altitudeM))
+    case Reduced(model, _) => ReducedVehicleModel(model)
+    case ConstantVelocity  => skein.vehicle.ConstantVelocity
+    case ConstantTurn      => skein.vehicle.ConstantTurn
 
 object PredictionModel:
   private val named = Vector(
     "quadrotor"         -> Quadrotor,
-    "reduced"           -> Reduced(ReducedModel.AirSim),
+    "reduced"           -> AirSimReduced,
     "constant-velocity" -> ConstantVelocity,
     "constant-turn"     -> ConstantTurn
   )
@@ -31,13 +46,13 @@ object PredictionModel:
       case None        =>
         ModelFile
           .read(text)
-          .map(file => Reduced(file.model))
+          .map(file => Reduced(file.model, file.altitudeM))
           .left
           .map(reason => s"expected ${named.map(_._1).mkString(", ")} or a model file: $reason")
 
   /** As a recording keeps it: [[recorded]] reads it back. A double's shortest text reads back as the same double. */
   def text(model: PredictionModel): String = model match
-    case Reduced(model) =>
+    case Reduced(model, _) =>
       Seq(model.gain, model.lagS, model.deadTimeS, model.turnLagS, model.dragPerM).mkString(" ")
     case other => named.collectFirst { case (name, `other`) => name }.get
 

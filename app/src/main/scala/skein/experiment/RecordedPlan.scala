@@ -13,6 +13,7 @@ final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
 object RecordedPlan:
   private val Pairs       = "pairs"
   private val AsPublished = "asPublished"
+  private val AltitudeM   = "altitudeM"
   private val Model       = "model"
   private val Planning    = "planning"
 
@@ -27,7 +28,11 @@ object RecordedPlan:
     val scenario = settings.team match
       case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
       case None       =>
-        Seq(Parameter(Pairs, settings.pairs.toString), Parameter(AsPublished, settings.asPublished.toString))
+        Seq(
+          Parameter(Pairs, settings.pairs.toString),
+          Parameter(AsPublished, settings.asPublished.toString),
+          Parameter(AltitudeM, settings.altitudeM.toString)
+        )
     scenario ++ Seq(
       Parameter(Planning, settings.planning.text),
       Parameter(Model, PredictionModel.text(settings.model)),
@@ -76,7 +81,13 @@ object RecordedPlan:
         for
           pairs       <- parameter(Pairs, "a number from 1")(_.toIntOption.filter(_ > 0))
           asPublished <- parameter(AsPublished, "true or false")(_.toBooleanOption)
-        yield settings.copy(pairs = pairs, asPublished = asPublished)
+          // Recordings from before the duel could be flown elsewhere have none.
+          altitudeM <- optional(AltitudeM, "metres")(_.toDoubleOption.filter(_ > 0))
+        yield settings.copy(
+          pairs = pairs,
+          asPublished = asPublished,
+          altitudeM = altitudeM.getOrElse(settings.altitudeM)
+        )
 
     for
       loop     <- LoopKind.parse(flight.loop)

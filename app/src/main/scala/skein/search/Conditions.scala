@@ -1,7 +1,8 @@
 package skein.search
 
-import skein.experiment.{FlightRigs, TextFile}
+import skein.experiment.{FlightRigs, FlySettings, TextFile}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.Scenario
 import skein.rollout.{Delays, Duel, DuelBatch, LoopTiming, VelocityResponse}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.Span
@@ -12,14 +13,24 @@ import upickle.default.ReadWriter
   * @param model
   *   see [[VehicleChoice.parse]]
   */
-final case class Conditions(loop: String, model: String, periodMs: Double, durationS: Double)
-    derives ReadWriter:
+final case class Conditions(
+    loop: String,
+    model: String,
+    periodMs: Double,
+    durationS: Double,
+    altitudeM: Double = Scenario.DuelAltitudeM
+) derives ReadWriter:
 
   /** @return or what was expected and came */
   def resolved: Either[String, Conditions.Resolved] =
     for
-      kind    <- LoopKind.parse(loop).left.map("--loop: " + _)
-      vehicle <- VehicleChoice.parse(model).left.map("--model: " + _)
+      kind <- LoopKind.parse(loop).left.map("--loop: " + _)
+      _    <- Either.cond(
+        altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM,
+        (),
+        s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, came $altitudeM"
+      )
+      vehicle <- VehicleChoice.parse(model, altitudeM).left.map("--model: " + _)
       _       <- Either.cond(
         periodMs >= 1 && periodMs <= 10_000,
         (),
@@ -31,7 +42,7 @@ final case class Conditions(loop: String, model: String, periodMs: Double, durat
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
       )
       timing <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
-    yield Conditions.Resolved(timing, vehicle, Duel.paper.copy(durationS = durationS))
+    yield Conditions.Resolved(timing, vehicle, Duel.paperAt(altitudeM, durationS))
 
 object Conditions:
 

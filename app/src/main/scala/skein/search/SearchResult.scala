@@ -60,6 +60,7 @@ final case class SearchResult(
          |  model = "${question.conditions.model}"
          |  vehicles = "${setup.conditions.vehicle.description}"
          |  opponent = "${question.opponent}"
+         |  altitudeM = ${question.conditions.altitudeM}
          |  durationS = ${question.conditions.durationS}
          |  candidates = ${question.candidates}
          |  episodesEach = ${question.episodes}

@@ -22,11 +22,13 @@ object VehicleChoice:
     Reduced.AirSim
   )
 
-  private val drag = VehicleChoice(
-    "drag",
-    s"reduced model of AirSim's quadrotor with quadratic drag ${ReducedModel.AirSim.dragPerM} /m",
-    ReducedResponse(ReducedModel.AirSim)
-  )
+  private def drag(altitudeM: Double) =
+    val model = ReducedModel.airSimAt(altitudeM)
+    VehicleChoice(
+      "drag",
+      f"reduced model of AirSim's quadrotor at $altitudeM%s m altitude, lag ${model.lagS}%.2f s, with quadratic drag ${model.dragPerM}%s /m",
+      ReducedResponse(model)
+    )
 
   private val quadrotor = VehicleChoice(
     "quadrotor",
@@ -37,34 +39,48 @@ object VehicleChoice:
   private val ideal =
     VehicleChoice("ideal", "ideal kinematics: the velocity is the command", VelocityResponse.Ideal)
 
-  private val all = Vector(reduced, drag, quadrotor, ideal)
+  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal)
 
-  val forms: String = s"${all.map(_.name).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE"
+  val forms: String =
+    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE"
 
   /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the file's model of
     * three parameters, which flies by lanes.
     *
+    * @param altitudeM
+    *   at which it will fly: the lag of AirSim's vehicles depends on it
     * @return
     *   or what was expected
     */
-  def parse(text: String): Either[String, VehicleChoice] = all.find(_.name == text) match
-    case Some(known) => Right(known)
-    case None        =>
+  def parse(text: String, altitudeM: Double): Either[String, VehicleChoice] = all(altitudeM).find(
+    _.name == text
+  ) match
+    case Some(known) =>
+      Either.cond(
+        known != reduced || altitudeM == ReducedModel.IdentifiedAtM,
+        known,
+        s"expected drag, quadrotor, ideal or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
+      )
+    case None =>
       text match
         case s"reduced:$path" =>
           for
-            file <- read(path)
+            file <- read(path, altitudeM)
             lag  <- file.reduced.toRight(s"$path has no model of three parameters")
           yield VehicleChoice(text, described(lag, path), lag)
         case path =>
-          for file <- read(path)
+          for file <- read(path, altitudeM)
           yield
             if file.use == Structure.Lag && file.reduced.isDefined then
               VehicleChoice(text, described(file.reduced.get, path), file.reduced.get)
             else VehicleChoice(text, s"reduced model ${file.use.label} of $path", ReducedResponse(file.model))
 
-  private def read(path: String): Either[String, ModelFile] =
-    if Files.isRegularFile(Path.of(path)) then ModelFile.read(path)
+  private def read(path: String, altitudeM: Double): Either[String, ModelFile] =
+    if Files.isRegularFile(Path.of(path)) then
+      for
+        file <- ModelFile.read(path)
+        _    <- ModelFile.mistake(file.altitudeM, altitudeM).map(mistake => s"$path: $mistake").toLeft(())
+      yield file
     else Left(s"expected $forms, came '$path'")
 
   private def described(model: Reduced, path: String) =

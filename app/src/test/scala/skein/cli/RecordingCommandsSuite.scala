@@ -82,7 +82,8 @@ class RecordingCommandsSuite extends munit.FunSuite:
       assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
       val flags = ConfigFactory.parseString(s"skein.fly.model = \"${folder.resolve("model.conf")}\"")
       val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
-      assertEquals(read.map(_.model), Right(PredictionModel.Reduced(file.model)))
+      assertEquals(read.map(_.model), Right(PredictionModel.Reduced(file.model, file.altitudeM)))
+      assertEquals(file.altitudeM, Some(20.0))
 
   recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
     val broken =

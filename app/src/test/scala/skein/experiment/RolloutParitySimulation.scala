@@ -17,8 +17,22 @@ class RolloutParitySimulation extends munit.FunSuite:
 
   private val duration = Span.ofSeconds(60)
 
-  private def settings(loop: LoopKind, link: LatencyProfile, asPublished: Boolean, pairs: Int) =
-    FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, pairs, asPublished)
+  private def settings(
+      loop: LoopKind,
+      link: LatencyProfile,
+      asPublished: Boolean,
+      pairs: Int,
+      altitudeM: Double
+  ) = FlySettings(
+    List(loop),
+    List(link),
+    duration,
+    Span.ofMillis(100),
+    1,
+    pairs,
+    asPublished,
+    altitudeM = altitudeM
+  )
 
   /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
   private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
@@ -29,16 +43,19 @@ class RolloutParitySimulation extends munit.FunSuite:
       link: LatencyProfile,
       seed: Long,
       asPublished: Boolean = false,
-      pairs: Int = 1
+      pairs: Int = 1,
+      altitudeM: Double = Scenario.DuelAltitudeM
   ): Unit =
-    val flown =
-      TappedFlight.fly(settings(loop, link, asPublished, pairs), FlightPlan("parity", loop, link, seed))
+    val flown = TappedFlight.fly(
+      settings(loop, link, asPublished, pairs, altitudeM),
+      FlightPlan("parity", loop, link, seed)
+    )
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings
         .of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
         .getOrElse(fail(s"${loop.label} has no timing"))
-    val scenario = Scenario.duels(pairs, asPublished)
+    val scenario = Scenario.duels(pairs, asPublished, altitudeM)
     val vehicles = scenario.agents.map(_.name)
     val clue     = s"${loop.label} over ${link.name}, seed $seed"
 
@@ -116,6 +133,9 @@ class RolloutParitySimulation extends munit.FunSuite:
   do
     test(s"${loop.label} over $link"):
       check(loop, profile(link), seed)
+
+  test("stream over vpn, lower, where vehicles answer faster"):
+    check(LoopKind.Stream, profile("vpn"), 4, altitudeM = 6)
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
   // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides

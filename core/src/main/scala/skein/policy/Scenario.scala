@@ -73,13 +73,17 @@ final case class Scenario(agents: Vector[Agent]):
     assignment.opponentOf(self, other => positionNed(self).horizontalDistance(positionNed(other)))
 
 object Scenario:
+  /** The paper's, m. */
+  val DuelAltitudeM = 20.0
 
   /** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart at z = −20 m.
     *
     * @param asPublished
     *   the pursuer turns a fixed angle per decision, as the published code does
+    * @param altitudeM
+    *   −z
     */
-  def duel(asPublished: Boolean = false): Scenario =
+  def duel(asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Scenario =
     val pursuer = if asPublished then PaperPursuer.asPublished else PaperPursuer()
     Scenario(
       Vector(
@@ -88,22 +92,22 @@ object Scenario:
           "Evader",
           Role.Evader,
           MetresPerSecond(5),
-          Vector3(21, 0, -20),
+          Vector3(21, 0, -altitudeM),
           Radians(StrictMath.cos(0.5)),
           PaperEvader()
         ),
-        Agent("Pursuer", Role.Pursuer, MetresPerSecond(10), Vector3(0, 0, -20), Radians(0), pursuer)
+        Agent("Pursuer", Role.Pursuer, MetresPerSecond(10), Vector3(0, 0, -altitudeM), Radians(0), pursuer)
       )
     )
 
   /** `pairs` duels side by side, 60 m apart: for teams of any size. The vehicles of several are numbered from 1. */
-  def duels(pairs: Int, asPublished: Boolean = false): Scenario =
-    if pairs == 1 then duel(asPublished)
+  def duels(pairs: Int, asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Scenario =
+    if pairs == 1 then duel(asPublished, altitudeM)
     else
       val agents =
         for
           pair  <- 0 until pairs
-          agent <- duel(asPublished).agents
+          agent <- duel(asPublished, altitudeM).agents
         yield agent.copy(
           name = s"${agent.name}${pair + 1}",
           startPositionNed = agent.startPositionNed + Vector3(0, 60.0 * pair, 0)

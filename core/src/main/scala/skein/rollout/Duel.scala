@@ -41,6 +41,10 @@ object Duel:
 
   val paper: Duel = of(Scenario.duel())
 
+  /** The paper's duel at another altitude. */
+  def paperAt(altitudeM: Double, durationS: Double): Duel =
+    of(Scenario.duel(altitudeM = altitudeM), durationS)
+
 /** What an episode came to. Distances are horizontal, taken once a period.
   *
   * @param captureS

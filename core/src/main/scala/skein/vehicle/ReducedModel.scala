@@ -52,12 +52,17 @@ object ReducedModel:
 
   /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with
     * k = 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so the lag is
-    * (1 + k · |z|) / (k · g), 1.41 s at 5 m and 2.93 s at 20 m.
+    * (1 + k · |z|) / (k · g), 1.41 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified and is kept.
     */
   def airSimAt(altitudeM: Double): ReducedModel =
-    val k   = 0.2 * math.Pi / 5.5
-    val lag = (1 + k * math.abs(altitudeM)) / (k * 9.80665)
-    AirSim.copy(lagS = lag, turnLagS = lag)
+    if math.abs(altitudeM) == IdentifiedAtM then AirSim
+    else
+      val k   = 0.2 * math.Pi / 5.5
+      val lag = (1 + k * math.abs(altitudeM)) / (k * 9.80665)
+      AirSim.copy(lagS = lag, turnLagS = lag)
+
+  /** The altitude of the flights that [[AirSim]] was identified from, m. */
+  val IdentifiedAtM = 20.0
 
 /** One vehicle that flies by a [[ReducedModel]], from one event to the next. Mutable. How its time is cut into calls of
   * [[advance]] does not change the flight, but for rounding.
