@@ -3,7 +3,7 @@ package skein.experiment
 import scala.collection.mutable.ArrayBuffer
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.Scenario
+import skein.policy.{Scenario, TeamScenario}
 import skein.record.Reading
 import skein.rollout.*
 import skein.signal.LatencyProfile
@@ -15,14 +15,16 @@ import skein.units.*
 class RolloutParitySimulation extends munit.FunSuite:
   override val munitTimeout = 5.minutes
 
-  private val duration = Span.ofSeconds(60)
+  private val minute = Span.ofSeconds(60)
 
   private def settings(
       loop: LoopKind,
       link: LatencyProfile,
       asPublished: Boolean,
       pairs: Int,
-      altitudeM: Double
+      altitudeM: Double,
+      scenario: String,
+      duration: Span
   ) = FlySettings(
     List(loop),
     List(link),
@@ -31,6 +33,8 @@ class RolloutParitySimulation extends munit.FunSuite:
     1,
     pairs,
     asPublished,
+    scenario = scenario,
+    crossing = TeamScenario.Crossing(vehicles = 8),
     altitudeM = altitudeM
   )
 
@@ -44,18 +48,18 @@ class RolloutParitySimulation extends munit.FunSuite:
       seed: Long,
       asPublished: Boolean = false,
       pairs: Int = 1,
-      altitudeM: Double = Scenario.DuelAltitudeM
+      altitudeM: Double = Scenario.DuelAltitudeM,
+      team: String = FlySettings.Duel,
+      duration: Span = minute
   ): Unit =
-    val flown = TappedFlight.fly(
-      settings(loop, link, asPublished, pairs, altitudeM),
-      FlightPlan("parity", loop, link, seed)
-    )
+    val asked  = settings(loop, link, asPublished, pairs, altitudeM, team, duration)
+    val flown  = TappedFlight.fly(asked, FlightPlan("parity", loop, link, seed))
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings
         .of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
         .getOrElse(fail(s"${loop.label} has no timing"))
-    val scenario = Scenario.duels(pairs, asPublished, altitudeM)
+    val scenario = asked.agents
     val vehicles = scenario.agents.map(_.name)
     val clue     = s"${loop.label} over ${link.name}, seed $seed"
 
@@ -63,15 +67,16 @@ class RolloutParitySimulation extends munit.FunSuite:
     val observer           = new LoopObserver:
       override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit =
         readings += Note(vehicle, number, Span.ofNanos(atNs), x, y)
-      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double): Unit =
-        val velocity = scenario.agents(vehicle).velocityNed(headingRad)
+      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
+        val velocity = scenario.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
         commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
     val model   = VelocityResponse.quadrotor(hoveredS = flown.hovered.toSeconds)
     val rollout = Rollout(Engagement.of(scenario, duration.toSeconds), timing, flown.delays, model)
     val _       = rollout.fly(0, observer = observer)
 
     def same(what: String, recorded: Seq[Note], again: Seq[Note], tolerance: Double): Unit =
-      val (expected, actual) = (sorted(recorded), sorted(again))
+      val (expected, actual) = (sorted(recorded, duration), sorted(again, duration))
+      assert(expected.nonEmpty, s"$clue: no $what")
       for (e, a) <- expected.zip(actual) do
         val isSame = e.vehicle == a.vehicle && e.number == a.number && e.at == a.at &&
           math.abs(e.a - a.a) <= tolerance && math.abs(e.b - a.b) <= tolerance
@@ -105,7 +110,7 @@ class RolloutParitySimulation extends munit.FunSuite:
     if loop != LoopKind.Paused then same("commands", sent, commands.toSeq, 1e-6)
 
   /** In the order of time, those of the last moments left out. */
-  private def sorted(notes: Seq[Note]): Seq[Note] =
+  private def sorted(notes: Seq[Note], duration: Span): Seq[Note] =
     notes.filter(_.at < duration - Span.ofMillis(1)).sortBy(note =>
       (note.vehicle, note.at.toNanos, note.number)
     )
@@ -136,6 +141,19 @@ class RolloutParitySimulation extends munit.FunSuite:
 
   test("stream over vpn, lower, where vehicles answer faster"):
     check(LoopKind.Stream, profile("vpn"), 4, altitudeM = 6)
+
+  for (team, loop) <- Seq(
+      "surround"  -> LoopKind.Paused,
+      "surround"  -> LoopKind.Stream,
+      "formation" -> LoopKind.Stream,
+      "crossing"  -> LoopKind.Stream,
+      "crossing"  -> LoopKind.Futures,
+      "formation" -> LoopKind.Predictive
+    )
+  do
+    test(s"${loop.label} over vpn, the team of $team, whose policies regard all and choose their speed"):
+      val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
+      check(loop, link, 5, team = team, duration = Span.ofSeconds(15))
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
   // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides

@@ -1,6 +1,7 @@
 package skein.rollout
 
 import skein.forecast.Forecast
+import skein.policy.{Policy, TeamPolicy, TeamSight}
 import skein.units.Instant
 
 /** What a decision is made from: a reading of each vehicle, and the headings sent to them until then. Mutable.
@@ -63,6 +64,7 @@ private final class Controller(
   private var holds         = false
   private var lastDecidedAt = Controller.Never
   private var decided       = 0.0
+  private var speed         = 0.0
   private var sent          = 0.0
   private var made, unused  = 0
 
@@ -87,6 +89,7 @@ private final class Controller(
     outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
     lastDecidedAt = Controller.Never
     decided = world.agents(agent).startHeadingRad
+    speed = world.agents(agent).speed
     sent = decided
     made = 0; unused = 0; turned = 0
     goOn()
@@ -120,25 +123,46 @@ private final class Controller(
   /** What the policy decided last, rad. */
   def decidedHeading: Double = decided
 
+  /** And how fast it is to fly, m/s. */
+  def decidedSpeed: Double = speed
+
   def decide(sight: DuelSight): Unit =
     val now     = world.nowNs
     val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
     val before  = decided
     for forecast <- sight.forecast do ahead(sight, forecast)
+    policy match
+      case duel: Policy     => decided = heading(duel, sight, elapsed)
+      case team: TeamPolicy =>
+        val course = team.course(seen(sight, elapsed))
+        decided = course.headingRad
+        speed = course.speedMps
+    turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
+    lastDecidedAt = now
+    made += 1
+
+  private def heading(policy: Policy, sight: DuelSight, elapsedS: Double): Double =
     upon = sight
     val other = world.assignment.opponentOf(agent, distance)
-    decided = policy.heading(
+    policy.heading(
       sight.x(other) - sight.x(agent),
       sight.y(other) - sight.y(agent),
       sight.vx(other) - sight.vx(agent),
       sight.vy(other) - sight.vy(agent),
       decided,
       sight.sent(other),
-      elapsed
+      elapsedS
     )
-    turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
-    lastDecidedAt = now
-    made += 1
+
+  private def seen(sight: DuelSight, elapsedS: Double): TeamSight = TeamSight(
+    agent,
+    IArray.from(sight.x),
+    IArray.from(sight.y),
+    IArray.from(sight.vx),
+    IArray.from(sight.vy),
+    decided,
+    elapsedS
+  )
 
   /** Puts where the vehicles will be in the place of where they were read. */
   private def ahead(sight: DuelSight, forecast: Forecast): Unit =
@@ -156,12 +180,12 @@ private final class Controller(
     mayCommandAt = world.nowNs + minNs
     outstanding += 1
     sent = decided
-    onSent.sent(agent, world.send(agent, decided, step), decided)
+    onSent.sent(agent, world.send(agent, decided, speed, step), decided, speed)
     goOn()
 
 private object Controller:
   /** Is told of every command sent. */
   trait OnSent:
-    def sent(agent: Int, number: Int, headingRad: Double): Unit
+    def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit
 
   private val Never = Long.MinValue

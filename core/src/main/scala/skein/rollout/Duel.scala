@@ -1,11 +1,13 @@
 package skein.rollout
 
-import skein.policy.{Agent, Policy, Role, Scenario}
+import skein.policy.{Agent, Policy, Role, Scenario, TeamPolicy}
 
-/** A pursuer and an evader in one plane, as a rollout flies them.
+/** One vehicle of a duel or of a team, as a rollout flies it.
   *
+  * @param speed
+  *   of the velocity it commands, where its policy does not choose one
   * @param policy
-  *   see [[skein.policy.Policy]]; must be a pure function
+  *   see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure function
   */
 final case class Duelist(
     speed: Double,
@@ -13,18 +15,18 @@ final case class Duelist(
     startY: Double,
     altitudeDownM: Double,
     startHeadingRad: Double,
-    policy: Policy
+    policy: Policy | TeamPolicy
 )
 
 object Duelist:
-  /** An agent of a scenario that plays against one other. */
+  /** An agent of a scenario. */
   def of(agent: Agent): Duelist = Duelist(
     agent.speed.value,
     agent.startPositionNed.x,
     agent.startPositionNed.y,
     agent.startPositionNed.z,
     agent.startHeading.value,
-    agent.duelPolicy
+    agent.policy
   )
 
 /** @param durationS
@@ -36,7 +38,9 @@ object Duel:
   /** The duel of a scenario with one pursuer and one evader. */
   def of(scenario: Scenario, durationS: Double = 60.0): Duel =
     require(scenario.agents.size == 2, s"a duel has two agents, this scenario ${scenario.agents.size}")
-    def the(role: Role) = Duelist.of(scenario.agents.find(_.role == role).get)
+    def the(role: Role) =
+      val agent = scenario.agents.find(_.role == role).get
+      Duelist.of(agent).copy(policy = agent.duelPolicy)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 
   val paper: Duel = of(Scenario.duel())

@@ -35,7 +35,7 @@ private final class DuelWorld(
   private val asked         = Array.ofDim[Int](count)
 
   // Commands by vehicle and number.
-  private val headings         = Array.ofDim[Double](count * Ring)
+  private val headings, speeds = Array.ofDim[Double](count * Ring)
   private val commandSteps     = Array.ofDim[Int](count * Ring)
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
@@ -119,12 +119,13 @@ private final class DuelWorld(
     * @return
     *   its number
     */
-  def send(agent: Int, headingRad: Double, step: Int): Int =
+  def send(agent: Int, headingRad: Double, speedMps: Double, step: Int): Int =
     val number = commanded(agent)
     commanded(agent) += 1
     headings(slot(agent, number)) = headingRad
+    speeds(slot(agent, number)) = speedMps
     commandSteps(slot(agent, number)) = step
-    observer.commanded(agent, number, time, headingRad)
+    observer.commanded(agent, number, time, headingRad, speedMps)
     commandAt(agent) =
       math.max(commandAt(agent), time + link.delayNs(key, Delays.command(agent), step, number, time))
     schedule(commandAt(agent), Arrived, agent, number)
@@ -140,18 +141,18 @@ private final class DuelWorld(
       schedule(ackAt(agent), Acknowledged, agent, number - 1)
       if handoverNs == 0 then acts(agent, number) else schedule(time + handoverNs, Acts, agent, number)
 
-  def acts(agent: Int, number: Int): Unit = command(agent, headings(slot(agent, number)))
+  def acts(agent: Int, number: Int): Unit =
+    command(agent, headings(slot(agent, number)), speeds(slot(agent, number)))
 
   /** Commands a vehicle without any message. */
-  def commandNow(agent: Int, headingRad: Double): Unit =
-    observer.commanded(agent, commanded(agent), time, headingRad)
+  def commandNow(agent: Int, headingRad: Double, speedMps: Double): Unit =
+    observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
     commanded(agent) += 1
-    command(agent, headingRad)
+    command(agent, headingRad, speedMps)
 
-  private def command(agent: Int, headingRad: Double): Unit =
-    val speed = agents(agent).speed
+  private def command(agent: Int, headingRad: Double, speedMps: Double): Unit =
     vehicles(agent).advance(nowS)
-    vehicles(agent).command(speed * StrictMath.cos(headingRad), speed * StrictMath.sin(headingRad))
+    vehicles(agent).command(speedMps * StrictMath.cos(headingRad), speedMps * StrictMath.sin(headingRad))
 
 private object DuelWorld:
   // Kinds of events.
@@ -191,7 +192,7 @@ trait LoopObserver:
   def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
 
   /** A command was sent. */
-  def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double): Unit = ()
+  def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()
 
 object LoopObserver:
   val Nobody: LoopObserver = new LoopObserver {}

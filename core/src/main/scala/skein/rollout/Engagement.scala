@@ -2,8 +2,9 @@ package skein.rollout
 
 import skein.policy.{Assignment, Role, Scenario}
 
-/** Pursuers and evaders in one plane, as a rollout flies them: 1 against 1 up to M against N, each against the rival that
-  * the assignment gives it, as seen at its decision. Whoever was captured flies on.
+/** Vehicles in one plane, as a rollout flies them: pursuers and evaders, 1 against 1 up to M against N, or a team without
+  * sides. Each plays against the rival that the assignment gives it, as seen at its decision, or regards the whole team,
+  * as its policy is. Whoever was captured flies on.
   *
   * @param roles
   *   of the agents, in the order in which a loop asks them
@@ -25,16 +26,24 @@ final case class Engagement(
 
   val evaders: Vector[Int]  = roles.indices.filter(roles(_) == Role.Evader).toVector
   val pursuers: Vector[Int] = roles.indices.filter(roles(_) == Role.Pursuer).toVector
+  private val bothSides     = evaders.nonEmpty && pursuers.nonEmpty
+  private val inSides       = evaders.size + pursuers.size
   require(
-    evaders.nonEmpty && pursuers.nonEmpty && evaders.size + pursuers.size == agents.size,
-    s"expected pursuers and evaders, came ${roles.mkString(", ")}"
+    inSides == 0 || bothSides && inSides == agents.size,
+    s"expected pursuers and evaders, or neither, came ${roles.mkString(", ")}"
   )
+
+  /** Whose outcomes are told: the evaders; of a team without sides, everybody. */
+  val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
+
+  /** To whom a judged one's distance is taken: the pursuers; in a team without sides, the others. */
+  def against(one: Int): Vector[Int] = if bothSides then pursuers else judged.filter(_ != one)
 
 object Engagement:
   /** Vehicles that one world holds. */
   val Most = 64
 
-  /** The pursuers and evaders of a scenario, under its own assignment. */
+  /** The agents of a scenario, under its own assignment. */
   def of(scenario: Scenario, durationS: Double = 60.0): Engagement =
     Engagement(
       scenario.agents.map(Duelist.of),

@@ -19,7 +19,7 @@ private trait LoopRun extends Controller.OnSent:
   /** It is time for what was scheduled as `Due`. */
   def due(number: Int): Unit = ()
 
-  def sent(agent: Int, number: Int, headingRad: Double): Unit = ()
+  def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit = ()
 
   /** A command was answered because a newer one has replaced it. */
   def replaced(agent: Int, number: Int): Unit = ()
@@ -48,7 +48,7 @@ private final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) exten
     for agent <- world.vehicles.indices do
       controllers(agent).decide(sight)
       controllers(agent).sentNow()
-      world.commandNow(agent, controllers(agent).decidedHeading)
+      world.commandNow(agent, controllers(agent).decidedHeading, controllers(agent).decidedSpeed)
     world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
 
   def answered(vehicle: Int, question: Int): Unit = ()

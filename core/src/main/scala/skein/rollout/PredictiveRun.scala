@@ -58,12 +58,11 @@ private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorl
       sight.forecast = Some(forecast)
       for controller <- controllers do controller.offer(sight)
 
-  override def sent(agent: Int, number: Int, headingRad: Double): Unit =
-    val duelist  = world.agents(agent)
+  override def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit =
     val setpoint = Setpoint.velocityZ(
-      duelist.speed * StrictMath.cos(headingRad),
-      duelist.speed * StrictMath.sin(headingRad),
-      duelist.altitudeDownM
+      speedMps * StrictMath.cos(headingRad),
+      speedMps * StrictMath.sin(headingRad),
+      world.agents(agent).altitudeDownM
     )
     forecast = forecast.withEvidence(
       Evidence.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))

@@ -3,8 +3,8 @@ package skein.rollout
 /** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in double. Events happen in the order of
   * their times, in whole nanoseconds; between them the vehicles fly by themselves. Given the delays that a flight in
   * virtual time met ([[RecordedDelays]]) it flies as that did, which `RolloutParitySimulation` holds it to. Mutable: one
-  * per thread; an episode allocates nothing but what the policies, the quadrotor's setpoints and the `predictive` loop's
-  * forecast need.
+  * per thread; an episode allocates nothing but what the policies, what they see of a team, the quadrotor's setpoints and
+  * the `predictive` loop's forecast need.
   *
   * @param link
   *   delays of questions, answers, commands and acknowledgements; `Paused` ignores it
@@ -25,9 +25,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private val loop                       = LoopRun.of(timing, world)
   private val periodNs                   = nanos(timing.periodS)
   private val scores                     = (engagement.durationS / timing.periodS).round.toInt
-  private val evaders                    = engagement.evaders.toArray
-  private val pursuers                   = engagement.pursuers.toArray
-  private var tallies                    = evaders.map(_ => Score())
+  private val judged                     = engagement.judged.toArray
+  private val against                    = judged.map(engagement.against(_).toArray)
+  private var tallies                    = judged.map(_ => Score())
   private var watching                   = LoopObserver.Nobody
   private var listener: Rollout.Listener = Rollout.NoListener
 
@@ -43,7 +43,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       observer: LoopObserver = LoopObserver.Nobody
   ): Outcome =
     listener = onScore
-    tallies = evaders.map(_ => Score(captureRadiusM, engagement.durationS))
+    tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
     watching = observer
     world.start(worldKey, observer)
     world.schedule(periodNs, ScoreNow, 0, 1)
@@ -53,7 +53,8 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     outcome
 
   /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last was captured;
-    * distances are to the nearest pursuer, efforts summed over a side.
+    * distances are to the nearest pursuer, efforts summed over a side. In a team without sides all are judged, by the
+    * distance to the nearest other, and the effort is that of the evaders.
     */
   private def outcome: Outcome =
     val each    = evaderOutcomes
@@ -64,13 +65,13 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       each.map(_.meanDistanceM).sum / each.size,
       each.map(_.meanLast10sM).sum / each.size,
       each.map(_.captureS).max,
-      pursuers.map(loop.controllers(_).effortRad).sum,
-      evaders.map(loop.controllers(_).effortRad).sum,
+      engagement.pursuers.map(loop.controllers(_).effortRad).sum,
+      judged.map(loop.controllers(_).effortRad).sum,
       loop.controllers.map(_.decisions).sum,
       loop.controllers.map(_.skipped).sum
     )
 
-  /** How the last episode came out for each evader, in the engagement's order. */
+  /** How the last episode came out for each evader, in the engagement's order; in a team without sides, for everybody. */
   def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
 
   private def handle(event: Long): Unit =
@@ -97,20 +98,22 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
     for index <- world.vehicles.indices do
       watching.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
-    for index <- evaders.indices do
-      val evader  = world.vehicles(evaders(index))
+    for index <- judged.indices do
+      val evader  = world.vehicles(judged(index))
       var nearest = Double.PositiveInfinity
-      for agent <- pursuers do
+      for agent <- against(index) do
         val pursuer = world.vehicles(agent)
         nearest = math.min(nearest, StrictMath.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
       tallies(index).add(world.nowS, nearest)
-    val (evader, pursuer) = (world.vehicles(evaders(0)), world.vehicles(pursuers(0)))
+    val (evader, pursuer) = (world.vehicles(judged(0)), world.vehicles(against(0)(0)))
     listener.scored(world.nowS, evader.x, evader.y, pursuer.x, pursuer.y)
     world.schedule((number + 1) * periodNs, ScoreNow, 0, number + 1)
 
 object Rollout:
 
-  /** Is told of every score: the positions of the first evader and pursuer, m, at one time, s. */
+  /** Is told of every score: the positions of the first evader and pursuer, or of the first two vehicles of
+    * a team without sides, m, at one time, s.
+    */
   trait Listener:
     def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit
 

@@ -9,7 +9,7 @@ class EngagementSuite extends munit.FunSuite:
   private def agent(role: Role, number: Int, north: Double, east: Double, policy: Policy): Agent =
     duel
       .find(_.role == role)
-      .get
+      .getOrElse(duel.head.copy(role = role))
       .copy(name = s"$role$number", startPositionNed = Vector3(north, east, -20), policy = policy)
 
   /** Places of all agents at every score. */
@@ -133,7 +133,36 @@ class EngagementSuite extends munit.FunSuite:
       Seq(0, 3, 4, 7, 8, 11)
     )
 
-  test("an engagement needs both sides"):
+  test(
+    "in a team without sides each is judged by the distance to the nearest other, and policies choose the speed"
+  ):
+    // From north to south, towards the middle one, at 1, 2 and 3 m/s.
+    val speeds = Seq(1.0, 2.0, 3.0)
+    val agents = Vector(30.0, 0.0, -50.0)
+      .zip(speeds)
+      .zipWithIndex
+      .map:
+        case ((north, speed), number) =>
+          val policy: TeamPolicy = seen =>
+            Course(if seen.northM(seen.self) > seen.northM(1) then math.Pi else 0, speed)
+          agent(Role.Traveller, number, north, 0, KeepHeading).copy(policy = policy)
+    val rollout = Rollout(
+      Engagement.of(Scenario(agents), 5),
+      LoopTiming.Paused(),
+      DelayTable.none,
+      VelocityResponse.Ideal
+    )
+    val flown = rollout.fly(0)
+    // The middle one flies north, at 2 m/s: the northern one comes 3 m/s nearer, the southern one 1 m/s.
+    val each = rollout.evaderOutcomes.map(_.minDistanceM)
+    for (actual, expected) <- each.zip(Seq(15.0, 15.0, 45.0)) do assertEqualsDouble(actual, expected, 1e-6)
+    assertEquals(flown.minDistanceM, each.min)
+
+  test("an engagement needs both sides, or none"):
+    val mixed = Seq(Role.Evader, Role.Pursuer, Role.Traveller).zipWithIndex.map((role, number) =>
+      agent(role, number, 10 * number, 0, KeepHeading)
+    )
+    val _ = intercept[IllegalArgumentException](Engagement.of(Scenario(mixed.toVector)))
     val _ = intercept[IllegalArgumentException](
       Engagement(
         Vector(Duel.paper.evader, Duel.paper.evader),

@@ -80,7 +80,7 @@ class RolloutOracleSuite extends munit.FunSuite:
   private def headings(timing: LoopTiming, link: Delays): Map[Int, Vector[Double]] =
     val sent     = Map(0 -> ArrayBuffer.empty[Double], 1 -> ArrayBuffer.empty[Double])
     val observer = new LoopObserver:
-      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double): Unit =
+      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
         sent(vehicle) += headingRad
     val _ = Rollout(Duel.paper.copy(durationS = 20), timing, link, lag).fly(0, observer = observer)
     sent.view.mapValues(_.toVector).toMap

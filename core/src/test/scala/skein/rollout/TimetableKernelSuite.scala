@@ -11,20 +11,23 @@ class TimetableKernelSuite extends munit.FunSuite:
   private val radii     = Array.tabulate(worlds)(i => 7f + 0.02f * i)
   private val captureM  = 3.9f
 
+  private def pursuer(world: Int): PaperPursuer =
+    if turnSteps(world) == 0 then PaperPursuer(turnRates(world)) else PaperPursuer(stepRad = Some(0.02f))
+
+  private def evader(world: Int): PaperEvader = PaperEvader(radii(world))
+
   private def duel(world: Int, durationS: Double): Duel =
-    val pursuer =
-      if turnSteps(world) == 0 then PaperPursuer(turnRates(world)) else PaperPursuer(stepRad = Some(0.02f))
     Duel(
-      Duel.paper.pursuer.copy(policy = pursuer),
-      Duel.paper.evader.copy(policy = PaperEvader(radii(world))),
+      Duel.paper.pursuer.copy(policy = pursuer(world)),
+      Duel.paper.evader.copy(policy = evader(world)),
       durationS
     )
 
   private def fly(timing: LoopTiming, link: Delays, key: Int, durationS: Double): TimetableKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
-      pursuers.take(world, duel(world, durationS).pursuer.policy)
-      evaders.take(world, duel(world, durationS).evader.policy)
+      pursuers.take(world, pursuer(world))
+      evaders.take(world, evader(world))
     val kernel = TimetableKernel(Duel.paper.copy(durationS = durationS), timing, lag, pursuers, evaders)
     kernel.fly(Timetable.of(durationS, timing, link, key, lag), captureM)
     kernel
