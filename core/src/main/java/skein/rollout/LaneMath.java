@@ -42,7 +42,7 @@ public final class LaneMath {
   private static final FloatVector TWO_OVER_PI = constant(0.63661977f);
 
   /** 1.5·2²³: adding it leaves a float's nearest integer in its lowest bits. */
-  private static final FloatVector ROUND = constant(12582912f);
+  static final FloatVector ROUND = constant(12582912f);
 
   // −π/2 in three parts, the first two short enough for exact products (Cody and Waite; parts from
   // Cephes' sinf.c).
@@ -67,17 +67,17 @@ public final class LaneMath {
   private static final FloatVector TAN_PI_8 = constant(0.41421356f);
   private static final FloatVector TINY = constant(1e-30f);
 
-  // e^x = 2^k e^r: log₂ e, −ln 2 in two parts, and the series of e^r on ±ln 2 / 2, from Cephes'
+  // For passes that need exponentials in their midst, as `exp` computes them: e^x = 2^k e^r: log₂ e, −ln 2 in two parts, and the series of e^r on ±ln 2 / 2, from Cephes'
   // expf.c.
-  private static final FloatVector LOG2_E = constant(1.44269504f);
-  private static final FloatVector LN_2_1 = constant(-0.693359375f);
-  private static final FloatVector LN_2_2 = constant(2.12194440e-4f);
-  private static final FloatVector EXP_2 = constant(5.0000001201e-1f);
-  private static final FloatVector EXP_3 = constant(1.6666665459e-1f);
-  private static final FloatVector EXP_4 = constant(4.1665795894e-2f);
-  private static final FloatVector EXP_5 = constant(8.3334519073e-3f);
-  private static final FloatVector EXP_6 = constant(1.3981999507e-3f);
-  private static final FloatVector EXP_7 = constant(1.9875691500e-4f);
+  static final FloatVector LOG2_E = constant(1.44269504f);
+  static final FloatVector LN_2_1 = constant(-0.693359375f);
+  static final FloatVector LN_2_2 = constant(2.12194440e-4f);
+  static final FloatVector EXP_2 = constant(5.0000001201e-1f);
+  static final FloatVector EXP_3 = constant(1.6666665459e-1f);
+  static final FloatVector EXP_4 = constant(4.1665795894e-2f);
+  static final FloatVector EXP_5 = constant(8.3334519073e-3f);
+  static final FloatVector EXP_6 = constant(1.3981999507e-3f);
+  static final FloatVector EXP_7 = constant(1.9875691500e-4f);
 
   private static final IntVector INT_ZERO = IntVector.zero(INTS);
   private static final IntVector INT_ONE = IntVector.broadcast(INTS, 1);

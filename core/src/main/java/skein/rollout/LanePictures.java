@@ -1,15 +1,12 @@
 package skein.rollout;
 
 import static jdk.incubator.vector.VectorOperators.GE;
-import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
-import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
-import jdk.incubator.vector.VectorMask;
 
 /**
  * The pictures of many worlds under the {@code stream} loop, row by row: row m has the picture of
@@ -24,6 +21,11 @@ import jdk.incubator.vector.VectorMask;
 final class LanePictures {
   static final int WORLDS = LanePolicy.WORLDS;
   private static final int VEHICLES = 2;
+
+  private static final int GRAIN_NS = DelayTable.GrainNs();
+
+  /** {@link DelayTable#GrainNs} in seconds. */
+  static final float GRAIN_S = GRAIN_NS * 1e-9f;
 
   /** In the place of a time: no picture. */
   static final int NONE = Integer.MAX_VALUE;
@@ -42,33 +44,29 @@ final class LanePictures {
 
   private final int ahead;
 
-  private static final IntVector MULTIPLIER_1 =
-          IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
-      MULTIPLIER_2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
-
   private final long periodNs;
   private final boolean shortCut;
+  private final int periodGrains;
   private final IntVector period, patience, latest;
   private final PictureSource[] sources = new PictureSource[WORLDS];
 
   private int[] keys;
   private DelayTable[] links;
 
-  /** The delays of all links, one table after the other; and where each world's begins. */
-  private int[] delays = new int[DelayTable.Size()];
+  final LaneDelays delays = new LaneDelays();
 
-  final int[] tableOf = new int[WORLDS];
-  private final DelayTable[] tables = new DelayTable[WORLDS];
-  private int tableCount = 0;
+  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and both
+  // are back; the same of the next row's answers.
+  private final int[][][] reached = new int[ROWS][VEHICLES][WORLDS];
+  private final int[][] first = new int[ROWS][WORLDS],
+      both = new int[ROWS][WORLDS],
+      nextBoth = new int[ROWS][WORLDS];
 
-  private final int[] there = new int[WORLDS], back = new int[WORLDS];
+  /** How long the answers to a row's questions are under way. */
+  private final int[][] back = new int[VEHICLES][WORLDS];
 
-  // By row modulo ROWS and vehicle: when the question reaches it, and when the answer is back.
-  private final int[][][] reached = new int[ROWS][VEHICLES][WORLDS],
-      answered = new int[ROWS][VEHICLES][WORLDS];
-
-  /** When both answers are back. */
-  private final int[][] both = new int[ROWS][WORLDS];
+  /** The lanes of each vector that {@link #ask} found irregular. */
+  private final long[] irregularLanes = new long[WORLDS / LANES];
 
   // Worlds whose pictures come one by one: from which row to which; these worlds.
   private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
@@ -80,23 +78,20 @@ final class LanePictures {
 
   // The beat's pictures: when each is joined, when the world's next one is; what its readings were
   // asked as, times the places of a step; when they were taken.
-  int[] joinedAt = new int[WORLDS], nextAt = new int[WORLDS];
+  int[] joinedAt, nextAt;
   final int[][] place = new int[VEHICLES][WORLDS];
   int[][] sampledAt = new int[VEHICLES][];
 
   /** Whether a world has no picture in this beat, or one with an old reading. */
   boolean hasOld;
 
-  /** Whether a reading is older than its row. */
-  boolean hasEarly;
+  /** Worlds with no picture in this beat, or one with a reading that is old or older than the row. */
+  final int[] odd = new int[WORLDS];
+
+  int oddCount;
 
   /** 1 where the beat's picture has a reading of the vehicle that the picture before had not. */
   final int[][] isFresh = new int[VEHICLES][WORLDS];
-
-  private final int[][] ownSampledAt = new int[VEHICLES][WORLDS];
-
-  /** Longest delay of any link, s. */
-  float maxS;
 
   /** No reading of the beat is taken later, s. */
   float latestSampleS;
@@ -112,7 +107,7 @@ final class LanePictures {
     this.shortCut = shortCut;
     periodNs = Math.round(timing.periodS() * 1e9);
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
-    int periodGrains = grains(timing.periodS());
+    periodGrains = grains(timing.periodS());
     period = IntVector.broadcast(INTS, periodGrains);
     patience = IntVector.broadcast(INTS, grains(timing.patienceS()));
     latest =
@@ -125,126 +120,65 @@ final class LanePictures {
   }
 
   static int grains(double seconds) {
-    return (int) (Math.round(seconds * 1e9) / DelayTable.GrainNs());
+    return (int) (Math.round(seconds * 1e9) / GRAIN_NS);
   }
 
   /** Whether a time is a whole number of grains. */
   static boolean isWhole(double seconds) {
-    return Math.round(seconds * 1e9) % DelayTable.GrainNs() == 0;
+    return Math.round(seconds * 1e9) % GRAIN_NS == 0;
   }
 
   /** Back to the start of an episode. */
   void start(int[] worldKeys, DelayTable[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;
-    takeOver();
+    delays.start(worldKeys, worldLinks);
     irregularCount = 0;
     Arrays.fill(irregularUpTo, -1);
     Arrays.fill(hasNext, false);
     row = -1;
     for (int step = 0; step < ahead; step++) ask(step);
-    for (int step = 0; step < ahead - 1; step++) findIrregular(step);
-  }
-
-  private void takeOver() {
-    int count = 0;
-    maxS = 0;
-    for (int i = 0; i < WORLDS; i++) {
-      int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
-      if (table == count) {
-        if (count >= tableCount || tables[count] != links[i]) {
-          int end = (count + 1) * DelayTable.Size();
-          if (delays.length < end) delays = Arrays.copyOf(delays, 2 * end);
-          links[i].copyGrains(delays, count * DelayTable.Size());
-          tables[count] = links[i];
-        }
-        maxS = Math.max(maxS, links[i].maxS());
-        count++;
-      }
-      tableOf[i] = table * DelayTable.Size();
-    }
-    tableCount = Math.max(tableCount, count);
-  }
-
-  /** Two delays of each world, of its own step: on this line and on the next. */
-  void draw(int[] places, int line, int[] first, int[] second) {
-    IntVector one = IntVector.broadcast(INTS, line * WorldRandom.STRIDE),
-        two = IntVector.broadcast(INTS, (line + 1) * WorldRandom.STRIDE);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i));
-      IntVector table = IntVector.fromArray(INTS, tableOf, i);
-      IntVector x = key.add(one), y = key.add(two);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 16)).mul(MULTIPLIER_1);
-      y = y.lanewise(XOR, y.lanewise(LSHR, 16)).mul(MULTIPLIER_1);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 15)).mul(MULTIPLIER_2);
-      y = y.lanewise(XOR, y.lanewise(LSHR, 15)).mul(MULTIPLIER_2);
-      x = x.lanewise(XOR, x.lanewise(LSHR, 16));
-      y = y.lanewise(XOR, y.lanewise(LSHR, 16));
-      x.lanewise(LSHR, DelayTable.Drop()).add(table).intoArray(there, i);
-      y.lanewise(LSHR, DelayTable.Drop()).add(table).intoArray(back, i);
-    }
-    for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector.fromArray(INTS, delays, 0, there, i).intoArray(first, i);
-      IntVector.fromArray(INTS, delays, 0, back, i).intoArray(second, i);
-    }
-  }
-
-  private static int placeOf(int step) {
-    return step * Rollout.Places() * WorldRandom.STRIDE;
-  }
-
-  /** When question {@code step} reaches the vehicles, and when it is answered. */
-  private void ask(int step) {
-    int slot = step % ROWS;
-    int[][] to = reached[slot], from = answered[slot];
-    for (int v = 0; v < VEHICLES; v++) {
-      Arrays.fill(place[v], placeOf(step));
-      draw(place[v], 2 * v, to[v], from[v]);
-    }
-    int[] last = both[slot];
-    for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector evader =
-          IntVector.fromArray(INTS, from[0], i).add(IntVector.fromArray(INTS, to[0], i));
-      IntVector pursuer =
-          IntVector.fromArray(INTS, from[1], i).add(IntVector.fromArray(INTS, to[1], i));
-      evader.intoArray(from[0], i);
-      pursuer.intoArray(from[1], i);
-      evader.max(pursuer).intoArray(last, i);
-    }
   }
 
   /**
-   * Looks for worlds whose picture of a step is not simply that of the step's questions. An answer of
-   * the step after it may have come before pictures of the steps before, but not before the one of
-   * the row now.
+   * When question {@code step} reaches the vehicles, and when it is answered. With that, looks for
+   * worlds whose picture of the step before is not simply that of that step's questions. An answer of
+   * this step may have come before pictures of the steps before, but not before the one of the row
+   * now.
    */
-  private void findIrregular(int step) {
-    int[][] to = reached[step % ROWS], from = answered[step % ROWS];
-    int[][] nextTo = reached[(step + 1) % ROWS], nextFrom = answered[(step + 1) % ROWS];
-    int[] last = both[step % ROWS];
-    lookedAt = step + 1;
+  private void ask(int step) {
+    for (int[] places : place) Arrays.fill(places, LaneDelays.placeOf(step));
+    delays.draw(place, 0, reached[step % ROWS], back);
+    answer(step % ROWS, (step + ROWS - 1) % ROWS);
+    if (step > 0) {
+      lookedAt = step;
+      for (int i = 0; i < irregularLanes.length; i++)
+        for (long lanes = shortCut ? irregularLanes[i] : -1L >>> -LANES; lanes != 0; lanes &= lanes - 1) {
+          int world = i * LANES + Long.numberOfTrailingZeros(lanes);
+          if (irregularUpTo[world] < step - 1) makeIrregular(world, row + 1);
+        }
+    }
+  }
+
+  private void answer(int slot, int slotBefore) {
+    int[][] to = reached[slot], toBefore = reached[slotBefore];
     for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector end = IntVector.fromArray(INTS, last, i);
-      IntVector first =
-          IntVector.fromArray(INTS, from[0], i).min(IntVector.fromArray(INTS, from[1], i));
-      IntVector next =
-          IntVector.fromArray(INTS, nextFrom[0], i)
-              .min(IntVector.fromArray(INTS, nextFrom[1], i))
-              .add(period);
-      VectorMask<Integer> irregularHere =
-          end.compare(GE, next)
-              .or(end.sub(first).compare(GE, patience))
+      IntVector toEvader = IntVector.fromArray(INTS, to[0], i),
+          toPursuer = IntVector.fromArray(INTS, to[1], i);
+      IntVector evader = IntVector.fromArray(INTS, back[0], i).add(toEvader),
+          pursuer = IntVector.fromArray(INTS, back[1], i).add(toPursuer);
+      IntVector soonest = evader.min(pursuer), last = evader.max(pursuer);
+      soonest.intoArray(first[slot], i);
+      last.intoArray(both[slot], i);
+      last.add(period).intoArray(nextBoth[slotBefore], i);
+      IntVector end = IntVector.fromArray(INTS, both[slotBefore], i);
+      irregularLanes[i / LANES] =
+          end.compare(GE, soonest.add(period))
+              .or(end.sub(IntVector.fromArray(INTS, first[slotBefore], i)).compare(GE, patience))
               .or(latest.compare(LT, end))
-              .or(
-                  IntVector.fromArray(INTS, to[0], i)
-                      .compare(GE, IntVector.fromArray(INTS, nextTo[0], i).add(period)))
-              .or(
-                  IntVector.fromArray(INTS, to[1], i)
-                      .compare(GE, IntVector.fromArray(INTS, nextTo[1], i).add(period)));
-      if (irregularHere.anyTrue() || !shortCut)
-        for (int lane = 0; lane < LANES; lane++)
-          if ((irregularHere.laneIsSet(lane) || !shortCut) && irregularUpTo[i + lane] < step)
-            makeIrregular(i + lane, row + 1);
+              .or(IntVector.fromArray(INTS, toBefore[0], i).compare(GE, toEvader.add(period)))
+              .or(IntVector.fromArray(INTS, toBefore[1], i).compare(GE, toPursuer.add(period)))
+              .toLong();
     }
   }
 
@@ -277,14 +211,12 @@ final class LanePictures {
     else stayIrregular(world);
   }
 
-  /** What {@link #findIrregular} looks for, of one world. */
+  /** Whether {@link #ask} found nothing irregular, in one world. */
   private boolean isRegular(int world, int step) {
-    int[][] to = reached[step % ROWS], from = answered[step % ROWS];
-    int[][] nextTo = reached[(step + 1) % ROWS], nextFrom = answered[(step + 1) % ROWS];
-    int end = both[step % ROWS][world], first = Math.min(from[0][world], from[1][world]);
-    int periodGrains = period.lane(0);
-    return end < Math.min(nextFrom[0][world], nextFrom[1][world]) + periodGrains
-        && end - first < patience.lane(0)
+    int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
+    int end = both[step % ROWS][world];
+    return end < first[(step + 1) % ROWS][world] + periodGrains
+        && end - first[step % ROWS][world] < patience.lane(0)
         && end <= latest.lane(0)
         && to[0][world] < nextTo[0][world] + periodGrains
         && to[1][world] < nextTo[1][world] + periodGrains;
@@ -294,18 +226,15 @@ final class LanePictures {
   void startRow(int number) {
     row = number;
     ask(row + ahead);
-    findIrregular(row + ahead - 1);
-    int slot = row % ROWS, next = (row + 1) % ROWS;
-    int[] after = both[next];
-    for (int i = 0; i < WORLDS; i += LANES)
-      IntVector.fromArray(INTS, after, i).add(period).intoArray(nextAt, i);
+    int slot = row % ROWS;
     joinedAt = both[slot];
+    nextAt = nextBoth[slot];
     sampledAt[0] = reached[slot][0];
     sampledAt[1] = reached[slot][1];
-    for (int v = 0; v < VEHICLES; v++) Arrays.fill(place[v], placeOf(row));
+    for (int[] places : place) Arrays.fill(places, LaneDelays.placeOf(row));
     hasOld = false;
-    hasEarly = false;
-    latestSampleS = maxS;
+    oddCount = 0;
+    latestSampleS = delays.maxS;
     more = irregularCount > 0;
     if (more) {
       Arrays.fill(isFresh[0], 1);
@@ -321,7 +250,16 @@ final class LanePictures {
     Arrays.fill(isFresh[0], 0);
     Arrays.fill(isFresh[1], 0);
     hasOld = true;
-    return irregularBeat(false);
+    oddCount = 0;
+    boolean any = irregularBeat(false);
+    for (int i = 0; i < WORLDS; i++) odd[i] = i;
+    oddCount = WORLDS;
+    return any;
+  }
+
+  /** Whether the beat is the last of its row. */
+  boolean isLastBeat() {
+    return !more;
   }
 
   /** Puts the beat's pictures of irregular worlds where the others' are; whether there were any. */
@@ -350,6 +288,7 @@ final class LanePictures {
         isFresh[0][world] = 0;
         isFresh[1][world] = 0;
         hasOld = true;
+        odd[oddCount++] = world;
       } else if (isFirst) nextAt[world] = fromTick(source.joinedAt);
       if (hasNext[world]) irregular[kept++] = world;
     }
@@ -359,21 +298,23 @@ final class LanePictures {
 
   private void put(int world, PictureSource source) {
     joinedAt[world] = fromTick(source.joinedAt);
+    boolean isOdd = false;
     for (int v = 0; v < VEHICLES; v++) {
       int at = fromTick(source.sampledAt[v]);
       sampledAt[v][world] = at;
-      place[v][world] = placeOf(source.question[v]);
+      place[v][world] = LaneDelays.placeOf(source.question[v]);
       isFresh[v][world] = source.isFresh[v] ? 1 : 0;
       hasOld |= !source.isFresh[v];
-      hasEarly |= source.isFresh[v] && at < 0;
+      isOdd |= !source.isFresh[v] || at < 0;
       // A question that had to wait was sent after its tick.
       if (source.isFresh[v])
-        latestSampleS = Math.max(latestSampleS, at * (DelayTable.GrainNs() * 1.001e-9f));
+        latestSampleS = Math.max(latestSampleS, at * (GRAIN_S * 1.001f));
     }
+    if (isOdd) odd[oddCount++] = world;
   }
 
   private int fromTick(long timeNs) {
-    long grains = (timeNs - row * periodNs) / DelayTable.GrainNs();
+    long grains = (timeNs - row * periodNs) / GRAIN_NS;
     return (int) Math.max(-LATEST, Math.min(LATEST, grains));
   }
 }
