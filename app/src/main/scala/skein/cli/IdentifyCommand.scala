@@ -6,6 +6,7 @@ import mainargs.{Leftover, ParserForClass, arg}
 import skein.experiment.*
 import skein.identify.*
 import skein.plot.{Png, Svg}
+import skein.policy.Scenario
 import skein.record.{Recording, RecordingReader}
 import skein.report.{ResponseFigure, TextTable}
 
@@ -68,7 +69,7 @@ object IdentifyCommand
         flights
       )
     yield Console.out.println(
-      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --model $out.conf"
+      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --model $out.conf${elsewhere(flights)}"
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
@@ -112,6 +113,12 @@ object IdentifyCommand
   private def altitude(flights: Vector[Flown]): Option[Double] =
     val all = flights.map(-_.downM)
     Option.when(all.max - all.min < 0.5)(all.sum / all.size)
+
+  /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
+  private def elsewhere(flights: Vector[Flown]): String =
+    altitude(flights).filter(_ != Scenario.DuelAltitudeM).fold("")(metres =>
+      s" --altitude ${(metres * 10).round / 10.0}"
+    )
 
   private def version(recordings: Vector[Recording]): String =
     recordings.map(_.flight.version).distinct.mkString(", ")

@@ -52,7 +52,7 @@ object ReducedModel:
 
   /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with
     * k = 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so the lag is
-    * (1 + k · |z|) / (k · g), 1.41 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified and is kept.
+    * (1 + k · |z|) / (k · g), 1.40 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified and is kept.
     */
   def airSimAt(altitudeM: Double): ReducedModel =
     if math.abs(altitudeM) == IdentifiedAtM then AirSim
