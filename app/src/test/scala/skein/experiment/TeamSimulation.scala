@@ -67,6 +67,16 @@ class TeamSimulation extends munit.FunSuite:
     // Avoiding one another by their policy, none of them is there before 13 s.
     assert(value(result, "arrived") >= 15, result.measures)
 
+  test("a team that plans surrounds the evader as closely as by the rule that it could follow"):
+    def offRing(loop: LoopKind) =
+      value(resultOf(fly(settings("surround", loop, LatencyProfile.vpn, 24))), "off ring m")
+    val (planned, byRule) = (offRing(LoopKind.Plan), offRing(LoopKind.Predictive))
+    assert(planned < byRule + 0.04, s"$planned m off the ring, by the rule $byRule m, seed 1")
+
+  test("a formation that plans keeps its slots over the VPN"):
+    val result = resultOf(fly(settings("formation", LoopKind.Plan, LatencyProfile.vpn, 24)))
+    assert(value(result, "slot rms m") < 0.32, s"${result.measures}, seed 1")
+
   for (scenario, loop) <- Seq(
       "surround"  -> LoopKind.Paused,
       "formation" -> LoopKind.Futures,

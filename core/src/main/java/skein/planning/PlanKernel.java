@@ -273,8 +273,9 @@ final class PlanKernel implements CandidateBlock {
       FloatVector cost = ZERO;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         FloatVector turn = FloatVector.fromArray(SPECIES, turnRates, at);
-        FloatVector slow = FloatVector.fromArray(SPECIES, speeds, at).sub(cruise);
-        cost = turn.mul(turn).fma(turning, slow.mul(slow).fma(hurry, cost));
+        FloatVector speed = FloatVector.fromArray(SPECIES, speeds, at);
+        FloatVector aside = turn.mul(speed), slow = speed.sub(cruise);
+        cost = aside.mul(aside).fma(turning, slow.mul(slow).fma(hurry, cost));
         FloatVector px = FloatVector.fromArray(SPECIES, x, at);
         FloatVector py = FloatVector.fromArray(SPECIES, y, at);
         FloatVector beyond =
@@ -385,6 +386,8 @@ final class PlanKernel implements CandidateBlock {
     FloatVector carried = constant((float) objective.carried());
     FloatVector radius = constant((float) objective.captureRadius());
     FloatVector bonus = constant((float) objective.capture());
+    double softness = objective.softness();
+    FloatVector soft = constant((float) (softness * softness + ManoeuvreRollout.Tiny()));
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector sum = ZERO, least = FAR, dx = ZERO, dy = ZERO;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
@@ -394,7 +397,7 @@ final class PlanKernel implements CandidateBlock {
         dy =
             FloatVector.fromArray(SPECIES, targetY, at)
                 .sub(FloatVector.fromArray(SPECIES, y, at));
-        FloatVector distance = dx.fma(dx, dy.fma(dy, TINY)).sqrt();
+        FloatVector distance = dx.fma(dx, dy.fma(dy, soft)).sqrt();
         sum = sum.add(distance);
         least = least.min(distance);
       }
@@ -404,7 +407,7 @@ final class PlanKernel implements CandidateBlock {
       FloatVector endY =
           dy.add(FloatVector.fromArray(SPECIES, targetEndVy, i))
               .sub(FloatVector.fromArray(SPECIES, endVy, i));
-      FloatVector end = endX.fma(endX, endY.fma(endY, TINY)).sqrt();
+      FloatVector end = endX.fma(endX, endY.fma(endY, soft)).sqrt();
       FloatVector captured = ZERO.blend(bonus, least.compare(LT, radius));
       FloatVector cost = sum.mul(each).add(least.mul(nearest)).add(end.mul(carried)).sub(captured);
       cost.mul(weight).add(FloatVector.fromArray(SPECIES, costs, i)).intoArray(costs, i);

@@ -28,8 +28,9 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       own.fly(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
       xs(step) = own.x
       ys(step) = own.y
-      val slow = speed - objective.cruiseSpeed
-      cost += (turnRate * turnRate * objective.turning + slow * slow * objective.speedChange) * dtS
+      val slow  = speed - objective.cruiseSpeed
+      val aside = turnRate * speed
+      cost += (aside * aside * objective.turning + slow * slow * objective.speedChange) * dtS
       val beyond = objective.geofence.beyond(own.x, own.y)
       if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
       if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
@@ -71,14 +72,17 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
           tx(step) = along.track.x(step)
           ty(step) = along.track.y(step)
         (along.track.carriedX(lagS, dtS), along.track.carriedY(lagS, dtS))
-    val distances = (0 until steps).map(step => StrictMath.hypot(tx(step) - xs(step), ty(step) - ys(step)))
+    val distances = (0 until steps).map(step => soft(tx(step) - xs(step), ty(step) - ys(step)))
     val least     = distances.min
-    val end       = StrictMath.hypot(
+    val end       = soft(
       tx(steps - 1) + carriedX - xs(steps - 1) - own.vx * lagS,
       ty(steps - 1) + carriedY - ys(steps - 1) - own.vy * lagS
     )
     distances.sum * dtS * objective.distance + least * objective.closest + end * objective.carried -
       (if least < objective.captureRadius then objective.capture else 0)
+
+  private def soft(dx: Double, dy: Double): Double =
+    StrictMath.hypot(StrictMath.hypot(dx, dy), objective.softness)
 
 object ManoeuvreRollout:
   /** What one step costs that breaks a hard limit. */

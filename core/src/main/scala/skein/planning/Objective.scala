@@ -64,6 +64,8 @@ final case class Separation(minimum: Double, margin: Double = 1, growth: Double 
   * Leaving the geofence or going below the least separation costs more than anything else, once per step, and the more
   * the further.
   *
+  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back at once.
+  *
   * @param distance
   *   per second and metre
   * @param closest
@@ -75,9 +77,12 @@ final case class Separation(minimum: Double, margin: Double = 1, growth: Double 
   * @param captureRadius
   *   m
   * @param turning
-  *   per second and (rad/s)²
+  *   per second and (m/s²)², of turn rate times commanded speed
   * @param speedChange
   *   per second and (m/s)² off the cruise speed
+  * @param softness
+  *   m: a distance d counts as √(d² + softness²), so that one below it costs by its square, and a vehicle that is almost
+  *   there does not hurry; above 0 only where nothing is captured
   */
 final case class Objective(
     limits: Limits,
@@ -86,9 +91,14 @@ final case class Objective(
     carried: Double = 1,
     capture: Double = 0,
     captureRadius: Double = 1.5,
-    turning: Double = 0.01,
+    turning: Double = 0.0001,
     speedChange: Double = 0,
     cruiseSpeed: Double = 0,
     separation: Separation = Separation(0),
-    geofence: Geofence = Geofence.None
-)
+    geofence: Geofence = Geofence.None,
+    softness: Double = 0
+):
+  require(
+    softness == 0 || softness > 0 && capture == 0,
+    s"expected no softness, or one above 0 m and no capture, came $softness m and a capture worth $capture"
+  )

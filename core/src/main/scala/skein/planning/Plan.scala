@@ -36,7 +36,10 @@ final case class Search(
     turnSds: IArray[Float],
     speedMeans: IArray[Float],
     speedSds: IArray[Float]
-)
+):
+  /** With a share of its deviations. */
+  def narrowed(share: Float): Search =
+    copy(turnSds = turnSds.map(_ * share), speedSds = speedSds.map(_ * share))
 
 /** The best manoeuvre found so far, and where to look for better ones. Immutable.
   *

@@ -60,7 +60,7 @@ final class Planner private[planning] (
 ):
   import settings.*
   require(
-    objective.limits.maxTurnRate * dtS <= 1,
+    objective.limits.maxTurnRate * dtS <= 1 + 1e-9,
     s"expected at most 1 rad of turn in a step, came ${objective.limits.maxTurnRate * dtS}"
   )
 
@@ -110,7 +110,7 @@ final class Planner private[planning] (
     for number <- 0 until blocksPerSlice do
       for i <- 0 until size do
         keys(i) = WorldRandom.key(stream, plan.slices, number * size + i)
-      block.draw(keys, plan.search, stepsPerKnot)
+      block.draw(keys, plan.search.narrowed(Planner.widths(number % Planner.widths.size)), stepsPerKnot)
       if number == 0 then (known(plan) ++ situation.suggested).zipWithIndex.foreach(put)
       block.fly()
       if number == 0 then base = block.costs(0)
@@ -212,6 +212,11 @@ final class Planner private[planning] (
     total
 
 object Planner:
+  /** Of the search, by block: wide ones find other manoeuvres, narrow ones improve on what was found. With a wide one
+    * alone, a plan that is almost right is hardly ever improved.
+    */
+  private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
+
   def apply(settings: PlannerSettings, objective: Objective): Planner =
     new Planner(settings, objective, CandidateBlock(settings.steps))
 

@@ -9,7 +9,7 @@ class JointPlannerSuite extends munit.FunSuite:
   private val objective = Objective(
     Limits(0, 10, 4),
     carried = 0.5,
-    turning = 0.3,
+    turning = 0.005,
     speedChange = 0.1,
     cruiseSpeed = 8,
     separation = Separation(minimumM, margin = 0.8)

@@ -14,7 +14,7 @@ class PlanKernelSuite extends munit.FunSuite:
     closest = 0.7,
     capture = 3,
     captureRadius = 4,
-    turning = 0.2,
+    turning = 0.004,
     speedChange = 0.05,
     cruiseSpeed = 8
   )
@@ -56,6 +56,9 @@ class PlanKernelSuite extends munit.FunSuite:
 
   test("kernel and scalar reference agree on following a track"):
     assertAgree(situation(Behaviour(track)), objective)
+
+  test("kernel and scalar reference agree on distances that soften when they are short"):
+    assertAgree(situation(Behaviour(track)), objective.copy(capture = 0, softness = 2))
 
   test("kernel and scalar reference agree on several behaviours, each by its weight"):
     val closer = evader.copy(motion = Motion(4, 3, 1, 1))

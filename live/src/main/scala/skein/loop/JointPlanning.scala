@@ -42,9 +42,9 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
           memories(index),
           pictures(index),
           now,
-          answer.best.situation(index, parts(index)),
+          parts(index).copy(situation = answer.best.situation(index, parts(index))),
           answer.best.plans(index),
-          byPolicy = answer.unsearchedS(index) > planner.horizonS / 2
+          isOld = answer.unsearchedS(index) > planner.horizonS / 2
         )
       .unzip
 

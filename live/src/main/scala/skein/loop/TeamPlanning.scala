@@ -17,10 +17,8 @@ private final class TeamPlanning(
     policy: GoalPolicy,
     settings: PlanSettings,
     seed: Long
-) extends Planning:
+) extends Planning(scenario, self):
   import Planning.{motion, straight}
-  private val agent    = scenario.agents(self)
-  private val decider  = Decider(scenario, self)
   private val response =
     if settings.response == ReducedModel.AirSim then ReducedModel.airSimAt(agent.startPositionNed.z)
     else settings.response.copy(turnLagS = settings.response.lagS)
@@ -29,17 +27,18 @@ private final class TeamPlanning(
   val planner: PlannerSettings = settings.planner
   val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
 
-  val objective: Objective = Objective(
-    Limits(0, policy.mostMps, TeamPlanning.MostTurnRadps),
+  private val objective = Objective(
+    Limits(0, policy.mostMps, TeamPlanning.MostTurnRad / settings.planner.dtS),
     distance = 1,
     carried = 0.5,
-    turning = 0.3,
+    turning = 0.002,
     speedChange = 0.1,
     cruiseSpeed = agent.speed.value,
     separation =
       if minimumM > 0 then Separation(minimumM + TeamPlanning.Doubt, margin = 0.8, growth = 0.5)
       else Separation(0, 0, 0),
-    geofence = settings.geofence
+    geofence = settings.geofence,
+    softness = 1
   )
 
   def regardsTeam: Boolean = true
@@ -63,12 +62,19 @@ private final class TeamPlanning(
       Vector(Behaviour(Target.Along(along))),
       others
     )
+    val limits = turningAtOnce(alone.sinceDecisionS)
     Part(
       // Other speeds than that of the place wanted are for catching up.
-      objective.copy(cruiseSpeed = speed(along)),
-      alone.copy(suggested = suggested(sight, alone)),
+      objective.copy(limits = limits, cruiseSpeed = speed(along)),
+      alone.copy(suggested = suggested(sight, alone, limits)),
       Planning.stream(seed, self, memory)
     )
+
+  /** After a longer pause the first turn is no sharper. */
+  private def turningAtOnce(sinceDecisionS: Double): Limits =
+    val most =
+      if sinceDecisionS > 0 then TeamPlanning.MostTurnRad / sinceDecisionS else Double.PositiveInfinity
+    objective.limits.copy(maxTurnRate = objective.limits.maxTurnRate.min(most))
 
   /** From a track's first place to its last, m/s. */
   private def speed(track: PredictedTrack): Double =
@@ -76,35 +82,21 @@ private final class TeamPlanning(
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
   /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
-  private def suggested(sight: TeamSight, situation: Situation): Vector[Manoeuvre] =
+  private def suggested(sight: TeamSight, situation: Situation, limits: Limits): Vector[Manoeuvre] =
     if policy.minimumM > 0 then Vector.empty
-    else Vector(PolicyManoeuvre.of(policy, sight, situation, objective.limits, planner.steps, planner.dtS))
+    else Vector(PolicyManoeuvre.of(policy, sight, situation, limits, planner.steps, planner.dtS))
 
-  def decide(
-      memory: Memory,
-      picture: Picture,
-      now: Instant,
-      situation: Situation,
-      plan: Plan,
-      byPolicy: Boolean
-  ): (Memory, PlannedDecision) =
-    val action =
-      if !byPolicy then Action.of(plan, situation, objective, planner.dtS)
-      else
-        val course = policy.course(decider.sight(memory, picture, now))
-        Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
-    val (next, decision) = decider.decided(
-      memory,
-      picture,
-      now,
-      memory.headingRad + action.turned,
-      Some(MetresPerSecond(action.speed))
-    )
-    (next, PlannedDecision(decision, action, plan, byPolicy))
+  protected def choosesSpeed: Boolean = true
+
+  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action =
+    val course = policy.course(decider.sight(memory, picture, now))
+    Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
 
 private object TeamPlanning:
   /** On top of the set separation, m. */
   val Doubt = 1.0
 
-  /** Of a multirotor that turns on the spot: as fast as plans of 0.1 s steps can turn. */
-  val MostTurnRadps = 4.0
+  /** Of a multirotor that turns on the spot: as far as candidates can turn at once ([[skein.planning.Planner]]). What is
+    * less than its policy turns keeps a vehicle from turning back in time.
+    */
+  val MostTurnRad = 1.0

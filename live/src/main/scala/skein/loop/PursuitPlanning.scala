@@ -1,0 +1,69 @@
+package skein.loop
+
+import skein.planning.*
+import skein.policy.{PaperEvader, Scenario}
+import skein.units.*
+
+/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
+  * horizon, and to capture it.
+  *
+  * Its turn rate stays below speed / turning radius. The evader is taken to fly by its policy where that is the paper's,
+  * which answers to the pursuer's commands; else to fly straight on. Of all others, those that plan fly by their plans, the
+  * rest straight on.
+  *
+  * In its place the vehicle's own policy decides within the turn limit.
+  */
+private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
+    extends Planning(scenario, self):
+  import Planning.{motion, straight}
+  private val speed    = agent.speed.value
+  private val response = settings.response.copy(turnLagS = settings.response.lagS)
+
+  val planner: PlannerSettings = settings.planner
+  val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
+
+  private val objective = Objective(
+    Limits(speed * settings.slowestShare, speed, speed / settings.turningRadiusM, settings.turningRadiusM),
+    carried = PursuitPlanning.Carried,
+    closest = PursuitPlanning.Closest,
+    capture = PursuitPlanning.Capture,
+    cruiseSpeed = speed,
+    separation = Separation(settings.separationM, margin = if settings.separationM > 0 then 1 else 0),
+    geofence = settings.geofence
+  )
+
+  def regardsTeam: Boolean = settings.separationM > 0
+
+  def pose(memory: Memory, picture: Picture, now: Instant): Part =
+    val opponent = scenario.opponentOf(self, picture.kinematics(_).positionNed)
+    val stream   = Planning.stream(seed, self, memory)
+    val others   =
+      if regardsTeam then Planning.unplanned(scenario, but = opponent) else Vector.empty
+    val situation = Situation(
+      motion(picture.kinematics(self)),
+      memory.headingRad,
+      Planning.sinceDecisionS(memory, now),
+      response,
+      Behaviours.around(target(opponent, motion(picture.kinematics(opponent))), settings.behaviours, stream),
+      others.map(other => straight(motion(picture.kinematics(other)), planner))
+    )
+    Part(objective, situation, stream)
+
+  private def target(opponent: Int, motion: Motion): Target = scenario.agents(opponent).policy match
+    case paper: PaperEvader =>
+      Target.paperEvader(motion, response, scenario.agents(opponent).speed.value, paper)
+    case _ => Target.Along(straight(motion, planner))
+
+  protected def choosesSpeed: Boolean = settings.slowestShare < 1
+
+  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action =
+    val (_, decision) = decider.decide(memory, picture, now)
+    val most          = objective.limits.turnRateAt(speed) * part.situation.sinceDecisionS
+    val turned        = decision.heading.value - memory.headingRad
+    Action(math.min(math.max(turned, -most), most), speed, Vector.empty)
+
+private object PursuitPlanning:
+  /** Weights of [[skein.planning.Objective]]; see there. */
+  val Carried = 0.0
+  val Closest = 1.0
+  val Capture = 3.0
