@@ -20,11 +20,11 @@ object Legend:
   def box(label: String, fill: Colour): Item =
     Item(label, 12, at => Vector(Shape.box(at.x, at.y - 6, at.x + 12, at.y + 6, fill)))
 
-  /** Items from left to right; texts may be a little narrower than the room they get. */
+  /** Items from left to right; texts may be a little narrower or wider than the room they get. */
   def apply(left: Double, items: Item*): Drawing =
     val starts =
       items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
     val shapes = items.zip(starts).flatMap: (item, start) =>
       item.mark(Point(start, middle)) :+
         Shape.Text(Point(start + item.width + 6, middle + 4), item.label, Ink.labelSize, Ink.labelColour)
-    Drawing(starts.last - gap, height, shapes.toVector)
+    Drawing(starts.last - gap / 2, height, shapes.toVector)
