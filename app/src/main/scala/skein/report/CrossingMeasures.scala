@@ -43,7 +43,7 @@ object CrossingMeasures:
   /** When vehicles came to their goals, s, for those that did. */
   def arrivalsS(scenario: TeamScenario.Crossing, track: TeamTrack): Vector[Double] =
     for
-      (vehicle, (north, east)) <- track.vehicles.toVector.zip(TeamScenario.goals(scenario))
+      (vehicle, (north, east)) <- track.vehicles.toVector.zip(scenario.goals)
       instant                  <- track.instants.find(track.distanceM(vehicle, north, east, _) < arrivedM)
     yield track.timeS(instant)
 

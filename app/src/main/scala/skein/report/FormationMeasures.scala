@@ -29,10 +29,10 @@ object FormationMeasures:
   /** From each follower to its slot in the frame along the circuit where the leader is, m. */
   def slotErrorsM(scenario: TeamScenario.Formation, track: TeamTrack, instant: Int): Vector[Double] =
     val (north, east) = (track.northM(0)(instant), track.eastM(0)(instant))
-    val circuit       = TeamScenario.circuit(scenario)
+    val circuit       = scenario.circuit
     val heading       = circuit.headingRad(circuit.nearest(north, east))
     val (cos, sin)    = (math.cos(heading), math.sin(heading))
-    TeamScenario.slots(scenario).zip(track.vehicles.tail).map:
+    scenario.slots.zip(track.vehicles.tail).map:
       case ((ahead, right), follower) =>
         track.distanceM(
           follower,

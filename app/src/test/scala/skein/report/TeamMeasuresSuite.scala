@@ -72,8 +72,8 @@ class TeamMeasuresSuite extends munit.FunSuite:
 
   test("slots are kept round the circuit, but for a follower that is 0.3 m beside its own from 15 s on"):
     val scenario = TeamScenario.Formation(vehicles = 3, spacingM = 4)
-    val circuit  = TeamScenario.circuit(scenario)
-    val slots    = TeamScenario.slots(scenario)
+    val circuit  = scenario.circuit
+    val slots    = scenario.slots
     val result   = resultOf(flown(scenario, 20): (vehicle, second) =>
       val place         = second * 2
       val (north, east) = circuit.point(place)
@@ -91,7 +91,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
 
   test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
     val scenario = TeamScenario.Crossing(vehicles = 3, streams = 2, minimumM = 2)
-    val goals    = TeamScenario.goals(scenario)
+    val goals    = scenario.goals
     // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from 8 s on.
     val result = resultOf(flown(scenario, 12): (vehicle, second) =>
       vehicle match

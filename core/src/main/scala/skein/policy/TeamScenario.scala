@@ -17,29 +17,32 @@ sealed trait TeamScenario extends Product:
   /** Every setting by name, as [[TeamScenario.of]] reads it back. */
   def settings: Seq[(String, String)] = productElementNames.zip(productIterator.map(_.toString)).toSeq
 
+  /** Who flies, and how. */
+  def scenario: Scenario
+
   /** Every setting that cannot be flown. */
   def mistakes: Seq[String] =
-    val least     = if this.isInstanceOf[TeamScenario.Surround] then 3 else 2
-    val distances = settings.filter((name, _) => name != "vehicles" && name != "streams")
-    val common    = Seq(
-      Option.when(vehicles < least || vehicles > TeamScenario.Most)(
-        s"vehicles: expected $least to ${TeamScenario.Most}, came $vehicles"
-      )
-    ) ++ distances.map((name, value) =>
-      Option.when(!(value.toDouble > 0) && !(TeamScenario.MayBeZero(name) && value.toDouble == 0))(
-        s"$name: expected more than 0, came $value"
-      )
+    val count = Option.when(vehicles < fewest || vehicles > TeamScenario.Most)(
+      s"vehicles: expected $fewest to ${TeamScenario.Most}, came $vehicles"
     )
-    val streams = this match
-      case crossing: TeamScenario.Crossing if crossing.streams != 2 && crossing.streams != 4 =>
-        Some(s"streams: expected 2 or 4, came ${crossing.streams}")
-      case _ => None
-    (common :+ streams).flatten.map(mistake => s"$name.$mistake")
+    val measures = settings.collect:
+      case (name, value) if !counts(name) && !isRight(name, value.toDouble) =>
+        s"$name: expected more than 0, came $value"
+    (count.toSeq ++ measures ++ ownMistakes).map(mistake => s"$name.$mistake")
 
-  def scenario: Scenario = this match
-    case surround: TeamScenario.Surround   => TeamScenario.surround(surround)
-    case formation: TeamScenario.Formation => TeamScenario.formation(formation)
-    case crossing: TeamScenario.Crossing   => TeamScenario.crossing(crossing)
+  private def isRight(name: String, value: Double) = value > 0 || value == 0 && mayBeZero(name)
+
+  /** Vehicles without which there is nothing to see. */
+  protected def fewest: Int = 2
+
+  /** Settings that count; all others measure something. */
+  protected def counts: Set[String] = Set("vehicles")
+
+  /** Measures that may be 0; all others must be more. */
+  protected def mayBeZero: Set[String] = Set.empty
+
+  /** What else cannot be flown. */
+  protected def ownMistakes: Seq[String] = Seq.empty
 
 object TeamScenario:
 
@@ -57,7 +60,16 @@ object TeamScenario:
       evaderMps: Double = 4,
       startM: Double = 30,
       altitudeM: Double = 5
-  ) extends TeamScenario
+  ) extends TeamScenario:
+    override protected def fewest: Int = 3
+
+    def scenario: Scenario =
+      val evader   = agent("Evader", Role.Evader, evaderMps, startM, 0, altitudeM, 0, Flee(evaderMps))
+      val policy   = Surrounding(0, ringM, pursuerMps)
+      val pursuers = Vector.tabulate(vehicles - 1): pursuer =>
+        val eastM = (pursuer - (vehicles - 2) / 2.0) * ringM / 2
+        agent(s"Pursuer${pursuer + 1}", Role.Pursuer, pursuerMps, 0, eastM, altitudeM, 0, policy)
+      Scenario(evader +: pursuers)
 
   /** A wedge flies a circuit, the leader first, followers behind it to the left and right in turn.
     *
@@ -81,7 +93,26 @@ object TeamScenario:
       radiusM: Double = 20,
       lagS: Double = 1.5,
       altitudeM: Double = 5
-  ) extends TeamScenario
+  ) extends TeamScenario:
+    override protected def mayBeZero: Set[String] = Set("straightM", "lagS")
+
+    def circuit: Racetrack = Racetrack(straightM, radiusM)
+
+    /** Where slots are in the leader's frame: metres ahead and to the right, by follower. */
+    def slots: Vector[(Double, Double)] =
+      Vector.tabulate(vehicles - 1): follower =>
+        val rank = follower / 2 + 1
+        val side = if follower % 2 == 0 then 1 else -1
+        (-rank * spacingM, side * rank * spacingM)
+
+    def scenario: Scenario =
+      val leading   = LeadOnCircuit(circuit, leaderMps, leaderMps * lagS)
+      val leader    = agent("Leader", Role.Leader, leaderMps, 0, 0, altitudeM, 0, leading)
+      val followers = slots.zipWithIndex.map:
+        case ((aheadM, rightM), follower) =>
+          val policy = KeepSlot(0, circuit, aheadM, rightM, mostMps, lagS)
+          agent(s"Follower${follower + 1}", Role.Follower, leaderMps, aheadM, rightM, altitudeM, 0, policy)
+      Scenario(leader +: followers)
 
   /** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing.
     *
@@ -112,14 +143,47 @@ object TeamScenario:
       marginM: Double = 1,
       horizonS: Double = 3,
       altitudeM: Double = 5
-  ) extends TeamScenario
+  ) extends TeamScenario:
+    override protected def counts: Set[String]      = Set("vehicles", "streams")
+    override protected def mayBeZero: Set[String]   = Set("laneM", "marginM")
+    override protected def ownMistakes: Seq[String] =
+      Option.when(streams != 2 && streams != 4)(s"streams: expected 2 or 4, came $streams").toSeq
+
+    /** Where the vehicles want to be, north and east, m. */
+    def goals: Vector[(Double, Double)] = routes.map(route => onLane(route.headingRad, route.goalM))
+
+    def scenario: Scenario =
+      Scenario(routes.zipWithIndex.map: (route, vehicle) =>
+        val (northM, eastM)         = onLane(route.headingRad, route.startM)
+        val (goalNorthM, goalEastM) = onLane(route.headingRad, route.goalM)
+        val policy = Avoidance(goalNorthM, goalEastM, cruiseMps, mostMps, minimumM, marginM, horizonS)
+        val name   = s"Vehicle${vehicle + 1}"
+        agent(name, Role.Traveller, cruiseMps, northM, eastM, altitudeM, route.headingRad, policy))
+
+    /** By vehicle: the streams take vehicles in turn, and those of a stream fly one behind the other. The first of a
+      * stream flies furthest, so that all fly equally far and nobody waits in another's way.
+      */
+    private def routes: Vector[Route] =
+      Vector.tabulate(vehicles): vehicle =>
+        val (stream, rank) = (vehicle % streams, vehicle / streams)
+        val lastRank       = (vehicles - 1 - stream) / streams
+        Route(
+          headingRad = stream * math.Pi / 2,
+          startM = -(entryM + rank * spacingM),
+          goalM = entryM + (lastRank - rank) * spacingM
+        )
+
+    private def onLane(headingRad: Double, alongM: Double): (Double, Double) =
+      val (cos, sin) = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
+      (alongM * cos - laneM * sin, alongM * sin + laneM * cos)
+
+  /** Places along the heading, from the middle of the crossing, m. */
+  private final case class Route(headingRad: Double, startM: Double, goalM: Double)
 
   /** Vehicles. */
   val Most = 100
 
   val names: Seq[String] = Seq("surround", "formation", "crossing")
-
-  private val MayBeZero = Set("laneM", "marginM", "straightM", "lagS")
 
   /** Reads settings back.
     *
@@ -131,113 +195,6 @@ object TeamScenario:
     case "formation" => read[Formation](settings)
     case "crossing"  => read[Crossing](settings)
     case other       => Left(s"no scenario '$other': expected one of ${names.mkString(", ")}")
-
-  /** Where slots of a formation are in the leader's frame: metres ahead and to the right, by follower. */
-  def slots(formation: Formation): Vector[(Double, Double)] =
-    Vector.tabulate(formation.vehicles - 1): follower =>
-      val rank = follower / 2 + 1
-      val side = if follower % 2 == 0 then 1 else -1
-      (-rank * formation.spacingM, side * rank * formation.spacingM)
-
-  def circuit(formation: Formation): Racetrack = Racetrack(formation.straightM, formation.radiusM)
-
-  /** Where the vehicles of a crossing want to be, north and east, m. */
-  def goals(crossing: Crossing): Vector[(Double, Double)] =
-    routes(crossing).map((headingRad, _, goalM) => onLane(crossing, headingRad, goalM))
-
-  private def surround(settings: Surround): Scenario =
-    val evader = agent(
-      "Evader",
-      Role.Evader,
-      settings.evaderMps,
-      settings.startM,
-      0,
-      settings.altitudeM,
-      0,
-      Flee(settings.evaderMps)
-    )
-    val policy   = Surrounding(0, settings.ringM, settings.pursuerMps)
-    val pursuers = settings.vehicles - 1
-    Scenario(evader +: Vector.tabulate(pursuers): pursuer =>
-      val east = (pursuer - (pursuers - 1) / 2.0) * settings.ringM / 2
-      agent(
-        s"Pursuer${pursuer + 1}",
-        Role.Pursuer,
-        settings.pursuerMps,
-        0,
-        east,
-        settings.altitudeM,
-        0,
-        policy
-      ))
-
-  private def formation(settings: Formation): Scenario =
-    val track  = circuit(settings)
-    val ahead  = settings.leaderMps * settings.lagS
-    val leader = agent(
-      "Leader",
-      Role.Leader,
-      settings.leaderMps,
-      0,
-      0,
-      settings.altitudeM,
-      0,
-      LeadOnCircuit(track, settings.leaderMps, ahead)
-    )
-    Scenario(leader +: slots(settings).zipWithIndex.map: (slot, follower) =>
-      val policy = KeepSlot(0, track, slot._1, slot._2, settings.mostMps, settings.lagS)
-      agent(
-        s"Follower${follower + 1}",
-        Role.Follower,
-        settings.leaderMps,
-        slot._1,
-        slot._2,
-        settings.altitudeM,
-        0,
-        policy
-      ))
-
-  private def crossing(settings: Crossing): Scenario =
-    val lanes = routes(settings)
-    Scenario(lanes.zip(goals(settings)).zipWithIndex.map:
-      case (((headingRad, startM, _), goal), vehicle) =>
-        val (north, east) = onLane(settings, headingRad, startM)
-        val policy        = Avoidance(
-          goal._1,
-          goal._2,
-          settings.cruiseMps,
-          settings.mostMps,
-          settings.minimumM,
-          settings.marginM,
-          settings.horizonS
-        )
-        agent(
-          s"Vehicle${vehicle + 1}",
-          Role.Traveller,
-          settings.cruiseMps,
-          north,
-          east,
-          settings.altitudeM,
-          headingRad,
-          policy
-        ))
-
-  /** Heading, start and goal along it from the middle, m, by vehicle. The first of a stream flies furthest, so that all
-    * fly equally far and nobody waits in another's way.
-    */
-  private def routes(crossing: Crossing): Vector[(Double, Double, Double)] =
-    Vector.tabulate(crossing.vehicles): vehicle =>
-      val (stream, rank) = (vehicle % crossing.streams, vehicle / crossing.streams)
-      val last           = (crossing.vehicles - 1 - stream) / crossing.streams
-      (
-        stream * math.Pi / 2,
-        -(crossing.entryM + rank * crossing.spacingM),
-        crossing.entryM + (last - rank) * crossing.spacingM
-      )
-
-  private def onLane(crossing: Crossing, headingRad: Double, alongM: Double): (Double, Double) =
-    val (cos, sin) = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
-    (alongM * cos - crossing.laneM * sin, alongM * sin + crossing.laneM * cos)
 
   private def agent(
       name: String,

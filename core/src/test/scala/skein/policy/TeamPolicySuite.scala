@@ -70,10 +70,10 @@ class TeamPolicySuite extends munit.FunSuite:
       assertEqualsDouble((nextEast - east) / 1e-6, math.sin(circuit.headingRad(place)), 1e-5)
 
   private def slotErrorsM(formation: TeamScenario.Formation, flight: TeamFlight): Seq[Double] =
-    val circuit    = TeamScenario.circuit(formation)
+    val circuit    = formation.circuit
     val heading    = circuit.headingRad(circuit.nearest(flight.northM(0), flight.eastM(0)))
     val (cos, sin) = (math.cos(heading), math.sin(heading))
-    for ((ahead, right), index) <- TeamScenario.slots(formation).zipWithIndex
+    for ((ahead, right), index) <- formation.slots.zipWithIndex
     yield math.hypot(
       flight.northM(0) + ahead * cos - right * sin - flight.northM(index + 1),
       flight.eastM(0) + ahead * sin + right * cos - flight.eastM(index + 1)
@@ -139,7 +139,7 @@ class TeamPolicySuite extends munit.FunSuite:
     val flight   = TeamFlight(crossing.scenario, lagS = 0)
     flight.fly(60)()
     assert(flight.leastM > crossing.minimumM, s"${flight.leastM} m")
-    val missing = TeamScenario.goals(crossing).zipWithIndex.map: (goal, vehicle) =>
+    val missing = crossing.goals.zipWithIndex.map: (goal, vehicle) =>
       math.hypot(goal._1 - flight.northM(vehicle), goal._2 - flight.eastM(vehicle))
     assert(missing.max < 1, missing)
 
