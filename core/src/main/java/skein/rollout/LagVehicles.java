@@ -18,7 +18,6 @@ import static skein.rollout.LaneMath.ONE;
 import static skein.rollout.LaneMath.ROUND;
 import static skein.rollout.LaneMath.SPECIES;
 import static skein.rollout.LaneMath.ZERO;
-import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -40,11 +39,10 @@ import jdk.incubator.vector.VectorOperators;
 final class LagVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
   private static final float FUTURE = 1e9f;
-  private static final FloatVector GRAIN_S = constant(LanePictures.GRAIN_S);
 
   private final double periodS;
   private final float lagS, earliestS, startX, startY;
-  private final FloatVector period, periodGain, periodDecay, lag, minusLag, decayRate;
+  private final float periodGain, periodDecay;
 
   /**
    * All that is known of the vehicles, in one array, since passes over many arrays spend their time
@@ -88,8 +86,8 @@ final class LagVehicles {
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** What remains of an error after so many rows. */
-  private final float[] remains;
+  /** So many rows in seconds, and what remains of an error after them. */
+  private final float[] rowsS, remains;
 
   /**
    * @param model lag above 0
@@ -105,16 +103,15 @@ final class LagVehicles {
     lagS = (float) lagSeconds;
     startX = (float) duelist.startX();
     startY = (float) duelist.startY();
-    lag = constant(lagS);
-    minusLag = constant(-lagS);
-    decayRate = constant((float) (-1 / lagSeconds));
-    period = constant((float) periodS);
     double left = StrictMath.exp(-periodS / lagSeconds);
-    periodDecay = constant((float) left);
-    periodGain = constant((float) (lagSeconds * (1 - left)));
-    remains = new float[mostRows + 2];
-    for (int i = 0; i < remains.length; i++)
+    periodDecay = (float) left;
+    periodGain = (float) (lagSeconds * (1 - left));
+    rowsS = new float[mostRows + 3 + (int) Math.ceil(earliestS / periodS)];
+    remains = new float[rowsS.length];
+    for (int i = 0; i < remains.length; i++) {
+      rowsS[i] = (float) (i * periodS);
       remains[i] = (float) StrictMath.exp(-i * periodS / lagSeconds);
+    }
   }
 
   /** Back to the start of an episode. */
@@ -176,7 +173,7 @@ final class LagVehicles {
    */
   void flyTo(int row, int[] sampledAt, float latestSampleS) {
     findNear(row, latestSampleS, true);
-    fly(period, periodGain, periodDecay, sampledAt);
+    fly((float) periodS, periodGain, periodDecay, sampledAt);
     while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
     while (oldest < first
         && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
@@ -185,11 +182,11 @@ final class LagVehicles {
   /** Reads the vehicles again, without flying on. */
   void lookAgain(int row, int[] sampledAt, float latestSampleS) {
     findNear(row, latestSampleS, false);
-    fly(ZERO, ZERO, ONE, sampledAt);
+    fly(0, 0, 1, sampledAt);
   }
 
   private float ageS(int slot, int row) {
-    return (float) ((row - rowOf[slot]) * periodS);
+    return rowsS[row - rowOf[slot]];
   }
 
   private void findNear(int row, float latestSampleS, boolean fliesOn) {
@@ -208,25 +205,44 @@ final class LagVehicles {
   }
 
   /** Flies for so long, with the commands that begin to act in this time, and reads the vehicles. */
-  private void fly(FloatVector dt, FloatVector gain, FloatVector keep, int[] sampledAt) {
+  private void fly(float dtS, float gainS, float keepShare, int[] sampledAt) {
     float[] state = this.state, commands = this.commands;
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
+        gain = FloatVector.broadcast(SPECIES, gainS),
+        keep = FloatVector.broadcast(SPECIES, keepShare),
+        lag = FloatVector.broadcast(SPECIES, lagS),
+        minusLag = FloatVector.broadcast(SPECIES, -lagS),
+        decayRate = FloatVector.broadcast(SPECIES, -1 / lagS),
+        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        log2E = FloatVector.broadcast(SPECIES, LOG2_E),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        ln2Part1 = FloatVector.broadcast(SPECIES, LN_2_1),
+        ln2Part2 = FloatVector.broadcast(SPECIES, LN_2_2),
+        exp2 = FloatVector.broadcast(SPECIES, EXP_2),
+        exp3 = FloatVector.broadcast(SPECIES, EXP_3),
+        exp4 = FloatVector.broadcast(SPECIES, EXP_4),
+        exp5 = FloatVector.broadcast(SPECIES, EXP_5),
+        exp6 = FloatVector.broadcast(SPECIES, EXP_6),
+        exp7 = FloatVector.broadcast(SPECIES, EXP_7);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector end =
           ((FloatVector)
                   IntVector.fromArray(INTS, sampledAt, i)
                       .convertShape(VectorOperators.I2F, SPECIES, 0))
-              .mul(GRAIN_S);
+              .mul(grainS);
       FloatVector exponent = end.mul(decayRate);
-      FloatVector rounded = exponent.fma(LOG2_E, ROUND);
-      FloatVector power = rounded.sub(ROUND);
-      FloatVector rest = power.fma(LN_2_2, power.fma(LN_2_1, exponent));
+      FloatVector rounded = exponent.fma(log2E, round);
+      FloatVector power = rounded.sub(round);
+      FloatVector rest = power.fma(ln2Part2, power.fma(ln2Part1, exponent));
       FloatVector series =
-          rest.fma(EXP_7, EXP_6)
-              .fma(rest, EXP_5)
-              .fma(rest, EXP_4)
-              .fma(rest, EXP_3)
-              .fma(rest, EXP_2)
-              .fma(rest.mul(rest), rest.add(ONE));
+          rest.fma(exp7, exp6)
+              .fma(rest, exp5)
+              .fma(rest, exp4)
+              .fma(rest, exp3)
+              .fma(rest, exp2)
+              .fma(rest.mul(rest), rest.add(one));
       FloatVector decay =
           series
               .reinterpretAsInts()
@@ -241,8 +257,7 @@ final class LagVehicles {
           y = errorY.fma(gain, wantedY.fma(dt, FloatVector.fromArray(SPECIES, state, Y + i)));
       errorX = errorX.mul(keep);
       errorY = errorY.mul(keep);
-      // Constants here would be objects, and so all sums.
-      FloatVector laterX = FloatVector.zero(SPECIES), laterY = FloatVector.zero(SPECIES);
+      FloatVector laterX = zero, laterY = zero;
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;
         FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]);
@@ -254,9 +269,9 @@ final class LagVehicles {
         FloatVector left =
             FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(nearAged[k]);
         FloatVector late = minusLag.sub(wait);
-        FloatVector response = ZERO.blend(left.fma(lag, late), begins);
-        FloatVector seen = ZERO.blend(left.mul(decay).fma(lag, late.add(end)), isSeen);
-        FloatVector lost = ZERO.blend(left.neg(), begins);
+        FloatVector response = zero.blend(left.fma(lag, late), begins);
+        FloatVector seen = zero.blend(left.mul(decay).fma(lag, late.add(end)), isSeen);
+        FloatVector lost = zero.blend(left.neg(), begins);
         FloatVector changeX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
             changeY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y);
         x = changeX.fma(response, x);

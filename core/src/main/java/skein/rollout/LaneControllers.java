@@ -1,6 +1,8 @@
 package skein.rollout;
 
+import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.rollout.LaneMath.EXP_2;
 import static skein.rollout.LaneMath.EXP_3;
 import static skein.rollout.LaneMath.EXP_4;
@@ -12,11 +14,8 @@ import static skein.rollout.LaneMath.LANES;
 import static skein.rollout.LaneMath.LN_2_1;
 import static skein.rollout.LaneMath.LN_2_2;
 import static skein.rollout.LaneMath.LOG2_E;
-import static skein.rollout.LaneMath.ONE;
 import static skein.rollout.LaneMath.ROUND;
 import static skein.rollout.LaneMath.SPECIES;
-import static skein.rollout.LaneMath.ZERO;
-import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -31,22 +30,16 @@ import jdk.incubator.vector.VectorOperators;
  */
 final class LaneControllers {
   private static final int WORLDS = LanePolicy.WORLDS;
-  private static final FloatVector GRAIN_S = constant(LanePictures.GRAIN_S);
-
   /** In the place of the time since the last decision, s: it never decided. */
   private static final float LONG_AGO = 1e9f;
 
+  /** Times count no longer ago than this. */
   private static final int LONG_PAST = -1_000_000_000;
-  private static final FloatVector UNDECIDED = constant(LONG_AGO / 2);
-  private static final IntVector PAST = IntVector.broadcast(INTS, LONG_PAST),
-      NEVER = IntVector.broadcast(INTS, LanePictures.NONE);
 
   final LagVehicles vehicles;
   final LanePolicy policy;
-  private final float startHeading, periodS;
-  private final int periodGrains;
-  private final FloatVector speed, growthRate;
-  private final IntVector interval, handover, dead;
+  private final float startHeading, speedMps, lagS, periodS;
+  private final int periodGrains, intervalGrains, handoverGrains, deadGrains;
 
   // When it may decide and be commanded again, when the last command reaches it, when it decides.
   private final int[] times = new int[3 * WORLDS];
@@ -55,6 +48,8 @@ final class LaneControllers {
 
   /** How long before the row's question it decided, s. */
   private final float[] decidedBefore = new float[WORLDS];
+
+  private final int[] drawn = new int[2 * LANES];
 
   private final LaneSight sight = new LaneSight();
   final Directions sent = new Directions(WORLDS);
@@ -77,19 +72,15 @@ final class LaneControllers {
     this.policy = policy;
     this.effort = effort;
     startHeading = (float) duelist.startHeadingRad();
-    speed = constant((float) (duelist.speed() * model.gain()));
-    growthRate = constant((float) (1 / model.lagS()));
+    speedMps = (float) (duelist.speed() * model.gain());
+    lagS = (float) model.lagS();
     periodS = (float) timing.periodS();
     periodGrains = LanePictures.grains(timing.periodS());
-    interval =
-        grains(
+    intervalGrains =
+        LanePictures.grains(
             Math.max(timing.periodS() - timing.toleranceS(), timing.steering().minIntervalS()));
-    handover = grains(timing.steering().handoverS());
-    dead = grains(model.deadTimeS());
-  }
-
-  private static IntVector grains(double seconds) {
-    return IntVector.broadcast(INTS, LanePictures.grains(seconds));
+    handoverGrains = LanePictures.grains(timing.steering().handoverS());
+    deadGrains = LanePictures.grains(model.deadTimeS());
   }
 
   void start() {
@@ -113,15 +104,19 @@ final class LaneControllers {
    */
   private void look(LagVehicles opponents, int[] joinedAt, int[] nextAt) {
     float[] ours = vehicles.state, theirs = opponents.state;
+    IntVector never = IntVector.broadcast(INTS, LanePictures.NONE);
+    FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
+        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f);
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector when =
           IntVector.fromArray(INTS, joinedAt, i)
               .max(IntVector.fromArray(INTS, times, READY + i));
       VectorMask<Integer> decides = when.compare(LT, IntVector.fromArray(INTS, nextAt, i));
-      NEVER.blend(when, decides).intoArray(times, DECIDES + i);
+      never.blend(when, decides).intoArray(times, DECIDES + i);
       FloatVector time = (FloatVector) when.convertShape(VectorOperators.I2F, SPECIES, 0);
       FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
-      ZERO.blend(time.fma(GRAIN_S, before), before.compare(LT, UNDECIDED))
+      zero.blend(time.fma(grainS, before), before.compare(LT, undecided))
           .intoArray(sight.elapsed, i);
       FloatVector.fromArray(SPECIES, theirs, LagVehicles.SEEN_X + i)
           .sub(FloatVector.fromArray(SPECIES, ours, LagVehicles.SEEN_X + i))
@@ -147,51 +142,91 @@ final class LaneControllers {
   /**
    * Command what was decided.
    *
-   * @param delay of each command
-   * @param backDelay of the answer to the command before
+   * @param delays of the commands and of the answers to those before
+   * @param line of the commands' delays
+   * @param places of the steps that the commands belong to, from the row's
    * @param end of the episode
    * @param isLast whether the next beat is of the next row
    */
-  void command(int row, int[] delay, int[] backDelay, int end, boolean isLast) {
+  void command(
+      int row, LaneDelays delays, int line, int[] places, int end, boolean isLast) {
     int slot = vehicles.slotOf(row);
-    send(delay, backDelay, end, isLast ? periodGrains : 0, isLast ? periodS : 0, slot);
+    int place = LaneDelays.placeOf(row) + line * WorldRandom.STRIDE;
+    send(delays, place, places, end, isLast ? periodGrains : 0, isLast ? periodS : 0, slot);
   }
 
-  private void send(int[] delay, int[] backDelay, int endGrains, int toNextGrains, float toNextSeconds, int slot) {
-    IntVector soonest = IntVector.broadcast(INTS, LanePictures.NONE),
-        latest = IntVector.broadcast(INTS, LONG_PAST);
-    IntVector end = IntVector.broadcast(INTS, endGrains),
+  private void send(
+      LaneDelays delays, int place, int[] places, int endGrains, int toNextGrains, float toNextSeconds, int slot) {
+    int[] keys = delays.keys, tableOf = delays.tableOf, table = delays.delays;
+    IntVector here = IntVector.broadcast(INTS, place),
+        next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
+        multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2),
+        never = IntVector.broadcast(INTS, LanePictures.NONE),
+        past = IntVector.broadcast(INTS, LONG_PAST),
+        interval = IntVector.broadcast(INTS, intervalGrains),
+        handover = IntVector.broadcast(INTS, handoverGrains),
+        dead = IntVector.broadcast(INTS, deadGrains),
+        end = IntVector.broadcast(INTS, endGrains),
         toNext = IntVector.broadcast(INTS, toNextGrains);
-    FloatVector toNextS = constant(toNextSeconds);
+    FloatVector toNextS = FloatVector.broadcast(SPECIES, toNextSeconds),
+        speed = FloatVector.broadcast(SPECIES, speedMps),
+        perLag = FloatVector.broadcast(SPECIES, 1 / lagS),
+        undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
+        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        log2E = FloatVector.broadcast(SPECIES, LOG2_E),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        ln2Part1 = FloatVector.broadcast(SPECIES, LN_2_1),
+        ln2Part2 = FloatVector.broadcast(SPECIES, LN_2_2),
+        exp2 = FloatVector.broadcast(SPECIES, EXP_2),
+        exp3 = FloatVector.broadcast(SPECIES, EXP_3),
+        exp4 = FloatVector.broadcast(SPECIES, EXP_4),
+        exp5 = FloatVector.broadcast(SPECIES, EXP_5),
+        exp6 = FloatVector.broadcast(SPECIES, EXP_6),
+        exp7 = FloatVector.broadcast(SPECIES, EXP_7);
     float[] commands = vehicles.commands;
+    IntVector soonest = never, latest = past;
     for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
+          begin = IntVector.fromArray(INTS, tableOf, i);
+      IntVector a = key.add(here), b = key.add(next);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+      a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
+      b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+      IntVector delay = IntVector.fromArray(INTS, table, 0, drawn, 0),
+          backDelay = IntVector.fromArray(INTS, table, 0, drawn, LANES);
       IntVector when = IntVector.fromArray(INTS, times, DECIDES + i);
-      VectorMask<Integer> decides = when.compare(LT, NEVER);
+      VectorMask<Integer> decides = when.compare(LT, never);
       VectorMask<Float> yes = decides.cast(SPECIES);
       FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
-      VectorMask<Float> hasDecided = before.compare(LT, UNDECIDED);
+      VectorMask<Float> hasDecided = before.compare(LT, undecided);
       IntVector reachedBefore = IntVector.fromArray(INTS, times, REACHES + i);
       // Commands to one vehicle keep their order.
-      IntVector reaches = when.add(IntVector.fromArray(INTS, delay, i)).max(reachedBefore);
+      IntVector reaches = when.add(delay).max(reachedBefore);
       IntVector actsAt = reaches.add(dead);
-      soonest = soonest.min(NEVER.blend(actsAt, decides));
-      latest = latest.max(PAST.blend(actsAt, decides));
+      soonest = soonest.min(never.blend(actsAt, decides));
+      latest = latest.max(past.blend(actsAt, decides));
       FloatVector acts =
-          ZERO.blend(
-              ((FloatVector) actsAt.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(GRAIN_S),
+          zero.blend(
+              ((FloatVector) actsAt.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS),
               yes);
       acts.intoArray(commands, slot + LagVehicles.AT + i);
-      FloatVector exponent = acts.mul(growthRate);
-      FloatVector rounded = exponent.fma(LOG2_E, ROUND);
-      FloatVector power = rounded.sub(ROUND);
-      FloatVector rest = power.fma(LN_2_2, power.fma(LN_2_1, exponent));
+      FloatVector exponent = acts.mul(perLag);
+      FloatVector rounded = exponent.fma(log2E, round);
+      FloatVector power = rounded.sub(round);
+      FloatVector rest = power.fma(ln2Part2, power.fma(ln2Part1, exponent));
       FloatVector series =
-          rest.fma(EXP_7, EXP_6)
-              .fma(rest, EXP_5)
-              .fma(rest, EXP_4)
-              .fma(rest, EXP_3)
-              .fma(rest, EXP_2)
-              .fma(rest.mul(rest), rest.add(ONE));
+          rest.fma(exp7, exp6)
+              .fma(rest, exp5)
+              .fma(rest, exp4)
+              .fma(rest, exp3)
+              .fma(rest, exp2)
+              .fma(rest.mul(rest), rest.add(one));
       series
           .reinterpretAsInts()
           .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
@@ -201,16 +236,16 @@ final class LaneControllers {
       // none.
       IntVector ready = when.add(interval);
       IntVector acknowledged =
-          reaches.add(IntVector.fromArray(INTS, backDelay, i)).add(handover).max(ready);
+          reaches.add(backDelay).add(handover).max(ready);
       ready = ready.blend(acknowledged, hasDecided.cast(INTS));
-      reachedBefore.blend(reaches, decides).sub(toNext).max(PAST).intoArray(times, REACHES + i);
+      reachedBefore.blend(reaches, decides).sub(toNext).max(past).intoArray(times, REACHES + i);
       IntVector.fromArray(INTS, times, READY + i)
           .blend(ready, decides)
           .sub(toNext)
-          .max(PAST)
+          .max(past)
           .intoArray(times, READY + i);
       FloatVector time = (FloatVector) when.convertShape(VectorOperators.I2F, SPECIES, 0);
-      before.blend(time.mul(GRAIN_S).neg(), yes).add(toNextS).intoArray(decidedBefore, i);
+      before.blend(time.mul(grainS).neg(), yes).add(toNextS).intoArray(decidedBefore, i);
       FloatVector spent = FloatVector.fromArray(SPECIES, effort, i);
       spent
           .add(FloatVector.fromArray(SPECIES, policy.turned, i), when.compare(LT, end).cast(SPECIES))
@@ -224,10 +259,10 @@ final class LaneControllers {
           sin = FloatVector.fromArray(SPECIES, sent.sin, i);
       FloatVector newCos = cos.blend(FloatVector.fromArray(SPECIES, decided.cos, i), yes),
           newSin = sin.blend(FloatVector.fromArray(SPECIES, decided.sin, i), yes);
-      ZERO.blend(newCos.sub(ZERO.blend(cos, hasDecided)), yes)
+      zero.blend(newCos.sub(zero.blend(cos, hasDecided)), yes)
           .mul(speed)
           .intoArray(commands, slot + LagVehicles.CHANGE_X + i);
-      ZERO.blend(newSin.sub(ZERO.blend(sin, hasDecided)), yes)
+      zero.blend(newSin.sub(zero.blend(sin, hasDecided)), yes)
           .mul(speed)
           .intoArray(commands, slot + LagVehicles.CHANGE_Y + i);
       newCos.intoArray(sent.cos, i);

@@ -1,7 +1,9 @@
 package skein.rollout;
 
 import static jdk.incubator.vector.VectorOperators.GE;
+import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
 
@@ -47,7 +49,7 @@ final class LanePictures {
   private final long periodNs;
   private final boolean shortCut;
   private final int periodGrains;
-  private final IntVector period, patience, latest;
+  private final int patienceGrains, latestGrains;
   private final PictureSource[] sources = new PictureSource[WORLDS];
 
   private int[] keys;
@@ -62,8 +64,7 @@ final class LanePictures {
       both = new int[ROWS][WORLDS],
       nextBoth = new int[ROWS][WORLDS];
 
-  /** How long the answers to a row's questions are under way. */
-  private final int[][] back = new int[VEHICLES][WORLDS];
+  private final int[] drawn = new int[4 * LANES];
 
   /** The lanes of each vector that {@link #ask} found irregular. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
@@ -77,7 +78,7 @@ final class LanePictures {
   private final boolean[] hasNext = new boolean[WORLDS];
 
   // The beat's pictures: when each is joined, when the world's next one is; what its readings were
-  // asked as, times the places of a step; when they were taken.
+  // asked as, in places from the row's; when they were taken.
   int[] joinedAt, nextAt;
   final int[][] place = new int[VEHICLES][WORLDS];
   int[][] sampledAt = new int[VEHICLES][];
@@ -85,7 +86,10 @@ final class LanePictures {
   /** Whether a world has no picture in this beat, or one with an old reading. */
   boolean hasOld;
 
-  /** Worlds with no picture in this beat, or one with a reading that is old or older than the row. */
+  /**
+   * Worlds with no picture in this beat, or one with a reading that is old, older than the row or
+   * asked as another.
+   */
   final int[] odd = new int[WORLDS];
 
   int oddCount;
@@ -108,14 +112,8 @@ final class LanePictures {
     periodNs = Math.round(timing.periodS() * 1e9);
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
     periodGrains = grains(timing.periodS());
-    period = IntVector.broadcast(INTS, periodGrains);
-    patience = IntVector.broadcast(INTS, grains(timing.patienceS()));
-    latest =
-        IntVector.broadcast(
-            INTS,
-            Math.min(
-                grains(timing.asking().timeoutS()),
-                ahead * periodGrains - 1));
+    patienceGrains = grains(timing.patienceS());
+    latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
     for (int i = 0; i < WORLDS; i++) sources[i] = new PictureSource(timing, durationS, ahead);
   }
 
@@ -137,6 +135,8 @@ final class LanePictures {
     Arrays.fill(irregularUpTo, -1);
     Arrays.fill(hasNext, false);
     row = -1;
+    oddCount = 0;
+    for (int[] places : place) Arrays.fill(places, 0);
     for (int step = 0; step < ahead; step++) ask(step);
   }
 
@@ -147,9 +147,7 @@ final class LanePictures {
    * now.
    */
   private void ask(int step) {
-    for (int[] places : place) Arrays.fill(places, LaneDelays.placeOf(step));
-    delays.draw(place, 0, reached[step % ROWS], back);
-    answer(step % ROWS, (step + ROWS - 1) % ROWS);
+    answer(LaneDelays.placeOf(step), step % ROWS, (step + ROWS - 1) % ROWS);
     if (step > 0) {
       lookedAt = step;
       for (int i = 0; i < irregularLanes.length; i++)
@@ -160,13 +158,40 @@ final class LanePictures {
     }
   }
 
-  private void answer(int slot, int slotBefore) {
+  private void answer(int place, int slot, int slotBefore) {
     int[][] to = reached[slot], toBefore = reached[slotBefore];
+    int[] keys = delays.keys, tableOf = delays.tableOf, table = delays.delays;
+    IntVector place0 = IntVector.broadcast(INTS, place),
+        place1 = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
+        place2 = IntVector.broadcast(INTS, place + 2 * WorldRandom.STRIDE),
+        place3 = IntVector.broadcast(INTS, place + 3 * WorldRandom.STRIDE),
+        multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
+    IntVector period = IntVector.broadcast(INTS, periodGrains),
+        patience = IntVector.broadcast(INTS, patienceGrains),
+        latest = IntVector.broadcast(INTS, latestGrains);
     for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector toEvader = IntVector.fromArray(INTS, to[0], i),
-          toPursuer = IntVector.fromArray(INTS, to[1], i);
-      IntVector evader = IntVector.fromArray(INTS, back[0], i).add(toEvader),
-          pursuer = IntVector.fromArray(INTS, back[1], i).add(toPursuer);
+      IntVector key = IntVector.fromArray(INTS, keys, i),
+          begin = IntVector.fromArray(INTS, tableOf, i);
+      IntVector a = key.add(place0), b = key.add(place1), c = key.add(place2), d = key.add(place3);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+      c = c.lanewise(XOR, c.lanewise(LSHR, 16)).mul(multiplier1);
+      d = d.lanewise(XOR, d.lanewise(LSHR, 16)).mul(multiplier1);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+      c = c.lanewise(XOR, c.lanewise(LSHR, 15)).mul(multiplier2);
+      d = d.lanewise(XOR, d.lanewise(LSHR, 15)).mul(multiplier2);
+      a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
+      b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+      c.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 2 * LANES);
+      d.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 3 * LANES);
+      IntVector toEvader = IntVector.fromArray(INTS, table, 0, drawn, 0),
+          evader = IntVector.fromArray(INTS, table, 0, drawn, LANES).add(toEvader),
+          toPursuer = IntVector.fromArray(INTS, table, 0, drawn, 2 * LANES),
+          pursuer = IntVector.fromArray(INTS, table, 0, drawn, 3 * LANES).add(toPursuer);
+      toEvader.intoArray(to[0], i);
+      toPursuer.intoArray(to[1], i);
       IntVector soonest = evader.min(pursuer), last = evader.max(pursuer);
       soonest.intoArray(first[slot], i);
       last.intoArray(both[slot], i);
@@ -216,8 +241,8 @@ final class LanePictures {
     int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
     int end = both[step % ROWS][world];
     return end < first[(step + 1) % ROWS][world] + periodGrains
-        && end - first[step % ROWS][world] < patience.lane(0)
-        && end <= latest.lane(0)
+        && end - first[step % ROWS][world] < patienceGrains
+        && end <= latestGrains
         && to[0][world] < nextTo[0][world] + periodGrains
         && to[1][world] < nextTo[1][world] + periodGrains;
   }
@@ -231,7 +256,7 @@ final class LanePictures {
     nextAt = nextBoth[slot];
     sampledAt[0] = reached[slot][0];
     sampledAt[1] = reached[slot][1];
-    for (int[] places : place) Arrays.fill(places, LaneDelays.placeOf(row));
+    for (int i = 0; i < oddCount; i++) for (int[] places : place) places[odd[i]] = 0;
     hasOld = false;
     oddCount = 0;
     latestSampleS = delays.maxS;
@@ -302,7 +327,8 @@ final class LanePictures {
     for (int v = 0; v < VEHICLES; v++) {
       int at = fromTick(source.sampledAt[v]);
       sampledAt[v][world] = at;
-      place[v][world] = LaneDelays.placeOf(source.question[v]);
+      place[v][world] = LaneDelays.placeOf(source.question[v]) - LaneDelays.placeOf(row);
+      isOdd |= place[v][world] != 0;
       isFresh[v][world] = source.isFresh[v] ? 1 : 0;
       hasOld |= !source.isFresh[v];
       isOdd |= !source.isFresh[v] || at < 0;

@@ -119,19 +119,21 @@ abstract class LanePolicy {
     System.arraycopy(newHeading, 0, heading, 0, WORLDS);
   }
 
-  /** The decisions of the worlds whose number is not 0 become commands. */
-  final void commit(int[] decided) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      VectorMask<Float> yes = IntVector.fromArray(INTS, decided, i).compare(NE, NO).cast(SPECIES);
-      FloatVector.fromArray(SPECIES, heading, i)
-          .blend(FloatVector.fromArray(SPECIES, newHeading, i), yes)
-          .intoArray(heading, i);
-    }
-  }
-
   /** By how much the decided directions differ from the own ones. */
   final void measureTurns(Directions own, int ownAt, Directions into, int intoAt) {
     // Two directions a chord apart are at an angle of 2 arcsin(chord / 2) = π − 2 arccos(chord / 2).
+    FloatVector quarter = FloatVector.broadcast(SPECIES, 0.25f),
+        minusTwo = FloatVector.broadcast(SPECIES, -2f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        pi = FloatVector.broadcast(SPECIES, 3.14159265f),
+        acos0 = FloatVector.broadcast(SPECIES, 1.5707963050f),
+        acos1 = FloatVector.broadcast(SPECIES, -0.2145988016f),
+        acos2 = FloatVector.broadcast(SPECIES, 0.0889789874f),
+        acos3 = FloatVector.broadcast(SPECIES, -0.0501743046f),
+        acos4 = FloatVector.broadcast(SPECIES, 0.0308918810f),
+        acos5 = FloatVector.broadcast(SPECIES, -0.0170881256f),
+        acos6 = FloatVector.broadcast(SPECIES, 0.0066700901f),
+        acos7 = FloatVector.broadcast(SPECIES, -0.0012624911f);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector x =
           FloatVector.fromArray(SPECIES, into.cos, intoAt + i)
@@ -139,16 +141,16 @@ abstract class LanePolicy {
       FloatVector y =
           FloatVector.fromArray(SPECIES, into.sin, intoAt + i)
               .sub(FloatVector.fromArray(SPECIES, own.sin, ownAt + i));
-      FloatVector half = x.fma(x, y.mul(y)).mul(QUARTER).sqrt().min(ONE);
+      FloatVector half = x.fma(x, y.mul(y)).mul(quarter).sqrt().min(one);
       FloatVector series =
-          half.fma(ACOS_7, ACOS_6)
-              .fma(half, ACOS_5)
-              .fma(half, ACOS_4)
-              .fma(half, ACOS_3)
-              .fma(half, ACOS_2)
-              .fma(half, ACOS_1)
-              .fma(half, ACOS_0);
-      ONE.sub(half).sqrt().mul(series).fma(MINUS_TWO, PI).intoArray(turned, i);
+          half.fma(acos7, acos6)
+              .fma(half, acos5)
+              .fma(half, acos4)
+              .fma(half, acos3)
+              .fma(half, acos2)
+              .fma(half, acos1)
+              .fma(half, acos0);
+      one.sub(half).sqrt().mul(series).fma(minusTwo, pi).intoArray(turned, i);
     }
   }
 

@@ -3,7 +3,6 @@ package skein.rollout;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static skein.rollout.LaneMath.LANES;
 import static skein.rollout.LaneMath.SPECIES;
-import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -11,12 +10,11 @@ import jdk.incubator.vector.FloatVector;
 /** Adds up the distances of many worlds as they come, once a period. */
 final class LaneScores {
   private static final int WORLDS = LanePolicy.WORLDS;
-  private static final FloatVector INFINITE = constant(Float.POSITIVE_INFINITY);
 
   private final int steps, lastSteps;
   private final double periodS;
   private final DuelKernel into;
-  private FloatVector captureRadius;
+  private float captureRadiusM;
   private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
 
   /** The distances now, m. */
@@ -33,7 +31,7 @@ final class LaneScores {
    * @param captureRadiusM a distance of at most this is a capture
    */
   void start(float captureRadiusM) {
-    captureRadius = constant(captureRadiusM);
+    this.captureRadiusM = captureRadiusM;
     Arrays.fill(into.minDistance, Float.POSITIVE_INFINITY);
     Arrays.fill(into.captureS, Float.POSITIVE_INFINITY);
     Arrays.fill(sum, 0f);
@@ -42,15 +40,17 @@ final class LaneScores {
 
   /** Adds {@link #distance} at the end of a period, counted from 1. */
   void add(int period) {
-    FloatVector time = constant((float) (period * periodS));
+    FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
+        radius = FloatVector.broadcast(SPECIES, captureRadiusM),
+        infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
     boolean isLast = period > steps - lastSteps;
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
       FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);
       if (isLast) FloatVector.fromArray(SPECIES, lastSum, i).add(now).intoArray(lastSum, i);
-      INFINITE
-          .blend(time, now.compare(LE, captureRadius))
+      infinite
+          .blend(time, now.compare(LE, radius))
           .min(FloatVector.fromArray(SPECIES, into.captureS, i))
           .intoArray(into.captureS, i);
     }

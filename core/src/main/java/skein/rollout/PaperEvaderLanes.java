@@ -36,6 +36,9 @@ final class PaperEvaderLanes extends LanePolicy {
       int knownAt,
       Directions into,
       int intoAt) {
+    FloatVector quarter = FloatVector.broadcast(SPECIES, 0.25f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        zero = FloatVector.broadcast(SPECIES, 0f);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector dx = FloatVector.fromArray(SPECIES, sight.dx, i),
           dy = FloatVector.fromArray(SPECIES, sight.dy, i);
@@ -48,13 +51,13 @@ final class PaperEvaderLanes extends LanePolicy {
       VectorMask<Float> inRight = toLeft.fma(toLeft, xSquare).compare(LT, rSquare);
       VectorMask<Float> inLeft = toRight.fma(toRight, xSquare).compare(LT, rSquare);
       VectorMask<Float> breakAway =
-          y.fma(y, xSquare).mul(QUARTER).compare(LT, rSquare).andNot(inLeft.or(inRight));
+          y.fma(y, xSquare).mul(quarter).compare(LT, rSquare).andNot(inLeft.or(inRight));
       FloatVector aim = y.blend(toLeft, inLeft).blend(toRight, inRight);
       FloatVector length = aim.fma(aim, xSquare).sqrt();
       // At the very place of the pursuer the angle counts as 0.
-      VectorMask<Float> none = length.compare(EQ, ZERO);
-      FloatVector scale = ONE.div(length.blend(ONE, none));
-      FloatVector front = x.blend(ONE, none).mul(scale), side = aim.mul(scale);
+      VectorMask<Float> none = length.compare(EQ, zero);
+      FloatVector scale = one.div(length.blend(one, none));
+      FloatVector front = x.blend(one, none).mul(scale), side = aim.mul(scale);
       FloatVector forward = front.blend(side.neg(), breakAway),
           aside = side.blend(front, breakAway);
       forward.fma(c, aside.mul(s).neg()).intoArray(into.cos, intoAt + i);

@@ -35,14 +35,20 @@ final class PaperPursuerLanes extends LanePolicy {
       int knownAt,
       Directions into,
       int intoAt) {
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        minusOne = FloatVector.broadcast(SPECIES, -1f),
+        perTurn = FloatVector.broadcast(SPECIES, (float) (0.5 / Math.PI)),
+        round = FloatVector.broadcast(SPECIES, 12582912f),
+        minusTurn = FloatVector.broadcast(SPECIES, (float) (-2 * Math.PI));
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector dx = FloatVector.fromArray(SPECIES, sight.dx, i),
           dy = FloatVector.fromArray(SPECIES, sight.dy, i);
       FloatVector c = FloatVector.fromArray(SPECIES, own.cos, ownAt + i),
           s = FloatVector.fromArray(SPECIES, own.sin, ownAt + i);
       FloatVector x = dx.fma(c, dy.mul(s)), y = dy.fma(c, dx.mul(s).neg());
-      FloatVector side = ZERO.blend(ONE, x.compare(LT, ZERO));
-      side = side.blend(ONE, y.compare(GT, ZERO)).blend(MINUS_ONE, y.compare(LT, ZERO));
+      FloatVector side = zero.blend(one, x.compare(LT, zero));
+      side = side.blend(one, y.compare(GT, zero)).blend(minusOne, y.compare(LT, zero));
       FloatVector change =
           FloatVector.fromArray(SPECIES, turnRate, i)
               .fma(
@@ -51,9 +57,9 @@ final class PaperPursuerLanes extends LanePolicy {
               .mul(side);
       change.add(FloatVector.fromArray(SPECIES, heading, i)).intoArray(newHeading, i);
       change
-          .fma(PER_TURN, ROUND)
-          .sub(ROUND)
-          .fma(MINUS_TURN, change)
+          .fma(perTurn, round)
+          .sub(round)
+          .fma(minusTurn, change)
           .abs()
           .intoArray(turned, i);
     }

@@ -19,6 +19,8 @@ import jdk.incubator.vector.FloatVector;
  * construction but where links need more room than any before; one instance per thread.
  */
 final class StreamDuelKernel extends DuelKernel {
+  private static final int COMMANDS = Rollout.CommandPlace();
+
   private final LoopTiming.Stream timing;
   private final Reduced model;
   private final int steps, periodGrains;
@@ -27,7 +29,6 @@ final class StreamDuelKernel extends DuelKernel {
   private final LaneControllers evading, pursuing;
   private final boolean withVelocity;
   private final LaneScores scores;
-  private final int[][] delay = new int[2][WORLDS], backDelay = new int[2][WORLDS];
 
   /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
   static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
@@ -157,11 +158,10 @@ final class StreamDuelKernel extends DuelKernel {
   private void decide(int row) {
     pursuing.decide(evading, pictures);
     evading.decide(pursuing, pictures);
-    pictures.delays.draw(pictures.place, Rollout.CommandPlace(), delay, backDelay);
     int end = grainsToEnd(row);
     boolean isLast = pictures.isLastBeat();
-    pursuing.command(row, delay[1], backDelay[1], end, isLast);
-    evading.command(row, delay[0], backDelay[0], end, isLast);
+    pursuing.command(row, pictures.delays, COMMANDS + 2, pictures.place[1], end, isLast);
+    evading.command(row, pictures.delays, COMMANDS, pictures.place[0], end, isLast);
   }
 
   /** From a row's question to the end of the episode, as far as integers count. */
