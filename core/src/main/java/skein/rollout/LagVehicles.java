@@ -1,7 +1,6 @@
 package skein.rollout;
 
 import static jdk.incubator.vector.VectorOperators.GT;
-import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.rollout.LaneMath.EXP_2;
 import static skein.rollout.LaneMath.EXP_3;
@@ -46,8 +45,8 @@ final class LagVehicles {
 
   /**
    * All that is known of the vehicles, in one array, since passes over many arrays spend their time
-   * on their addresses: at the row's question position, the velocity asked for, and how far the
-   * velocity is off it; position and velocity as read last.
+   * on their addresses: at the row's question position, the velocity asked for, and what the
+   * velocity lacks of it; position and velocity as read last.
    */
   final float[] state = new float[12 * WORLDS];
 
@@ -55,8 +54,8 @@ final class LagVehicles {
   static final int SEEN_VX = 4 * WORLDS, SEEN_VY = 5 * WORLDS;
   private static final int WANTED_X = 6 * WORLDS,
       WANTED_Y = 7 * WORLDS,
-      ERROR_X = 8 * WORLDS,
-      ERROR_Y = 9 * WORLDS;
+      LACK_X = 8 * WORLDS,
+      LACK_Y = 9 * WORLDS;
 
   /** When the readings are taken, and what remains of an error then. */
   private static final int END = 10 * WORLDS, DECAY = 11 * WORLDS;
@@ -208,7 +207,7 @@ final class LagVehicles {
   private void fly(float dtS, float gainS, float keepShare, int[] sampledAt) {
     float[] state = this.state, commands = this.commands;
     FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
-        gain = FloatVector.broadcast(SPECIES, gainS),
+        minusGain = FloatVector.broadcast(SPECIES, -gainS),
         keep = FloatVector.broadcast(SPECIES, keepShare),
         lag = FloatVector.broadcast(SPECIES, lagS),
         minusLag = FloatVector.broadcast(SPECIES, -lagS),
@@ -250,48 +249,50 @@ final class LagVehicles {
               .reinterpretAsFloats();
       FloatVector wantedX = FloatVector.fromArray(SPECIES, state, WANTED_X + i),
           wantedY = FloatVector.fromArray(SPECIES, state, WANTED_Y + i),
-          errorX = FloatVector.fromArray(SPECIES, state, ERROR_X + i),
-          errorY = FloatVector.fromArray(SPECIES, state, ERROR_Y + i);
+          lackX = FloatVector.fromArray(SPECIES, state, LACK_X + i),
+          lackY = FloatVector.fromArray(SPECIES, state, LACK_Y + i);
       FloatVector
-          x = errorX.fma(gain, wantedX.fma(dt, FloatVector.fromArray(SPECIES, state, X + i))),
-          y = errorY.fma(gain, wantedY.fma(dt, FloatVector.fromArray(SPECIES, state, Y + i)));
-      errorX = errorX.mul(keep);
-      errorY = errorY.mul(keep);
+          x = lackX.fma(minusGain, wantedX.fma(dt, FloatVector.fromArray(SPECIES, state, X + i))),
+          y = lackY.fma(minusGain, wantedY.fma(dt, FloatVector.fromArray(SPECIES, state, Y + i)));
+      lackX = lackX.mul(keep);
+      lackY = lackY.mul(keep);
+      FloatVector lagDecay = lag.mul(decay);
       FloatVector laterX = zero, laterY = zero;
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;
         FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]);
         FloatVector acts = FloatVector.fromArray(SPECIES, commands, from + AT);
         FloatVector wait = acts.sub(age);
-        VectorMask<Float> hasActed = acts.compare(LE, age);
-        VectorMask<Float> begins = acts.compare(GT, nearYounger[k]).and(hasActed);
-        VectorMask<Float> isSeen = wait.compare(LT, end).andNot(hasActed);
+        VectorMask<Float> isToAct = acts.compare(GT, age);
+        VectorMask<Float> begins = acts.compare(GT, nearYounger[k]).andNot(isToAct);
+        VectorMask<Float> isSeen = wait.compare(LT, end, isToAct);
         FloatVector left =
             FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(nearAged[k]);
         FloatVector late = minusLag.sub(wait);
         FloatVector response = zero.blend(left.fma(lag, late), begins);
-        FloatVector seen = zero.blend(left.mul(decay).fma(lag, late.add(end)), isSeen);
-        FloatVector lost = zero.blend(left.neg(), begins);
+        FloatVector seen = zero.blend(left.fma(lagDecay, late.add(end)), isSeen);
+        FloatVector lost = zero.blend(left, begins);
+        FloatVector felt = zero.blend(one, begins);
         FloatVector changeX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
             changeY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y);
         x = changeX.fma(response, x);
         y = changeY.fma(response, y);
-        errorX = changeX.fma(lost, errorX);
-        errorY = changeY.fma(lost, errorY);
-        wantedX = wantedX.add(changeX, begins);
-        wantedY = wantedY.add(changeY, begins);
+        lackX = changeX.fma(lost, lackX);
+        lackY = changeY.fma(lost, lackY);
+        wantedX = changeX.fma(felt, wantedX);
+        wantedY = changeY.fma(felt, wantedY);
         laterX = changeX.fma(seen, laterX);
         laterY = changeY.fma(seen, laterY);
       }
       x.intoArray(state, X + i);
       y.intoArray(state, Y + i);
-      errorX.intoArray(state, ERROR_X + i);
-      errorY.intoArray(state, ERROR_Y + i);
+      lackX.intoArray(state, LACK_X + i);
+      lackY.intoArray(state, LACK_Y + i);
       wantedX.intoArray(state, WANTED_X + i);
       wantedY.intoArray(state, WANTED_Y + i);
-      FloatVector died = lag.sub(lag.mul(decay));
-      errorX.fma(died, wantedX.fma(end, x)).add(laterX).intoArray(state, SEEN_X + i);
-      errorY.fma(died, wantedY.fma(end, y)).add(laterY).intoArray(state, SEEN_Y + i);
+      FloatVector died = lagDecay.sub(lag);
+      lackX.fma(died, wantedX.fma(end, x)).add(laterX).intoArray(state, SEEN_X + i);
+      lackY.fma(died, wantedY.fma(end, y)).add(laterY).intoArray(state, SEEN_Y + i);
       end.intoArray(state, END + i);
       decay.intoArray(state, DECAY + i);
     }
@@ -303,10 +304,12 @@ final class LagVehicles {
       FloatVector end = FloatVector.fromArray(SPECIES, state, END + i),
           decay = FloatVector.fromArray(SPECIES, state, DECAY + i);
       FloatVector vx =
-          FloatVector.fromArray(SPECIES, state, ERROR_X + i)
+          FloatVector.fromArray(SPECIES, state, LACK_X + i)
+              .neg()
               .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_X + i));
       FloatVector vy =
-          FloatVector.fromArray(SPECIES, state, ERROR_Y + i)
+          FloatVector.fromArray(SPECIES, state, LACK_Y + i)
+              .neg()
               .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_Y + i));
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;

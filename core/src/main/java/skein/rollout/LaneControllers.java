@@ -209,8 +209,8 @@ final class LaneControllers {
       // Commands to one vehicle keep their order.
       IntVector reaches = when.add(delay).max(reachedBefore);
       IntVector actsAt = reaches.add(dead);
-      soonest = soonest.min(never.blend(actsAt, decides));
-      latest = latest.max(past.blend(actsAt, decides));
+      soonest = soonest.lanewise(VectorOperators.MIN, actsAt, decides);
+      latest = latest.lanewise(VectorOperators.MAX, actsAt, decides);
       FloatVector acts =
           zero.blend(
               ((FloatVector) actsAt.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS),

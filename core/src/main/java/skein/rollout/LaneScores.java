@@ -17,9 +17,6 @@ final class LaneScores {
   private float captureRadiusM;
   private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
 
-  /** The distances now, m. */
-  final float[] distance = new float[WORLDS];
-
   LaneScores(double durationS, double periodS, DuelKernel into) {
     this.into = into;
     this.periodS = periodS;
@@ -38,14 +35,22 @@ final class LaneScores {
     Arrays.fill(lastSum, 0f);
   }
 
-  /** Adds {@link #distance} at the end of a period, counted from 1. */
-  void add(int period) {
+  /** Adds the distances of two vehicles at the end of a period, counted from 1. */
+  void add(int period, LagVehicles evaders, LagVehicles pursuers) {
+    float[] evader = evaders.state, pursuer = pursuers.state;
     FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
         radius = FloatVector.broadcast(SPECIES, captureRadiusM),
         infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
     boolean isLast = period > steps - lastSteps;
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
+      FloatVector
+          x =
+              FloatVector.fromArray(SPECIES, evader, LagVehicles.X + i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.X + i)),
+          y =
+              FloatVector.fromArray(SPECIES, evader, LagVehicles.Y + i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.Y + i));
+      FloatVector now = x.fma(x, y.mul(y)).sqrt();
       FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);
       if (isLast) FloatVector.fromArray(SPECIES, lastSum, i).add(now).intoArray(lastSum, i);

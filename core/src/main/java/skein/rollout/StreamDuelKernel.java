@@ -1,10 +1,5 @@
 package skein.rollout;
 
-import static skein.rollout.LaneMath.LANES;
-import static skein.rollout.LaneMath.SPECIES;
-
-import jdk.incubator.vector.FloatVector;
-
 /**
  * Duels under the full event timing of the {@code stream} loop, many worlds at a time, each with
  * delays of its own: questions, answers, commands and acknowledgements with sampled delays,
@@ -126,7 +121,7 @@ final class StreamDuelKernel extends DuelKernel {
       pictures.startRow(row);
       read(evaders, 0, row, true);
       read(pursuers, 1, row, true);
-      if (row > 0) score(row);
+      if (row > 0) scores.add(row, evaders, pursuers);
       decide(row);
       while (pictures.nextBeat()) {
         read(evaders, 0, row, false);
@@ -136,7 +131,7 @@ final class StreamDuelKernel extends DuelKernel {
     }
     evaders.flyTo(steps, pictures.sampledAt[0], 0);
     pursuers.flyTo(steps, pictures.sampledAt[1], 0);
-    score(steps);
+    scores.add(steps, evaders, pursuers);
     scores.finish();
   }
 
@@ -168,21 +163,5 @@ final class StreamDuelKernel extends DuelKernel {
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * timing.periodS();
     return seconds < MOST_S ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
-  }
-
-  /** The distance at a row's question. */
-  private void score(int row) {
-    float[] evader = evaders.state, pursuer = pursuers.state;
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector
-          x =
-              FloatVector.fromArray(SPECIES, evader, LagVehicles.X + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.X + i)),
-          y =
-              FloatVector.fromArray(SPECIES, evader, LagVehicles.Y + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.Y + i));
-      x.fma(x, y.mul(y)).sqrt().intoArray(scores.distance, i);
-    }
-    scores.add(row);
   }
 }
