@@ -67,11 +67,12 @@ class TeamSimulation extends munit.FunSuite:
     // Avoiding one another by their policy, none of them is there before 13 s.
     assert(value(result, "arrived") >= 15, result.measures)
 
-  test("a team that plans surrounds the evader as closely as by the rule that it could follow"):
+  test("a team that searches its plans for long surrounds the evader as closely as by its rule"):
     def offRing(loop: LoopKind) =
-      value(resultOf(fly(settings("surround", loop, LatencyProfile.vpn, 24))), "off ring m")
+      val flown = settings("surround", loop, LatencyProfile.vpn, 20)
+      value(resultOf(fly(flown.copy(planning = flown.planning.copy(slices = 20)))), "off ring m")
     val (planned, byRule) = (offRing(LoopKind.Plan), offRing(LoopKind.Predictive))
-    assert(planned < byRule + 0.04, s"$planned m off the ring, by the rule $byRule m, seed 1")
+    assert(planned < byRule + 0.05, s"$planned m off the ring, by the rule $byRule m, seed 1")
 
   test("a formation that plans keeps its slots over the VPN"):
     val result = resultOf(fly(settings("formation", LoopKind.Plan, LatencyProfile.vpn, 24)))
