@@ -24,7 +24,8 @@ class RolloutParitySimulation extends munit.FunSuite:
       pairs: Int,
       altitudeM: Double,
       scenario: String,
-      duration: Span
+      duration: Span,
+      crossing: Int
   ) = FlySettings(
     List(loop),
     List(link),
@@ -34,7 +35,7 @@ class RolloutParitySimulation extends munit.FunSuite:
     pairs,
     asPublished,
     scenario = scenario,
-    crossing = TeamScenario.Crossing(vehicles = 8),
+    crossing = TeamScenario.Crossing(vehicles = crossing),
     altitudeM = altitudeM
   )
 
@@ -50,9 +51,10 @@ class RolloutParitySimulation extends munit.FunSuite:
       pairs: Int = 1,
       altitudeM: Double = Scenario.DuelAltitudeM,
       team: String = FlySettings.Duel,
-      duration: Span = minute
+      duration: Span = minute,
+      crossing: Int = 8
   ): Unit =
-    val asked  = settings(loop, link, asPublished, pairs, altitudeM, team, duration)
+    val asked  = settings(loop, link, asPublished, pairs, altitudeM, team, duration, crossing)
     val flown  = TappedFlight.fly(asked, FlightPlan("parity", loop, link, seed))
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
@@ -154,6 +156,18 @@ class RolloutParitySimulation extends munit.FunSuite:
     test(s"${loop.label} over vpn, the team of $team, whose policies regard all and choose their speed"):
       val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
       check(loop, link, 5, team = team, duration = Span.ofSeconds(15))
+
+  test(
+    "futures over direct, twenty vehicles that cross: eighty tasks overlap, each with a reading of every vehicle"
+  ):
+    check(
+      LoopKind.Futures,
+      LatencyProfile.direct,
+      1,
+      team = "crossing",
+      duration = Span.ofSeconds(8),
+      crossing = 20
+    )
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
   // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides

@@ -29,7 +29,7 @@ private final class DuelSight(count: Int):
     forecast = other.forecast
 
   def take(world: DuelWorld, vehicle: Int, question: Int): Unit =
-    val slot = DuelWorld.slot(vehicle, question)
+    val slot = world.slot(vehicle, question)
     x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
     vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
     step(vehicle) = world.stepOf(vehicle, question)

@@ -5,13 +5,17 @@ import skein.signal.Kinematics
 
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their way to and from the
   * vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
+  *
+  * @param ring
+  *   [[DuelWorld.ringOf]]
   */
 private final class DuelWorld(
     engagement: Engagement,
     link: Delays,
     model: VelocityResponse,
     asking: Asking,
-    keepsKinematics: Boolean
+    keepsKinematics: Boolean,
+    val ring: Int
 ):
   import DuelWorld.*
 
@@ -27,16 +31,16 @@ private final class DuelWorld(
   private var observer: LoopObserver = LoopObserver.Nobody
 
   // Readings by vehicle and the question's number, see `slot`: what they showed, and when.
-  val x, y, vx, vy                          = Array.ofDim[Double](count * Ring)
-  val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](count * Ring)
+  val x, y, vx, vy                          = Array.ofDim[Double](count * ring)
+  val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](count * ring)
   private val kinematics: Array[Kinematics] =
-    Array.ofDim[Kinematics](if keepsKinematics then count * Ring else 0)
-  private val steps, askers = Array.ofDim[Int](count * Ring)
+    Array.ofDim[Kinematics](if keepsKinematics then count * ring else 0)
+  private val steps, askers = Array.ofDim[Int](count * ring)
   private val asked         = Array.ofDim[Int](count)
 
   // Commands by vehicle and number.
-  private val headings, speeds = Array.ofDim[Double](count * Ring)
-  private val commandSteps     = Array.ofDim[Int](count * Ring)
+  private val headings, speeds = Array.ofDim[Double](count * ring)
+  private val commandSteps     = Array.ofDim[Int](count * ring)
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
 
@@ -63,6 +67,9 @@ private final class DuelWorld(
   def next(): Long =
     time = queue.nextTime
     queue.take()
+
+  /** Of a question or command to a vehicle, in arrays of `count * ring`. */
+  def slot(vehicle: Int, number: Int): Int = vehicle * ring + number % ring
 
   def stepOf(vehicle: Int, question: Int): Int      = steps(slot(vehicle, question))
   def askerOf(vehicle: Int, question: Int): Int     = askers(slot(vehicle, question))
@@ -174,11 +181,27 @@ private object DuelWorld:
 
   def nanos(seconds: Double): Long = math.round(seconds * 1e9)
 
-  /** Of a question or command to a vehicle, in arrays of `count * Ring`. */
-  def slot(vehicle: Int, number: Int): Int = vehicle * Ring + number % Ring
-
-  /** Questions and commands of one vehicle that may be under way: more than any window allows. */
+  /** Questions and commands of one vehicle that may be under way where each vehicle is asked in turn: more than any
+    * window allows.
+    */
   val Ring = 64
+
+  /** How many of one vehicle's newest questions and commands must be kept. A task of `Futures` reads all vehicles one
+    * after the other, each within the time-out, and needs its first reading at the end, when each of the vehicles may
+    * have begun a task in every period since.
+    */
+  def ringOf(timing: LoopTiming, vehicles: Int): Int = timing match
+    case futures: LoopTiming.Futures =>
+      val periods = vehicles * futures.asking.timeoutS / futures.periodS
+      val needed  = vehicles * (math.ceil(periods) + futures.asking.window + 1)
+      require(
+        needed <= MostRing,
+        s"at most $MostRing questions of a vehicle can be kept, $timing may need $needed"
+      )
+      needed.toInt.max(Ring)
+    case _ => Ring
+
+  private val MostRing = 1 << 16
 
   /** Events of one vehicle that may be waiting. */
   private val MostWaiting = 512

@@ -82,7 +82,6 @@ private final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorl
 
 /** [[LoopTiming.Futures]]. */
 private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
-  import DuelWorld.{Ring, slot}
   private val periodNs               = DuelWorld.nanos(timing.periodS)
   private val most                   = world.count * timing.asking.window
   private val sight                  = DuelSight(world.count)
@@ -90,7 +89,7 @@ private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) ext
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
   /** The same task's question to the vehicle before, by its question to a vehicle. */
-  private val before = Array.ofDim[Int](world.count * Ring)
+  private val before = Array.ofDim[Int](world.count * world.ring)
 
   // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits behind it.
   private var next, current = 0
@@ -121,13 +120,13 @@ private final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) ext
     val agent = world.askerOf(vehicle, question)
     if vehicle + 1 < world.count then
       val asked = world.ask(agent, vehicle + 1, world.stepOf(vehicle, question))
-      before(slot(vehicle + 1, asked)) = question
+      before(world.slot(vehicle + 1, asked)) = question
     else
       var read = vehicle
       var its  = question
       while read >= 0 do
         sight.take(world, read, its)
-        its = before(slot(read, its))
+        its = before(world.slot(read, its))
         read -= 1
       for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
       controllers(agent).offer(sight)

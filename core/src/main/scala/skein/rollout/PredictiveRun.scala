@@ -9,7 +9,7 @@ import skein.vehicle.Setpoint
 private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorld)
     extends LoopRun,
       PeriodicQuestions.Seen:
-  import DuelWorld.{nanos, slot}
+  import DuelWorld.nanos
 
   private val periodNs  = nanos(timing.periodS)
   private val questions =
@@ -35,7 +35,7 @@ private final class PredictiveRun(timing: LoopTiming.Predictive, world: DuelWorl
   def timedOut(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = false)
 
   def seen(vehicle: Int, question: Int): Unit =
-    val at      = slot(vehicle, question)
+    val at      = world.slot(vehicle, question)
     val isNewer =
       !known(vehicle) || world.validAtNs(at) > validAt(vehicle) || world.sentAtNs(at) > receivedAt(vehicle)
     if isNewer then

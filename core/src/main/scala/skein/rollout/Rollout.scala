@@ -20,7 +20,8 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     link,
     model,
     LoopTiming.askingOf(timing),
-    keepsKinematics = timing.isInstanceOf[LoopTiming.Predictive]
+    keepsKinematics = timing.isInstanceOf[LoopTiming.Predictive],
+    ringOf(timing, engagement.agents.size)
   )
   private val loop                       = LoopRun.of(timing, world)
   private val periodNs                   = nanos(timing.periodS)

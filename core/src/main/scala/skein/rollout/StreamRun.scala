@@ -4,7 +4,7 @@ package skein.rollout
 private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
     extends LoopRun,
       PeriodicQuestions.Seen:
-  import DuelWorld.{nanos, slot}
+  import DuelWorld.nanos
 
   private val patienceNs = nanos(timing.patienceS)
   private val questions  =
@@ -32,7 +32,7 @@ private final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld)
   def timedOut(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = false)
 
   def seen(vehicle: Int, question: Int): Unit =
-    val at      = slot(vehicle, question)
+    val at      = world.slot(vehicle, question)
     val isNewer =
       !known(vehicle) || world.validAtNs(at) > validAt(vehicle) || world.sentAtNs(at) > receivedAt(vehicle)
     if isNewer then
