@@ -7,6 +7,7 @@ import pureconfig.error.CannotConvert
 import scala.concurrent.duration.FiniteDuration
 import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
+import skein.planning.Planner
 import skein.policy.{Scenario, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -55,7 +56,9 @@ final case class FlySettings(
     planning: PlanSettings = PlanSettings()
 ) derives ConfigReader:
 
-  /** Plans are flown by the model that readings are carried forward by, where one is set. */
+  /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
+    * vehicle's altitude.
+    */
   def planningByModel: PlanSettings = planning.copy(response = model match
     case PredictionModel.Reduced(model, _) => model
     case _                                 => ReducedModel.AirSim)
@@ -160,6 +163,9 @@ object FlySettings:
   private def validated(settings: FlySettings): Either[String, FlySettings] =
     val mistakes = Seq(
       Option.when(settings.loops.isEmpty)("loops: expected at least one loop, came none"),
+      Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
+        "links: expected at least one link for any loop but paused, came none"
+      ),
       Option.when(
         settings.duration <= Span.Zero
       )(s"duration: expected more than 0, came ${settings.duration.toSeconds} s"),
@@ -184,12 +190,15 @@ object FlySettings:
       Option.when(settings.scenario != Duel && settings.asPublished)(
         s"as-published: expected with the scenario $Duel, came with '${settings.scenario}'"
       ),
+      Option.when(settings.scenario != Duel && settings.pairs != 1)(
+        s"pairs: expected with the scenario $Duel, came ${settings.pairs} with '${settings.scenario}'"
+      ),
       Option.when(settings.scenario != Duel && settings.policies.nonEmpty)(
         s"policies: expected with the scenario $Duel, came with '${settings.scenario}'"
       )
     ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys) ++
       settings.planning.mistakes.map(mistake => inKeys(s"planning.$mistake"))
-    val all = if mistakes.isEmpty then modelMistake(settings).toSeq else mistakes
+    val all = if mistakes.isEmpty then modelMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
 
   private def modelMistake(settings: FlySettings): Option[String] = settings.model match
@@ -199,6 +208,15 @@ object FlySettings:
         .headOption
         .map("model: " + _)
     case _ => None
+
+  private def planMistake(settings: FlySettings): Option[String] =
+    val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
+    settings.agents.agents
+      .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
+      .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
+      .map(lagS =>
+        f"planning.step: plans need vehicles with a lag of at least $shortest%.2f s, 2.5 steps; theirs is $lagS%.2f s"
+      )
 
   /** A mistake that begins with a setting's name, by its key in the configuration. */
   private def inKeys(mistake: String): String =

@@ -47,8 +47,11 @@ object WarmUp:
       else
         val plan = plans(flown % plans.size)
         VirtualFlights.fly(short, plan) match
-          case Right(_)     => next(flown + 1)
-          case Left(reason) => Left(s"${plan.id}, to warm up: $reason")
+          case Left(reason)  => Left(s"${plan.id}, to warm up: $reason")
+          case Right(flight) =>
+            flight.landed.outcome match
+              case Outcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
+              case _                      => next(flown + 1)
 
     next(0)
 

@@ -221,9 +221,12 @@ object Planner:
     new Planner(settings, objective, CandidateBlock(settings.steps))
 
   private def checkPlannable(model: ReducedModel, dtS: Double): Unit = require(
-    model.turnLagS == model.lagS && model.lagS >= ShortestLag * dtS,
+    model.turnLagS == model.lagS && model.lagS >= shortestLagS(dtS),
     s"plans need a vehicle with equal lags of at least $ShortestLag steps of $dtS s, came $model"
   )
+
+  /** Of a vehicle whose manoeuvres can be planned in such steps, s. */
+  def shortestLagS(dtS: Double): Double = ShortestLag * dtS
 
   /** In steps: the kernel's series hold for less decay in a step. */
   private val ShortestLag = 2.5

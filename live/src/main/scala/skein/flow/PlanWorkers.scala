@@ -3,6 +3,8 @@ package skein.flow
 import java.util.concurrent.ConcurrentLinkedQueue
 import java.util.concurrent.atomic.AtomicReference
 import java.util.concurrent.locks.LockSupport
+import scala.util.control.NonFatal
+import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
 /** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so that what
@@ -98,20 +100,22 @@ private object ThreadedPlanWorkers:
   /** One search; worked on by one thread at a time. */
   final class Search(problem: PlanProblem, warm: JointPlan, number: Int):
     private val best  = AtomicReference(warm)
-    private val ended = AtomicReference(Option.empty[JointPlan])
+    private val ended = AtomicReference(Option.empty[Try[JointPlan]])
 
     def found: JointPlan = best.get
 
-    /** Searches one slice more.
+    /** Searches one slice more. A failure ends the search; whoever asks for its result is told.
       *
       * @return
       *   whether more are wanted
       */
     def improve(by: JointPlanner): Boolean =
-      if ended.get.isEmpty then best.set(by.improved(problem, best.get, number))
+      if ended.get.isEmpty then
+        try best.set(by.improved(problem, best.get, number))
+        catch case NonFatal(error) => ended.set(Some(Failure(error)))
       ended.get.isEmpty
 
     /** A slice that is searched now no longer counts. */
     def finish(): JointPlan =
-      val _ = ended.compareAndSet(None, Some(best.get))
-      ended.get.get
+      val _ = ended.compareAndSet(None, Some(Success(best.get)))
+      ended.get.get.get

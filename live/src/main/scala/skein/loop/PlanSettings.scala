@@ -76,6 +76,11 @@ final case class PlanSettings(
       check("geofenceM", geofenceM, geofenceM >= 0, "0 or more")
     ).flatten
 
+  /** [[response]] of a vehicle at this altitude; the one that AirSim's quadrotor has by default depends on it. */
+  def responseAt(altitudeM: Double): ReducedModel =
+    if response == ReducedModel.AirSim then ReducedModel.airSimAt(altitudeM)
+    else response.copy(turnLagS = response.lagS)
+
   def planner: PlannerSettings =
     PlannerSettings(
       horizonSteps,

@@ -17,7 +17,7 @@ private final class PursuitPlanning(scenario: Scenario, self: Int, settings: Pla
     extends Planning(scenario, self):
   import Planning.{motion, straight}
   private val speed    = agent.speed.value
-  private val response = settings.response.copy(turnLagS = settings.response.lagS)
+  private val response = settings.responseAt(-agent.startPositionNed.z)
 
   val planner: PlannerSettings = settings.planner
   val deadTime: Span           = Span.ofSeconds(response.deadTimeS)

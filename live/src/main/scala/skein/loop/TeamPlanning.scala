@@ -3,7 +3,6 @@ package skein.loop
 import skein.planning.*
 import skein.policy.{GoalPolicy, Scenario, TeamSight}
 import skein.units.*
-import skein.vehicle.ReducedModel
 
 /** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
   * Those that plan fly by their plans, the rest are taken to fly straight on.
@@ -19,9 +18,7 @@ private final class TeamPlanning(
     seed: Long
 ) extends Planning(scenario, self):
   import Planning.{motion, straight}
-  private val response =
-    if settings.response == ReducedModel.AirSim then ReducedModel.airSimAt(agent.startPositionNed.z)
-    else settings.response.copy(turnLagS = settings.response.lagS)
+  private val response = settings.responseAt(-agent.startPositionNed.z)
   private val minimumM = policy.minimumM.max(settings.separationM)
 
   val planner: PlannerSettings = settings.planner
