@@ -22,35 +22,36 @@ final class Preparation(client: AirSimClient)(using system: ActorSystem):
       )
 
   /** Flies there, all vehicles at once, and waits until all are at rest. For any simulator. Those on the ground take
-    * off; those in the air, wherever the flight before has left them, change over each in a layer of its own, above all
-    * starts, so that no way crosses another at one altitude.
+    * off; those in the air, wherever the flight before has left them, first climb straight to a layer of their own, above
+    * all starts, and cross over in it when all have come to theirs; when all have crossed over, they go down. So no way
+    * crosses another at one altitude.
     */
   def climb(scenario: Scenario): Future[Either[AirSimError, Vector[Multirotor]]] =
     val highest = scenario.agents.map(_.startPositionNed.z).min
     val layers  =
       scenario.agents.zipWithIndex.map((agent, i) => agent.name -> (highest - (i + 1) * LayerM)).toMap
-    everyVehicle(scenario): (vehicle, agent) =>
-      for
-        _      <- ready(vehicle)
-        status <- call(vehicle.status())
-        _      <-
-          if status.value.flying then
-            changeOver(vehicle, status.value.kinematics.positionNed, agent, layers(agent.name))
-          // AirSim stops short of the take-off height and answers false; the position is what counts.
-          else call(vehicle.takeoff())
-        _ <- arrive(vehicle, agent, CruiseSpeed, Approaches)
-      yield ()
+    val phases = Seq[(Multirotor, Agent) => Future[Unit]](
+      (vehicle, agent) => ready(vehicle).flatMap(_ => offTheGround(vehicle, layers(agent.name))),
+      (vehicle, agent) => across(vehicle, agent.startPositionNed.copy(z = layers(agent.name))),
+      (vehicle, agent) => arrive(vehicle, agent, CruiseSpeed, Approaches)
+    )
+    phases.tail.foldLeft(everyVehicle(scenario)(phases.head)): (before, phase) =>
+      before.flatMap:
+        case Left(error) => Future.successful(Left(error))
+        case Right(_)    => everyVehicle(scenario)(phase)
 
-  private def changeOver(
-      vehicle: Multirotor,
-      fromNed: Vector3,
-      agent: Agent,
-      layerDownM: Double
-  ): Future[Unit] =
-    for
-      _ <- call(vehicle.moveToPosition(fromNed.copy(z = layerDownM), CruiseSpeed))
-      _ <- call(vehicle.moveToPosition(agent.startPositionNed.copy(z = layerDownM), CruiseSpeed))
-    yield ()
+  private def offTheGround(vehicle: Multirotor, layerDownM: Double): Future[Unit] =
+    call(vehicle.status()).flatMap: status =>
+      if status.value.flying then
+        goTo(vehicle, status.value.kinematics.positionNed.copy(z = layerDownM), CruiseSpeed).map(_ => ())
+      // AirSim stops short of the take-off height and answers false; the position is what counts.
+      else call(vehicle.takeoff()).map(_ => ())
+
+  /** For those that are in their layer. */
+  private def across(vehicle: Multirotor, goalNed: Vector3): Future[Unit] =
+    call(vehicle.kinematics()).flatMap: reading =>
+      if math.abs(reading.value.positionNed.z - goalNed.z) > LayerM then Future.unit
+      else goTo(vehicle, goalNed, CruiseSpeed).map(_ => ())
 
   /** AirSim's moves end in passing their goal, the further off the faster they were: so again, slowly, from rest. */
   private def arrive(
@@ -59,16 +60,19 @@ final class Preparation(client: AirSimClient)(using system: ActorSystem):
       speed: MetresPerSecond,
       approaches: Int
   ): Future[Unit] =
+    goTo(vehicle, agent.startPositionNed, speed).flatMap: rest =>
+      val off = (rest.positionNed - agent.startPositionNed).norm
+      if rest.velocityNed.norm <= RestMps && off <= StartM then Future.unit
+      else if approaches > 1 then arrive(vehicle, agent, ApproachSpeed, approaches - 1)
+      else Future.failed(NotReady(AirSimError.NotAtStart(agent.name, off, rest.velocityNed.norm)))
+
+  /** Where it comes to rest. */
+  private def goTo(vehicle: Multirotor, goalNed: Vector3, speed: MetresPerSecond): Future[Kinematics] =
     for
-      _    <- call(vehicle.moveToPosition(agent.startPositionNed, speed))
+      _    <- call(vehicle.moveToPosition(goalNed, speed))
       _    <- call(vehicle.hover())
       rest <- comingToRest(vehicle, SettlingPolls)
-      off = (rest.positionNed - agent.startPositionNed).norm
-      _ <-
-        if rest.velocityNed.norm <= RestMps && off <= StartM then Future.unit
-        else if approaches > 1 then arrive(vehicle, agent, ApproachSpeed, approaches - 1)
-        else Future.failed(NotReady(AirSimError.NotAtStart(agent.name, off, rest.velocityNed.norm)))
-    yield ()
+    yield rest
 
   /** How it is once it is at rest, or after so many looks more. */
   private def comingToRest(vehicle: Multirotor, polls: Int): Future[Kinematics] =
@@ -109,8 +113,8 @@ object Preparation:
   private val CruiseSpeed   = MetresPerSecond(5)
   private val ApproachSpeed = MetresPerSecond(1)
 
-  /** From one vehicle's layer to the next. */
-  private val LayerM = 3.0
+  /** From one vehicle's layer to the next, m: more than a vehicle passes its goal by. */
+  private val LayerM = 5.0
 
   /** What AirSim still takes for no speed, m/s. */
   private val RestMps = 0.05
