@@ -63,6 +63,11 @@ final case class FlightOptions(
     for
       file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       settings <- FlySettings.read(flags.withFallback(file).withFallback(ConfigFactory.load()).resolve())
+      _        <- Either.cond(
+        vehicles.isEmpty || settings.scenario != FlySettings.Duel,
+        (),
+        s"--vehicles: expected with --scenario ${TeamScenario.names.mkString(" or ")}; a duel's number is told by --pairs"
+      )
     yield
       if settings.loops.contains(LoopKind.Plan) && !Planner.isFast then
         Console.err.println(FlightOptions.slow)

@@ -11,7 +11,7 @@ import skein.experiment.*
 import skein.link.{Address, Clock, TcpTransport}
 import skein.loop.Outcome
 import skein.record.RecordError
-import skein.report.{Report, SummaryTables}
+import skein.report.{FlightSet, Report, SummaryTables}
 
 /** Options of `./skein fly`. */
 final case class FlyOptions(
@@ -51,8 +51,7 @@ object FlyCommand
             _     <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
             _     <- warmUp(settings)
             flown <- flyLive(settings, simulator, out)
-            twins <- flyTwins(flown.landed, settings, options.twins, out)
-          yield flown.copy(landed = flown.landed ++ twins)
+          yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case "virtual" if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
         case "virtual" =>
@@ -65,7 +64,12 @@ object FlyCommand
   /** @param grounded
     *   why the flights that are not among those that landed were not flown, if any was not
     */
-  private case class Flown(landed: Vector[Landed], grounded: Option[String])
+  private case class Flown(landed: Vector[Landed], grounded: Option[String]):
+    def and(more: Either[String, Vector[Landed]]): Flown =
+      more.fold(
+        reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
+        twins => copy(landed ++ twins)
+      )
 
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
     plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
@@ -142,7 +146,7 @@ object FlyCommand
       out: Path
   ): Either[String, Vector[Landed]] =
     val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
-    if twins.isEmpty then Right(Vector.empty)
+    if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
       val seeds = twins.map(_.seed)
       Console.err.println(
@@ -164,7 +168,17 @@ object FlyCommand
       output <- Report.write(flights, out)
       _ = Console.out.println(s"Report: ${output.page}")
       _ <- allWell(landed)
+      _ <- undecided(flights)
     yield ()
+
+  /** A flight in which no vehicle was ever read for a decision is none, however it ended. */
+  private def undecided(flights: FlightSet): Either[String, Unit] =
+    val idle = flights.all.filter(_.decisions == 0).map(_.flight.id)
+    Either.cond(
+      idle.isEmpty,
+      (),
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightRigs.askTimeout.toMillis.round} ms?"
+    )
 
   private def allWell(landed: Vector[Landed]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>

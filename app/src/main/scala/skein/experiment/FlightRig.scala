@@ -3,6 +3,7 @@ package skein.experiment
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Success
 import skein.airsim.*
 import skein.airsim.simulator.{SimulatorServer, SimulatorSettings}
 import skein.flow.{PlanWorkers, ThreadedPlanWorkers}
@@ -31,9 +32,11 @@ final class FlightRig private[experiment] (
   val landed: Future[Landed] =
     for
       outcome <- flight.outcome
-      _       <- shutDown()
+      closed  <- shutDown().transform(Success(_))
       written <- watch.close()
-    yield Landed(plan, outcome, written)
+    yield
+      val notClosed = closed.failed.toOption.map(error => Outcome.Failed(s"it could not be closed: $error"))
+      Landed(plan, notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome), written)
 
 /** How a flight ended, and what is on record. */
 final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])

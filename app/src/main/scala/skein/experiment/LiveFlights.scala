@@ -3,6 +3,7 @@ package skein.experiment
 import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import scala.util.control.NonFatal
 import skein.record.DuckDbRecorder
 
 /** Flights in real time, side by side, each with a recording of its own in `folder`. */
@@ -49,6 +50,7 @@ object LiveFlights:
         case Right(recorder) =>
           rigs
             .start(plan, recorder)
+            .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
             .flatMap:
               case Left(reason) => recorder.close().map(_ => Left(s"${plan.id}: $reason"))
               case started      => Future.successful(started)

@@ -4,6 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValue}
 import java.nio.file.{Files, Path}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
+import scala.util.Try
 import skein.policy.{Policy, PolicyFamily, Role, Scenario}
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
@@ -123,7 +124,9 @@ object PolicyFile:
             case number: Number => Right(number.doubleValue)
             case other          => Left(s"${at(value)}: $name: expected a number, came '$other'")
         yield values :+ number
-    yield PolicyFile(role, family, parameters)
+      chosen = PolicyFile(role, family, parameters)
+      _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${mistake.getMessage}")
+    yield chosen
 
   /** Reads [[PolicyFile.text]] back. */
   def parse(role: Role, text: String): Either[String, PolicyFile] =
