@@ -9,7 +9,7 @@ import skein.rollout.*
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to rounding: every vehicle
+/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last bit: every vehicle
   * is read at the same nanoseconds at the same places, and is commanded the same headings.
   */
 class RolloutParitySimulation extends munit.FunSuite:
@@ -76,13 +76,11 @@ class RolloutParitySimulation extends munit.FunSuite:
     val rollout = Rollout(Engagement.of(scenario, duration.toSeconds), timing, flown.delays, model)
     val _       = rollout.fly(0, observer = observer)
 
-    def same(what: String, recorded: Seq[Note], again: Seq[Note], tolerance: Double): Unit =
+    def same(what: String, recorded: Seq[Note], again: Seq[Note]): Unit =
       val (expected, actual) = (sorted(recorded, duration), sorted(again, duration))
       assert(expected.nonEmpty, s"$clue: no $what")
       for (e, a) <- expected.zip(actual) do
-        val isSame = e.vehicle == a.vehicle && e.number == a.number && e.at == a.at &&
-          math.abs(e.a - a.a) <= tolerance && math.abs(e.b - a.b) <= tolerance
-        assert(isSame, s"$clue: $what\nflown   $e\nrollout $a")
+        assert(e == a, s"$clue: $what\nflown   $e\nrollout $a")
       assertEquals(actual.size, expected.size, s"$clue: $what")
 
     val startS = if loop == LoopKind.Paused then recordedStart(flown) else flown.startedAt
@@ -108,8 +106,8 @@ class RolloutParitySimulation extends munit.FunSuite:
           command.velocityNorth.value,
           command.velocityEast.value
         )
-    same("readings", read, readings.toSeq, 1e-6)
-    if loop != LoopKind.Paused then same("commands", sent, commands.toSeq, 1e-6)
+    same("readings", read, readings.toSeq)
+    if loop != LoopKind.Paused then same("commands", sent, commands.toSeq)
 
   /** In the order of time, those of the last moments left out. */
   private def sorted(notes: Seq[Note], duration: Span): Seq[Note] =
