@@ -86,9 +86,9 @@ object Planning:
 
   /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the time to find
     * every small gain follows the simple model, and guesses of other vehicles, where they are wrong, too; the policy
-    * does not. Vehicles that are where they want to be fly by it, and by plans where these save some 0.4 m for a second.
+    * does not. Vehicles that are where they want to be fly by it, and by plans where these save some 0.1 m for a second.
     */
-  private val ClearGain = 0.4
+  private val ClearGain = 0.1
 
   /** After a longer pause a vehicle turns no further at once than in this time, s. */
   private val LongestTurnS = 0.5
