@@ -27,7 +27,7 @@ final class TimetableKernel extends DuelKernel {
   static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3;
 
   private static final int EVADER = 0;
-  private final int steps, lastSteps;
+  private final int steps;
   private final Vehicles evader, pursuer;
 
   private final float perLag;
@@ -97,7 +97,6 @@ final class TimetableKernel extends DuelKernel {
     if (!(model.lagS() > 0))
       throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
     steps = (int) Math.round(duel.durationS() / timing.periodS());
-    lastSteps = Math.min(steps, (int) Math.round(10 / timing.periodS()));
     perLag = (float) (1 / model.lagS());
     withVelocity = pursuerPolicy.needsVelocity() || evaderPolicy.needsVelocity();
     evader = new Vehicles(duel.evader(), model.gain(), evaderPolicy, evaderEffortRad);
@@ -119,6 +118,7 @@ final class TimetableKernel extends DuelKernel {
     FloatVector captureRadius = constant(captureRadiusM);
     int[] operations = timetable.operations();
     float[] times = timetable.times();
+    int lastScores = 0;
     for (int i = 0; i < timetable.size(); i++) {
       int field = i * Timetable.Fields(), number = i * Timetable.Numbers();
       Vehicles vehicle = operations[field + 1] == EVADER ? evader : pursuer;
@@ -131,6 +131,7 @@ final class TimetableKernel extends DuelKernel {
         case ACT -> act(vehicle, place, times[number], times[number + 1], times[number + 2]);
         case SCORE -> {
           score(times[number], times[number + 1], times[number + 2], times[number + 3]);
+          if (place != 0) lastScores++;
           keep(place != 0, Float.intBitsToFloat(operations[field + 3]), captureRadius);
         }
         default ->
@@ -146,7 +147,7 @@ final class TimetableKernel extends DuelKernel {
     }
     for (int i = 0; i < WORLDS; i++) {
       meanDistance[i] = sum[i] / steps;
-      meanLast10s[i] = lastSum[i] / lastSteps;
+      meanLast10s[i] = lastSum[i] / lastScores;
     }
   }
 

@@ -71,15 +71,16 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
     *   whose effort counts
     */
   def value(outcomes: DuelOutcomes, world: Int, role: Role, durationS: Double): Double =
-    val captureS = outcomes.captureS(world).toDouble
+    val captureS = outcomes.captureS(world)
     var sum      = 0.0
     for (weight, measure) <- terms do
       val came: Double = measure match
-        case Measure.Last10s             => outcomes.meanLast10sM(world)
-        case Measure.Mean                => outcomes.meanDistanceM(world)
-        case Measure.Min                 => outcomes.minDistanceM(world)
-        case Measure.Capture(_, withinS) => if captureS <= withinS then 1.0 else 0.0
-        case Measure.CaptureTime(_)      => captureS.min(durationS)
+        case Measure.Last10s => outcomes.meanLast10sM(world)
+        case Measure.Mean    => outcomes.meanDistanceM(world)
+        case Measure.Min     => outcomes.minDistanceM(world)
+        // The time of a score is known as a Float alone: a capture exactly then counts.
+        case Measure.Capture(_, withinS) => if captureS <= withinS.toFloat then 1.0 else 0.0
+        case Measure.CaptureTime(_)      => captureS.toDouble.min(durationS)
         case Measure.Effort              =>
           if role == Role.Pursuer then outcomes.pursuerEffortRad(world) else outcomes.evaderEffortRad(world)
       sum += weight * came

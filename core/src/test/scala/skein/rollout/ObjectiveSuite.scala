@@ -74,3 +74,9 @@ class ObjectiveSuite extends munit.FunSuite:
     assertEqualsDouble(parts.sd, whole.sd, 1e-12)
     val mean = values.sum / 20
     assertEqualsDouble(whole.sd, math.sqrt(values.map(v => (v - mean) * (v - mean)).sum / 19), 1e-12)
+
+  test("a capture at the last moment that counts is one, and one a score later is none"):
+    val outcomes = DuelOutcomes(1)
+    for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
+      outcomes.set(0, Outcome(1, captureS, 1, 1, captureS, 0, 0, 0, 0))
+      assertEquals(read("capture(4, 7.3)").value(outcomes, 0, Role.Pursuer, 20), expected, s"$captureS s")

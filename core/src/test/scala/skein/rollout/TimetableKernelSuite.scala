@@ -83,3 +83,12 @@ class TimetableKernelSuite extends munit.FunSuite:
         assert(off < 0.02, s"$off m")
         val closer = median(some.map(w => (kernel.minDistance(w) - scalars(w / 4).minDistanceM).abs))
         assert(closer < 0.02, s"$closer m")
+
+  test("a period that does not divide 10 s: the last scores' mean is that of the scalar reference"):
+    val (timing, durationS) = (LoopTiming.stream(0.3), 12.0)
+    val key                 = WorldRandom.key(5, 1, 0)
+    val kernel              = fly(timing, DelayTable.direct, key, durationS)
+    val off                 = (0 until worlds by 4).map: world =>
+      val scalar = Rollout(duel(world, durationS), timing, DelayTable.direct, lag).fly(key, captureM)
+      (kernel.meanLast10s(world) - scalar.meanLast10sM).abs
+    assert(off.sorted.apply(off.size / 2) < 5e-3, s"$off")
