@@ -76,9 +76,12 @@ object Flight:
           stopping.trySuccess(Outcome.Completed)
           stopping.future
         case Failure(error) =>
-          stopping.trySuccess(Outcome.Failed(error.getMessage))
-          team.note(EventKind.Aborted, None, error.getMessage)
-          team.hoverAll().transformWith(_ => stopping.future)
+          val reason = Option(error.getMessage).getOrElse(error.toString)
+          stopping.trySuccess(Outcome.Failed(reason))
+          team.note(EventKind.Aborted, None, reason)
+          // `paused` has told them already.
+          val hovering = if kind == LoopKind.Paused then Future.unit else team.hoverAll()
+          hovering.transformWith(_ => stopping.future)
     Flight(stopping, landed.map(recorded(recorder, _)))
 
   /** The last answers come after the flight's time is over; where they could not be kept, it has failed all the same. */

@@ -2,7 +2,6 @@ package skein.loop
 
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import scala.util.{Failure, Success}
@@ -16,7 +15,7 @@ import skein.units.*
   *
   * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
   * against the simulator's clock. However it ends, the simulator is let run again and the vehicles are told to hover;
-  * both are tried up to [[PausedLoop.LastAttempts]] times.
+  * both are tried up to [[UntilCertain.Attempts]] times.
   */
 object PausedLoop:
 
@@ -28,12 +27,6 @@ object PausedLoop:
       .unfoldAsync(flight.start)(flight.next)
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
-
-  /** How often vehicles and simulator are told at the end, at most. */
-  val LastAttempts = 20
-
-  /** Pause before they are told again. */
-  val TellAgain: Span = Span.ofMillis(500)
 
   /** While the simulator stands still, no time passes between question and answer. */
   private[loop] def timeless(reading: Reading): Reading =
@@ -67,12 +60,9 @@ private final class PausedFlight(
   def landed(flown: Future[Done]): Future[Done] =
     flown.transformWith: ended =>
       for
-        running <- untilCertain(PausedLoop.LastAttempts)(stepper.resume())(_.isRight)
-        // To hover is a command, too, and must not be a third one outstanding.
-        _    <- allEnded(replaced)
-        _    <- untilCertain(PausedLoop.LastAttempts)(team.hoverAll())(_.forall(isHovering))
-        _    <- allEnded(newest)
-        done <- running match
+        running <- UntilCertain(stepper.resume())(_.isRight)
+        _       <- team.hoverAll()
+        done    <- running match
           case Right(())                      => Future.fromTry(ended)
           case Left(error) if ended.isSuccess => Future.failed(LoopFailed(standsStill(error)))
           case Left(error)                    =>
@@ -102,27 +92,12 @@ private final class PausedFlight(
           seen.withMove(Move(vehicle, decision.sequence, decision.heading.value, now))
       Some((Step(step.number + 1, decided.map(_._1), moved), Done))
 
-  /** What the last of at most so many attempts came to. */
-  private def untilCertain[A](attempts: Int)(attempt: => Future[A])(isCertain: A => Boolean): Future[A] =
-    attempt.flatMap: result =>
-      if isCertain(result) || attempts == 1 then Future.successful(result)
-      else
-        after(PausedLoop.TellAgain.toDuration, system.scheduler):
-          untilCertain(attempts - 1)(attempt)(isCertain)
-
-  private def isHovering(answer: Either[RpcError, ?]): Boolean = answer match
-    case Right(_) | Left(_: RpcError.Refused) => true
-    case Left(_)                              => false
-
   private def send(decisions: Vector[Decision], picture: Picture): Unit =
     replaced = newest
     newest = decisions.zipWithIndex.map: (decision, vehicle) =>
       team.record(vehicle, decision, picture)
       team.sent(vehicle, decision, clock.now())
       team.move(vehicle, decision).andThen(result => team.ended(vehicle, decision, clock.now(), result))
-
-  private def allEnded(moves: Vector[Future[?]]): Future[Unit] =
-    Future.traverse(moves)(_.transform(_ => Success(()))).map(_ => ())
 
   private def verifyStep(step: Step, now: Instant): Unit =
     for before <- step.picture.readings(0) do

@@ -1,5 +1,6 @@
 package skein.loop
 
+import java.util.concurrent.atomic.AtomicReferenceArray
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
@@ -29,6 +30,9 @@ final class Team(
   val vehicles: Range            = crafts.indices
   private val deciders           = vehicles.map(Decider(scenario, _))
   private val asked: Array[Long] = Array.fill(crafts.size)(0L)
+
+  // The newest moves of each vehicle, oldest first: as many as may be unanswered.
+  private val moves = AtomicReferenceArray(Array.fill(crafts.size)(Vector.empty[Future[Any]]))
 
   /** Asks a vehicle where it is; the answer, or the error, is recorded. To be called from one stage per vehicle. */
   def read(vehicle: Int): Future[Either[RpcError, Reading]] =
@@ -272,7 +276,10 @@ final class Team(
 
   /** Sends what was decided; the answer comes when the move ends. */
   def move(vehicle: Int, decision: Decision): Future[Either[RpcError, Boolean]] =
-    crafts(vehicle).move(velocityNed(vehicle, decision), altitude(vehicle), settings.moveDuration)
+    val answer =
+      crafts(vehicle).move(velocityNed(vehicle, decision), altitude(vehicle), settings.moveDuration)
+    val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
+    answer
 
   def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
     val velocity = velocityNed(vehicle, decision)
@@ -298,7 +305,27 @@ final class Team(
       case Failure(error) => error.toString
     recorder.offer(Acknowledgement(name(vehicle), decision.sequence, at, outcome))
 
-  def hoverAll(): Future[Seq[Either[RpcError, Boolean]]] = Future.sequence(crafts.map(_.hover()))
+  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one that never
+    * says that it does is noted. Ends when every move has been answered, too.
+    */
+  def hoverAll()(using ActorSystem): Future[Unit] =
+    Future.traverse(vehicles.toVector)(hover).map(_ => ())
+
+  private def hover(vehicle: Int)(using ActorSystem): Future[Unit] =
+    val sent = moves.get(vehicle)
+    for
+      // To hover is a command, too, and must not be a third one outstanding.
+      _      <- allEnded(sent.dropRight(1))
+      answer <- UntilCertain(crafts(vehicle).hover())(Team.isHovering).transform(Success(_))
+      _      <- allEnded(sent.takeRight(1))
+    yield answer match
+      case Success(Left(error)) if !Team.isHovering(Left(error)) =>
+        note(Team.kindOf(error), Some(vehicle), s"not known to hover: ${error.message}")
+      case Success(_)     => ()
+      case Failure(error) => note(EventKind.Aborted, Some(vehicle), s"not known to hover: $error")
+
+  private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
+    Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
@@ -371,6 +398,11 @@ object Team:
     case Left(RpcError.ConnectionLost(_, mayHaveRun, _))                          => !mayHaveRun
     case Left(_: (RpcError.Refused | RpcError.Overloaded | RpcError.Unreachable)) => true
     case Left(_: (RpcError.Timeout | RpcError.Malformed | RpcError.Cancelled))    => false
+
+  /** Whether a vehicle took the command to hover, or refused it. */
+  private def isHovering(result: Either[RpcError, Boolean]): Boolean = result match
+    case Right(_) | Left(_: RpcError.Refused) => true
+    case Left(_)                              => false
 
   private def kindOf(error: RpcError): EventKind = error match
     case _: RpcError.Timeout                                 => EventKind.TimedOut

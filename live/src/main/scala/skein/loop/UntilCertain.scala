@@ -1,0 +1,27 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.Future
+import skein.units.*
+
+/** Tells somebody at the end of a flight what must not get lost: again, after a pause, until the answer is certain. */
+private[loop] object UntilCertain:
+
+  /** How often they are told, at most. */
+  val Attempts = 20
+
+  /** Pause before they are told again. */
+  val Pause: Span = Span.ofMillis(500)
+
+  /** What the last attempt came to; one that fails is not certain. */
+  def apply[A](attempt: => Future[A])(isCertain: A => Boolean)(using ActorSystem): Future[A] =
+    attempts(Attempts)(attempt)(isCertain)
+
+  private def attempts[A](left: Int)(attempt: => Future[A])(isCertain: A => Boolean)(using
+      system: ActorSystem
+  ): Future[A] =
+    import system.dispatcher
+    attempt.transformWith: result =>
+      if left == 1 || result.toOption.exists(isCertain) then Future.fromTry(result)
+      else after(Pause.toDuration, system.scheduler)(attempts(left - 1)(attempt)(isCertain))
