@@ -49,12 +49,38 @@ class DeterminismSuite extends munit.FunSuite:
     (1 to 5).foreach(_ => assertEquals(ended().value, first))
 
   test("classes of packages named to the agent read virtual time and seeded randomness, and may not sleep"):
-    val lines =
-      OtherJvm.run("skein.vtime.listed.readEverything", agentOption = "=skein.vtime.listed").split(";")
-    val (read, again) = (lines.take(6).toSeq, lines.takeRight(6).toSeq)
-    assertEquals(read.take(2), Seq("2000-01-01T00:00:01.500Z", "true"))
-    assertEquals(again, read)
-    assert(clue(lines(6)).startsWith("Blocked(Thread.sleep"))
+    val Array(clocks, draws, again, sleeps) =
+      OtherJvm.run(
+        "skein.vtime.listed.readEverything",
+        agentOption = "=skein.vtime.listed"
+      ).split('|'): @unchecked
+    val (inUtc, inTokyo) = ("00:00:01.500", "09:00:01.500")
+    assertEquals(
+      clocks.split(";").toSeq,
+      Seq(s"2000-01-01T${inUtc}Z", "true") ++
+        Seq("2000-01-01", inUtc, s"2000-01-01T$inUtc", s"2000-01-01T${inUtc}Z", s"2000-01-01T${inUtc}Z") ++
+        Seq(
+          "2000-01-01",
+          inTokyo,
+          s"2000-01-01T$inTokyo",
+          s"2000-01-01T$inTokyo+09:00",
+          s"2000-01-01T$inTokyo+09:00[Asia/Tokyo]"
+        ) ++
+        Seq(
+          s"2000-01-01T${inUtc}Z",
+          "946684801500",
+          "Z",
+          "RedirectedClock[Asia/Tokyo]",
+          "946684801500",
+          "946684801500"
+        )
+    )
+    for ((one, other), place) <- draws.split(";").zip(again.split(";")).zipWithIndex do
+      assertEquals(other, one, s"draw $place of seed 5")
+    assertEquals(draws.split(";").length, again.split(";").length)
+    for (sleep, call) <- sleeps.split(";").zip(Seq("Thread.sleep", "Thread.sleep", "TimeUnit.SECONDS.sleep"))
+    do
+      assert(clue(sleep).startsWith(s"Blocked($call"))
 
   test("another JVM gives the same log"):
     assertEquals(OtherJvm.run("skein.vtime.sampleGraphDigest", Seq("3")), SampleGraph.digest(3))

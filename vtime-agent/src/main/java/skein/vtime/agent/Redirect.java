@@ -1,12 +1,25 @@
 package skein.vtime.agent;
 
+import java.time.Clock;
 import java.time.Duration;
 import java.time.Instant;
+import java.time.LocalDate;
 import java.time.LocalDateTime;
+import java.time.LocalTime;
+import java.time.OffsetDateTime;
+import java.time.ZoneId;
 import java.time.ZoneOffset;
+import java.time.ZonedDateTime;
+import java.util.Date;
+import java.util.Random;
+import java.util.SplittableRandom;
 import java.util.UUID;
 import java.util.concurrent.ThreadLocalRandom;
+import java.util.concurrent.TimeUnit;
 import java.util.random.RandomGenerator;
+import java.util.stream.DoubleStream;
+import java.util.stream.IntStream;
+import java.util.stream.LongStream;
 
 /**
  * Where rewritten call sites lead. A thread that has an {@link Environment} is answered by it; any other thread gets
@@ -45,9 +58,62 @@ public final class Redirect {
     return environment == null ? Instant.now() : instant(environment);
   }
 
+  /** A clock that asks the thread that reads it; its zone is the machine's or, in an environment, UTC. */
+  public static Clock clock() {
+    return clock(ENVIRONMENT.get() == null ? ZoneId.systemDefault() : ZoneOffset.UTC);
+  }
+
+  public static Clock clock(ZoneId zone) {
+    return new RedirectedClock(zone);
+  }
+
+  public static Clock clockUtc() {
+    return clock(ZoneOffset.UTC);
+  }
+
+  public static LocalDate localDateNow() {
+    return LocalDate.now(clock());
+  }
+
+  public static LocalDate localDateNow(ZoneId zone) {
+    return LocalDate.now(clock(zone));
+  }
+
+  public static LocalTime localTimeNow() {
+    return LocalTime.now(clock());
+  }
+
+  public static LocalTime localTimeNow(ZoneId zone) {
+    return LocalTime.now(clock(zone));
+  }
+
   public static LocalDateTime localDateTimeNow() {
-    var environment = ENVIRONMENT.get();
-    return environment == null ? LocalDateTime.now() : LocalDateTime.ofInstant(instant(environment), ZoneOffset.UTC);
+    return LocalDateTime.now(clock());
+  }
+
+  public static LocalDateTime localDateTimeNow(ZoneId zone) {
+    return LocalDateTime.now(clock(zone));
+  }
+
+  public static OffsetDateTime offsetDateTimeNow() {
+    return OffsetDateTime.now(clock());
+  }
+
+  public static OffsetDateTime offsetDateTimeNow(ZoneId zone) {
+    return OffsetDateTime.now(clock(zone));
+  }
+
+  public static ZonedDateTime zonedDateTimeNow() {
+    return ZonedDateTime.now(clock());
+  }
+
+  public static ZonedDateTime zonedDateTimeNow(ZoneId zone) {
+    return ZonedDateTime.now(clock(zone));
+  }
+
+  /** For {@code Date::new}. */
+  public static Date newDate() {
+    return new Date(currentTimeMillis());
   }
 
   private static Instant instant(Environment environment) {
@@ -58,6 +124,30 @@ public final class Redirect {
   private static RandomGenerator random(RandomGenerator real) {
     var environment = ENVIRONMENT.get();
     return environment == null ? real : environment.random();
+  }
+
+  /** In place of the one that a generator made without any would choose. */
+  public static long seed() {
+    return random(ThreadLocalRandom.current()).nextLong();
+  }
+
+  /** For {@code Random::new}. */
+  public static Random newRandom() {
+    return new Random(seed());
+  }
+
+  /** For {@code SplittableRandom::new}. */
+  public static SplittableRandom newSplittableRandom() {
+    return new SplittableRandom(seed());
+  }
+
+  public static RandomGenerator defaultGenerator() {
+    return random(RandomGenerator.getDefault());
+  }
+
+  /** In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run. */
+  public static Random governed(Random real) {
+    return new GovernedRandom();
   }
 
   public static int nextInt(ThreadLocalRandom real) {
@@ -100,6 +190,74 @@ public final class Redirect {
     return random(real).nextGaussian();
   }
 
+  public static float nextFloat(ThreadLocalRandom real) {
+    return random(real).nextFloat();
+  }
+
+  public static float nextFloat(ThreadLocalRandom real, float bound) {
+    return random(real).nextFloat(bound);
+  }
+
+  public static float nextFloat(ThreadLocalRandom real, float origin, float bound) {
+    return random(real).nextFloat(origin, bound);
+  }
+
+  public static double nextGaussian(ThreadLocalRandom real, double mean, double deviation) {
+    return random(real).nextGaussian(mean, deviation);
+  }
+
+  public static double nextExponential(ThreadLocalRandom real) {
+    return random(real).nextExponential();
+  }
+
+  public static IntStream ints(ThreadLocalRandom real) {
+    return random(real).ints();
+  }
+
+  public static IntStream ints(ThreadLocalRandom real, long size) {
+    return random(real).ints(size);
+  }
+
+  public static IntStream ints(ThreadLocalRandom real, int origin, int bound) {
+    return random(real).ints(origin, bound);
+  }
+
+  public static IntStream ints(ThreadLocalRandom real, long size, int origin, int bound) {
+    return random(real).ints(size, origin, bound);
+  }
+
+  public static LongStream longs(ThreadLocalRandom real) {
+    return random(real).longs();
+  }
+
+  public static LongStream longs(ThreadLocalRandom real, long size) {
+    return random(real).longs(size);
+  }
+
+  public static LongStream longs(ThreadLocalRandom real, long origin, long bound) {
+    return random(real).longs(origin, bound);
+  }
+
+  public static LongStream longs(ThreadLocalRandom real, long size, long origin, long bound) {
+    return random(real).longs(size, origin, bound);
+  }
+
+  public static DoubleStream doubles(ThreadLocalRandom real) {
+    return random(real).doubles();
+  }
+
+  public static DoubleStream doubles(ThreadLocalRandom real, long size) {
+    return random(real).doubles(size);
+  }
+
+  public static DoubleStream doubles(ThreadLocalRandom real, double origin, double bound) {
+    return random(real).doubles(origin, bound);
+  }
+
+  public static DoubleStream doubles(ThreadLocalRandom real, long size, double origin, double bound) {
+    return random(real).doubles(size, origin, bound);
+  }
+
   public static boolean nextBoolean(ThreadLocalRandom real) {
     return random(real).nextBoolean();
   }
@@ -138,6 +296,18 @@ public final class Redirect {
     var environment = ENVIRONMENT.get();
     if (environment != null) throw environment.blocked("Thread.sleep(" + duration + ")");
     Thread.sleep(duration);
+  }
+
+  public static void sleep(long millis, int nanos) throws InterruptedException {
+    var environment = ENVIRONMENT.get();
+    if (environment != null) throw environment.blocked("Thread.sleep(" + millis + " ms, " + nanos + " ns)");
+    Thread.sleep(millis, nanos);
+  }
+
+  public static void sleep(TimeUnit unit, long timeout) throws InterruptedException {
+    var environment = ENVIRONMENT.get();
+    if (environment != null) throw environment.blocked("TimeUnit." + unit + ".sleep(" + timeout + ")");
+    unit.sleep(timeout);
   }
 
   public static void submitted(Object executionContext) {

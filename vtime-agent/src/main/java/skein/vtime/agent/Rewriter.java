@@ -32,10 +32,18 @@ import java.util.Set;
 final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc REDIRECT = Redirect.class.describeConstable().orElseThrow();
   private static final ClassDesc RANDOM = ClassDesc.of("java.util.concurrent.ThreadLocalRandom");
+  private static final ClassDesc JAVA_RANDOM = ClassDesc.of("java.util.Random");
   private static final ClassDesc DURATION = ClassDesc.of("java.time.Duration");
+  private static final ClassDesc ZONE = ClassDesc.of("java.time.ZoneId");
+  private static final ClassDesc CLOCK = ClassDesc.of("java.time.Clock");
+  private static final ClassDesc TIME_UNIT = ClassDesc.of("java.util.concurrent.TimeUnit");
+  private static final ClassDesc GENERATOR = ClassDesc.of("java.util.random.RandomGenerator");
 
   /** A method as a call site names it: {@code owner.name descriptor}. */
   private static final Map<String, Target> CALLS = new HashMap<>();
+
+  /** A constructor, named in the same way. */
+  private static final Map<String, Making> MAKINGS = new HashMap<>();
 
   /** Handing a task to an execution context stays as it is, but the environment is asked first. */
   private static final Set<String> SUBMISSIONS =
@@ -51,28 +59,48 @@ final class Rewriter implements ClassFileTransformer {
   /** A shared kill switch tells its streams in the order of these objects' hash codes, which are their identities'. */
   private static final String KILL_SWITCH_LISTENER = "org/apache/pekko/stream/TerminationSignal$Listener";
 
+  /** Scala's generator: made without a seed, it makes one of Java's. */
+  private static final String SCALA_RANDOM = "scala/util/Random";
+  private static final String UNSEEDED = "java/util/Random.<init>()V";
+
   private record Target(String name, MethodTypeDesc type) {}
+
+  /** What tells the parameter of the other constructor, and what makes the object where a reference stands. */
+  private record Making(Target parameter, Target factory) {}
 
   static {
     redirectStatic("java.lang.System", "nanoTime", "nanoTime", MethodTypeDesc.of(CD_long));
     redirectStatic("java.lang.System", "currentTimeMillis", "currentTimeMillis", MethodTypeDesc.of(CD_long));
     var instant = ClassDesc.of("java.time.Instant");
     redirectStatic("java.time.Instant", "now", "instantNow", MethodTypeDesc.of(instant));
-    var localDateTime = ClassDesc.of("java.time.LocalDateTime");
-    redirectStatic("java.time.LocalDateTime", "now", "localDateTimeNow", MethodTypeDesc.of(localDateTime));
+    for (var type : List.of("LocalDate", "LocalTime", "LocalDateTime", "OffsetDateTime", "ZonedDateTime")) {
+      var moment = ClassDesc.of("java.time." + type);
+      var target = Character.toLowerCase(type.charAt(0)) + type.substring(1) + "Now";
+      redirectStatic("java.time." + type, "now", target, MethodTypeDesc.of(moment));
+      redirectStatic("java.time." + type, "now", target, MethodTypeDesc.of(moment, ZONE));
+    }
+    redirectStatic("java.time.Clock", "systemUTC", "clockUtc", MethodTypeDesc.of(CLOCK));
+    redirectStatic("java.time.Clock", "systemDefaultZone", "clock", MethodTypeDesc.of(CLOCK));
+    redirectStatic("java.time.Clock", "system", "clock", MethodTypeDesc.of(CLOCK, ZONE));
+    redirectMaking("java.util.Date", "currentTimeMillis", "newDate");
+    redirectMaking("java.util.Random", "seed", "newRandom");
+    redirectMaking("java.util.SplittableRandom", "seed", "newSplittableRandom");
+    redirectStatic("java.util.random.RandomGenerator", "getDefault", "defaultGenerator", MethodTypeDesc.of(GENERATOR));
     redirectStatic("java.lang.Math", "random", "mathRandom", MethodTypeDesc.of(CD_double));
     redirectStatic("java.util.UUID", "randomUUID", "randomUuid", MethodTypeDesc.of(ClassDesc.of("java.util.UUID")));
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, CD_long));
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, DURATION));
-    redirectDraw("nextInt", MethodTypeDesc.of(CD_int));
-    redirectDraw("nextInt", MethodTypeDesc.of(CD_int, CD_int));
-    redirectDraw("nextInt", MethodTypeDesc.of(CD_int, CD_int, CD_int));
-    redirectDraw("nextLong", MethodTypeDesc.of(CD_long));
-    redirectDraw("nextLong", MethodTypeDesc.of(CD_long, CD_long));
-    redirectDraw("nextLong", MethodTypeDesc.of(CD_long, CD_long, CD_long));
-    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double));
-    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double, CD_double));
-    redirectDraw("nextDouble", MethodTypeDesc.of(CD_double, CD_double, CD_double));
+    redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, CD_long, CD_int));
+    redirectInstance(TIME_UNIT, "sleep", MethodTypeDesc.of(CD_void, CD_long));
+    redirectDraws("Int", CD_int);
+    redirectDraws("Long", CD_long);
+    redirectDraws("Float", CD_float);
+    redirectDraws("Double", CD_double);
+    redirectStreams("ints", ClassDesc.of("java.util.stream.IntStream"), CD_int);
+    redirectStreams("longs", ClassDesc.of("java.util.stream.LongStream"), CD_long);
+    redirectStreams("doubles", ClassDesc.of("java.util.stream.DoubleStream"), CD_double);
+    redirectDraw("nextGaussian", MethodTypeDesc.of(CD_double, CD_double, CD_double));
+    redirectDraw("nextExponential", MethodTypeDesc.of(CD_double));
     redirectDraw("nextGaussian", MethodTypeDesc.of(CD_double));
     redirectDraw("nextBoolean", MethodTypeDesc.of(CD_boolean));
     redirectDraw("nextBytes", MethodTypeDesc.of(CD_void, CD_byte.arrayType()));
@@ -82,10 +110,40 @@ final class Rewriter implements ClassFileTransformer {
     CALLS.put(owner.replace('.', '/') + "." + name + type.descriptorString(), new Target(target, type));
   }
 
+  private static void redirectInstance(ClassDesc owner, String name, MethodTypeDesc type) {
+    var target = new Target(name, type.insertParameterTypes(0, owner));
+    CALLS.put(internalName(owner) + "." + name + type.descriptorString(), target);
+  }
+
+  /** Has a class's constructor without parameters, of which time or chance is one, be that of a {@code long}. */
+  private static void redirectMaking(String owner, String parameter, String factory) {
+    var made = ClassDesc.of(owner);
+    var target =
+        new Making(new Target(parameter, MethodTypeDesc.of(CD_long)), new Target(factory, MethodTypeDesc.of(made)));
+    MAKINGS.put(internalName(made) + ".<init>()V", target);
+  }
+
   /** {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it. */
   private static void redirectDraw(String name, MethodTypeDesc type) {
-    var call = "java/util/concurrent/ThreadLocalRandom." + name + type.descriptorString();
-    CALLS.put(call, new Target(name, type.insertParameterTypes(0, RANDOM)));
+    redirectInstance(RANDOM, name, type);
+  }
+
+  private static void redirectDraws(String kind, ClassDesc number) {
+    redirectDraw("next" + kind, MethodTypeDesc.of(number));
+    redirectDraw("next" + kind, MethodTypeDesc.of(number, number));
+    redirectDraw("next" + kind, MethodTypeDesc.of(number, number, number));
+  }
+
+  private static void redirectStreams(String name, ClassDesc stream, ClassDesc number) {
+    redirectDraw(name, MethodTypeDesc.of(stream));
+    redirectDraw(name, MethodTypeDesc.of(stream, CD_long));
+    redirectDraw(name, MethodTypeDesc.of(stream, number, number));
+    redirectDraw(name, MethodTypeDesc.of(stream, CD_long, number, number));
+  }
+
+  private static String internalName(ClassDesc type) {
+    var descriptor = type.descriptorString();
+    return descriptor.substring(1, descriptor.length() - 1);
   }
 
   private static final ClassDesc SCHEDULER = ClassDesc.of("org.apache.pekko.actor.Scheduler");
@@ -109,7 +167,8 @@ final class Rewriter implements ClassFileTransformer {
   @Override
   public byte[] transform(
       ClassLoader loader, String name, Class<?> redefined, ProtectionDomain domain, byte[] bytes) {
-    if (name == null || packages.stream().noneMatch(name::startsWith)) return null;
+    var isScalaRandom = SCALA_RANDOM.equals(name);
+    if (name == null || !isScalaRandom && packages.stream().noneMatch(name::startsWith)) return null;
     try {
       var classFile = ClassFile.of(
           ClassFile.ClassHierarchyResolverOption.of(
@@ -118,7 +177,8 @@ final class Rewriter implements ClassFileTransformer {
       var isCell = CELLS.contains(name);
       var isListener = KILL_SWITCH_LISTENER.equals(name);
       if (!isCell && !isListener && !concerns(model)) return null;
-      var transform = ClassTransform.transformingMethodBodies(Rewriter::rewrite);
+      var transform =
+          ClassTransform.transformingMethodBodies(isScalaRandom ? Rewriter::rewriteScalaRandom : Rewriter::rewrite);
       if (isCell) transform = transform.andThen(guarded(model));
       if (isListener) transform = transform.andThen(hashed(model));
       return classFile.transformClass(model, transform);
@@ -185,7 +245,7 @@ final class Rewriter implements ClassFileTransformer {
   }
 
   private static boolean concerns(String key) {
-    return CALLS.containsKey(key) || SUBMISSIONS.contains(key) || SUPERVISOR_NAME.equals(key);
+    return CALLS.containsKey(key) || MAKINGS.containsKey(key) || SUBMISSIONS.contains(key) || SUPERVISOR_NAME.equals(key);
   }
 
   private static String key(MemberRefEntry member) {
@@ -214,15 +274,26 @@ final class Rewriter implements ClassFileTransformer {
 
   private static ConstantDesc rewriteReference(ConstantDesc argument) {
     if (!(argument instanceof DirectMethodHandleDesc handle)) return argument;
-    var owner = handle.owner().descriptorString();
-    var target = CALLS.get(owner.substring(1, owner.length() - 1) + "." + handle.methodName() + handle.lookupDescriptor());
+    var key = internalName(handle.owner()) + "." + handle.methodName() + handle.lookupDescriptor();
+    var target = MAKINGS.containsKey(key) ? MAKINGS.get(key).factory() : CALLS.get(key);
     return target == null ? argument : MethodHandleDesc.ofMethod(Kind.STATIC, REDIRECT, target.name(), target.type());
+  }
+
+  /** Replaces the generator that was just made. */
+  private static void rewriteScalaRandom(CodeBuilder code, CodeElement element) {
+    code.with(element);
+    if (element instanceof InvokeInstruction call && UNSEEDED.equals(key(call.method())))
+      code.invokestatic(REDIRECT, "governed", MethodTypeDesc.of(JAVA_RANDOM, JAVA_RANDOM));
   }
 
   private static void rewriteCall(CodeBuilder code, InvokeInstruction call) {
     var key = key(call.method());
     var target = CALLS.get(key);
-    if (target != null && call.opcode() != Opcode.INVOKESPECIAL) {
+    var making = MAKINGS.get(key);
+    if (making != null) {
+      code.invokestatic(REDIRECT, making.parameter().name(), making.parameter().type());
+      code.invokespecial(call.method().owner().asSymbol(), "<init>", MethodTypeDesc.of(CD_void, CD_long));
+    } else if (target != null && call.opcode() != Opcode.INVOKESPECIAL) {
       code.invokestatic(REDIRECT, target.name(), target.type());
     } else {
       if (SUBMISSIONS.contains(key)) {

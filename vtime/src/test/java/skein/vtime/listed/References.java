@@ -1,10 +1,17 @@
 package skein.vtime.listed;
 
+import java.util.Date;
+import java.util.Random;
+import java.util.SplittableRandom;
 import java.util.function.LongSupplier;
+import java.util.function.Supplier;
 
-/** A method reference to the clock, which in Scala would be compiled to a lambda with a call. */
+/** References to methods and constructors, which in Scala would be compiled to lambdas with calls. */
 final class References {
   private References() {}
 
   static final LongSupplier NANO_TIME = System::nanoTime;
+  static final Supplier<Date> DATE = Date::new;
+  static final Supplier<Random> RANDOM = Random::new;
+  static final Supplier<SplittableRandom> SPLITTABLE = SplittableRandom::new;
 }

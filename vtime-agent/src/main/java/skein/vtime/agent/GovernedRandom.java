@@ -1,0 +1,42 @@
+package skein.vtime.agent;
+
+import java.util.Random;
+
+/**
+ * Draws from the environment of the thread that asks; without one, or once a seed was set, as any {@code Random}. For
+ * generators that outlive runs.
+ */
+final class GovernedRandom extends Random {
+  private static final long serialVersionUID = 1;
+
+  // Set by the constructor, since that of the superclass sets a seed, too.
+  private boolean isMade;
+  private boolean isSeeded;
+
+  GovernedRandom() {
+    isMade = true;
+  }
+
+  private Environment environment() {
+    return isSeeded ? null : Redirect.environment();
+  }
+
+  @Override
+  public void setSeed(long seed) {
+    super.setSeed(seed);
+    if (isMade) isSeeded = true;
+  }
+
+  @Override
+  protected int next(int bits) {
+    var environment = environment();
+    return environment == null ? super.next(bits) : environment.random().nextInt() >>> (32 - bits);
+  }
+
+  /** The superclass keeps every second one, for whoever asks next. */
+  @Override
+  public double nextGaussian() {
+    var environment = environment();
+    return environment == null ? super.nextGaussian() : environment.random().nextGaussian();
+  }
+}
