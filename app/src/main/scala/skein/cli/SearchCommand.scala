@@ -161,8 +161,10 @@ object SearchCommand
       state: SearchState
   ): Either[String, Unit] =
     val effort = Effort.of(setup, batch)
-    val result =
-      SearchResult.measured(setup, batch, state, setup.question.fresh.getOrElse(effort.freshEpisodes))
+    // Somebody who stops a search does not wait for long.
+    val most   = if state.isDone then Int.MaxValue else effort.freshEpisodes
+    val fresh  = setup.question.fresh.getOrElse(effort.freshEpisodes).min(most)
+    val result = SearchResult.measured(setup, batch, state, fresh)
     for
       _ <- write(folder.resolve("policy.conf"), result.file.getBytes("UTF-8"))
       _ = say(result.summary)

@@ -90,11 +90,21 @@ object SearchQuestion:
         case "cross-entropy" => Right(SearchMethod.CrossEntropy(population, generations, episodes))
         case "cma-es"        => Right(SearchMethod.CmaEs(population, generations, episodes))
         case "racing"        =>
-          Either.cond(
-            candidates <= MostRacing,
-            SearchMethod.Racing(candidates, episodes),
-            s"--candidates: a race takes at most $MostRacing, came $candidates"
-          )
+          val race = SearchMethod.Racing(candidates, episodes)
+          for
+            _ <- Either.cond(
+              candidates <= MostRacing,
+              (),
+              s"--candidates: a race takes at most $MostRacing, came $candidates"
+            )
+            _ <- Either.cond(
+              race.mostOfOne <= Search.PlayOffFrom,
+              (),
+              s"--episodes: the last of $candidates candidates in a race may fly at most ${Search.PlayOffFrom} episodes, " +
+                s"and came to ${race.mostOfOne}, ${race.mostOfOne / episodes} times those of the first round: " +
+                s"expected at most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, came $episodes"
+            )
+          yield race
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method
 

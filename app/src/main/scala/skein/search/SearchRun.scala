@@ -7,7 +7,9 @@ import skein.rollout.{Evaluator, SearchState}
 final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, nanoTime: () => Long):
   import SearchRun.*
 
-  /** @param onStep
+  /** @param isStopped
+    *   asked now and then, from any thread; the step under way is given up then
+    * @param onStep
     *   told of every state
     * @return
     *   the last state, or why it could not be kept
@@ -22,7 +24,7 @@ final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, na
     var saved: Either[String, Unit] = save(state)
     while saved.isRight && !state.isDone && !isStopped() do
       val (before, flown) = (nanoTime(), state.flown)
-      state = setup.search.step(state, evaluator, atMost)
+      state = setup.search.step(state, evaluator, atMost, isStopped)
       val now     = nanoTime()
       val perNano = (state.flown - flown).toDouble / (now - before).max(1)
       atMost = (perNano * StepNanos).toLong.max(1).min(MostAStep).toInt

@@ -2,7 +2,7 @@ package skein.search
 
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
-import skein.rollout.SearchState
+import skein.rollout.{Evaluator, SearchState, Tally}
 
 class SearchFileSuite extends munit.FunSuite:
   private def question(method: String) = SearchQuestion(
@@ -48,6 +48,30 @@ class SearchFileSuite extends munit.FunSuite:
     Files.delete(folder.resolve(SearchFile.Name))
     Files.delete(folder)
 
+  test(
+    "a run that is stopped within a step keeps the state before it, and goes on from there to the same end"
+  ):
+    val folder = Files.createTempDirectory("skein-search")
+    val ready  = setup("cma-es")
+    val flying = ready.evaluator(ready.batch(1))
+    var calls  = 0
+    val cut    = new Evaluator:
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+        calls += 1
+        flying.tallies(candidates, episodes)
+    def run(from: SearchState, isStopped: () => Boolean) =
+      val states = Vector.newBuilder[SearchState]
+      val last   = SearchRun(ready, cut, folder, () => 0L).run(from, isStopped)(states += _)
+      (last.fold(mistake => fail(mistake), identity), states.result())
+    val (unbroken, states) = run(ready.search.start, () => false)
+    calls = 0
+    val (stopped, _) = run(ready.search.start, () => calls == 3)
+    assertEquals(stopped, states(1))
+    assertEquals(SearchFile.read(folder).map(_.state), Right(stopped))
+    assertEquals(run(stopped, () => false)._1, unbroken)
+    Files.delete(folder.resolve(SearchFile.Name))
+    Files.delete(folder)
+
   test("what is not the state of a search is refused"):
     for (text, part) <-
         Seq("{}" -> "version", "nonsense" -> "state of a search", """{"version": 99}""" -> "version 1")
@@ -84,7 +108,12 @@ class SearchFileSuite extends munit.FunSuite:
         Seq("--duration", "10 s")
       ),
       ("population", question("cma-es").copy(population = 2), Seq("--population", "4")),
-      ("episodes", question("grid").copy(episodes = 0), Seq("--episodes", "0"))
+      ("episodes", question("grid").copy(episodes = 0), Seq("--episodes", "0")),
+      (
+        "number of a race's episodes",
+        question("racing").copy(candidates = 100_000, episodes = 200),
+        Seq("--episodes", "at most 128", "200")
+      )
     )
   do
     test(s"a wrong $name is refused by the option's name"):

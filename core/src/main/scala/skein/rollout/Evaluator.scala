@@ -15,6 +15,18 @@ trait Evaluator:
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally]
 
+  /** The same, or none if it was cancelled.
+    *
+    * @param isCancelled
+    *   asked now and then, from any thread
+    */
+  def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
+    val all = tallies(candidates, episodes)
+    Option.when(!isCancelled())(all)
+
 /** Flies a family's candidates against one opponent in [[DuelBatch]].
   *
   * @param role
@@ -39,12 +51,20 @@ final class DuelEvaluator(
 ) extends Evaluator:
 
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    talliesUnless(() => false)(candidates, episodes).get
+
+  override def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
     val policies = candidates.map(family.policy).toArray
     val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
-    val outcomes = batch.fly(Worlds(policies, keys), objective.captureRadiusM)
-    Vector.tabulate(policies.length): candidate =>
-      Tally.of(keys.length): episode =>
-        objective.value(outcomes, candidate * keys.length + episode, role, durationS)
+    val worlds   = Worlds(policies, keys)
+    val outcomes = batch.fly(worlds, objective.captureRadiusM, isCancelled = isCancelled)
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(policies.length): candidate =>
+        Tally.of(keys.length): episode =>
+          objective.value(outcomes, candidate * keys.length + episode, role, durationS)
 
   /** The candidate does not enter the key: all meet the same delays. */
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:

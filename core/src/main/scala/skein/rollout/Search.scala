@@ -52,6 +52,11 @@ enum Course:
 final class Search(space: SearchSpace, method: SearchMethod, direction: Direction, seed: Long):
   import Search.*
 
+  require(
+    method.mostOfOne <= PlayOffFrom,
+    s"one candidate would fly ${method.mostOfOne} episodes, expected at most $PlayOffFrom"
+  )
+
   private val evolution = method match
     case SearchMethod.CmaEs(population, _, _, _) => Some(CmaEs(space.dimension, population, seed))
     case _                                       => None
@@ -78,18 +83,26 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     *   not done
     * @param atMost
     *   episodes that the step flies, about. How a search is cut into steps does not change how it ends.
+    * @param isCancelled
+    *   asked now and then, from any thread; a step that is cancelled leaves the state as it was
     */
-  def step(state: SearchState, evaluator: Evaluator, atMost: Int): SearchState =
+  def step(
+      state: SearchState,
+      evaluator: Evaluator,
+      atMost: Int,
+      isCancelled: () => Boolean = () => false
+  ): SearchState =
     require(!state.isDone, "the search is done")
     val (candidates, episodes) = round(state.course)
-    val batch   = candidates.slice(state.results.size, state.results.size + (atMost / episodes.size).max(1))
-    val results = state.results ++ evaluator.tallies(batch, episodes)
-    val flown   = state.flown + batch.size.toLong * episodes.size
-    if results.size < candidates.size then state.copy(results = results, flown = flown)
-    else
-      val (course, leaders) =
-        after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
-      SearchState(course, Vector.empty, leaders, flown)
+    val batch = candidates.slice(state.results.size, state.results.size + (atMost / episodes.size).max(1))
+    evaluator.talliesUnless(isCancelled)(batch, episodes).fold(state): tallies =>
+      val results = state.results ++ tallies
+      val flown   = state.flown + batch.size.toLong * episodes.size
+      if results.size < candidates.size then state.copy(results = results, flown = flown)
+      else
+        val (course, leaders) =
+          after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
+        SearchState(course, Vector.empty, leaders, flown)
 
   /** The round's candidates, and the episodes that each flies. */
   private def round(course: Course): (Vector[Vector[Double]], Range) = course match

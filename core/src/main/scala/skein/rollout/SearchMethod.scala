@@ -43,6 +43,12 @@ enum SearchMethod:
 
   def episodes: Int
 
+  /** Episodes that one candidate flies at most. */
+  def mostOfOne: Long = this match
+    case Racing(candidates, episodes) =>
+      Math.multiplyExact(episodes.toLong, 1L << (SearchMethod.rounds(candidates) - 1))
+    case _ => episodes
+
   /** Episodes flown in all, if it does not end early. */
   def evaluations(dimension: Int): Long = this match
     case Grid(perAxis, episodes) =>

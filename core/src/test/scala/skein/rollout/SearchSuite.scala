@@ -1,5 +1,6 @@
 package skein.rollout
 
+import java.util.concurrent.atomic.AtomicInteger
 import scala.concurrent.duration.*
 import skein.policy.{Axis, PaperEvader, PaperPursuer, PolicyFamily, Role, SearchSpace}
 import skein.signal.SplitMix64
@@ -70,6 +71,12 @@ class SearchSuite extends munit.FunSuite:
           .get
       val whole = run(_ => Int.MaxValue)
       assertEquals(run(i => 1 + (i * 37) % 200), whole)
+
+      def cutAndGoneOnWith(state: SearchState) =
+        val left = machine.step(state, bowl, 150, isCancelled = () => true)
+        assertEquals(left, state)
+        machine.step(left, bowl, 150)
+      assertEquals(Iterator.iterate(machine.start)(cutAndGoneOnWith).find(_.isDone).get, whole)
       assert(whole.flown <= machine.expected, s"flew ${whole.flown}, expected at most ${machine.expected}")
 
   test("the play-off's winner is measured on episodes on which no one was chosen"):
@@ -101,6 +108,15 @@ class SearchSuite extends munit.FunSuite:
         if c(0) > 0.5 then tally.copy(mean = Double.NaN) else tally
     val found = Search.run(space, SearchMethod.CmaEs(12, 40, 4), Direction.Minimise, 3, holes).head
     assert(found.candidate(0) <= 0.5 && depth(found.candidate) < 0.4, s"seed 3: $found")
+
+  test("a race whose last candidates would reach the episodes of the play-off is refused"):
+    def race(candidates: Int, episodes: Int) =
+      Search(space, SearchMethod.Racing(candidates, episodes), Direction.Minimise, 1)
+    assertEquals(SearchMethod.Racing(64, 2).mostOfOne, 128L)
+    val _ = race(1 << 17, 1 << 7)
+    for (candidates, episodes) <- Seq((1 << 17) -> 129, ((1 << 17) + 1) -> 128, 100_000 -> 1_000_000) do
+      val mistake = intercept[IllegalArgumentException](race(candidates, episodes))
+      assert(mistake.getMessage.contains("expected at most 16777216"), mistake.getMessage)
 
   private val lag   = Reduced(0.9, 0.8, 0.05)
   private val short = Duel.paper.copy(durationS = 30)
@@ -135,3 +151,9 @@ class SearchSuite extends munit.FunSuite:
     val grid      = Search.run(turnRate, SearchMethod.Grid(29, 20), Direction.Minimise, 1, evaluator).head
     val found = Search.run(turnRate, SearchMethod.CmaEs(10, 12, 20), Direction.Minimise, 1, evaluator).head
     assert(found.tally.mean <= grid.tally.mean + 0.02, s"$found, grid $grid")
+
+  test("a cancelled flight of candidates ends within its batches and tells nothing"):
+    val asked      = AtomicInteger()
+    val candidates = space.random(400, 1).map(_ => PolicyFamily.paperPursuer.space.defaults)
+    assertEquals(game(1).talliesUnless(() => asked.incrementAndGet() > 2)(candidates, 0 until 4), None)
+    assert(asked.get <= 4, s"asked ${asked.get} times")
