@@ -1,5 +1,6 @@
 package skein.report
 
+import skein.policy.TeamScenario
 import skein.record.Recording
 
 /** How far predictions of one kind of vehicle were off, by how far they were carried.
@@ -41,14 +42,25 @@ object PredictionErrors:
 
   /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted. */
   def of(recording: Recording): Option[(own: PredictionErrors, others: PredictionErrors)] =
-    val decisions = recording.decisions.filter(_.predicted.nonEmpty).groupMapReduce(_.vehicle)(_ => 1)(_ + _)
+    val predicted = recording.decisions.filter(_.predicted.nonEmpty)
+    val decisions = predicted.groupMapReduce(_.vehicle)(_ => 1)(_ + _)
+    // A decider predicts once per decision each vehicle that it predicts at all: itself, and in a duel its opponent, even
+    // where not one of these predictions could be verified.
+    val scenario  = recording.flight.scenario
+    val isDuel    = TeamScenario.of(scenario, recording.heading.parametersOf(scenario)).isLeft
+    val opponents = if isDuel then predicted.map(one => (one.vehicle, one.opponent.vehicle)) else Vector.empty
+    val pairs     = (predicted.map(one => (one.vehicle, one.vehicle)) ++
+      opponents ++
+      recording.predictions.map(one => (one.decider, one.vehicle))).distinct
     def errors(own: Boolean) =
-      val verified = recording.predictions.filter(one => (one.decider == one.vehicle) == own)
-      // A decider predicts once per decision each vehicle that it predicts at all.
-      val made = verified.map(one => (one.decider, one.vehicle)).distinct.map((decider, _) =>
-        decisions.getOrElse(decider, 0)
-      ).sum
-      PredictionErrors(made, verified.map(one => (one.age.toMillis, one.error.value)))
+      def isAsked(decider: String, vehicle: String) = (decider == vehicle) == own
+      PredictionErrors(
+        pairs.collect {
+          case (decider, vehicle) if isAsked(decider, vehicle) => decisions.getOrElse(decider, 0)
+        }.sum,
+        recording.predictions.collect:
+          case one if isAsked(one.decider, one.vehicle) => (one.age.toMillis, one.error.value)
+      )
     Option.when(decisions.nonEmpty)((own = errors(own = true), others = errors(own = false)))
 
 /** The prediction errors of all flights of one loop over one link. */

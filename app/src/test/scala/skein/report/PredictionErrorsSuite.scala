@@ -20,11 +20,14 @@ class PredictionErrorsSuite extends munit.FunSuite:
     assertEquals(errors.around(200), None)
 
   private lazy val flights =
+    fly(List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive), Span.ofMillis(100))
+
+  private def fly(loops: List[LoopKind], period: Span) =
     val settings = FlySettings(
-      List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive),
+      loops,
       List(LatencyProfile.direct),
       duration = Span.ofSeconds(12),
-      period = Span.ofMillis(100),
+      period = period,
       seed = 1,
       pairs = 1,
       asPublished = false
@@ -45,6 +48,12 @@ class PredictionErrorsSuite extends munit.FunSuite:
       )
       assert(errors.errors.get.quantile(0.95) < 0.1, errors.errors.get.quantile(0.95).toString)
     assert(Figure.spread(flights).map(_.name).contains("prediction"))
+
+  test("predictions of which none could be verified are counted, not hidden"):
+    val groups = PredictionGroup.of(fly(List(LoopKind.Predictive), Span.ofMillis(400)))
+    for errors <- groups.flatMap(group => Seq(group.own, group.others)) do
+      assert(errors.made >= 50 && errors.unverified == errors.made, s"${errors.made} ${errors.unverified}")
+    assertEquals(PredictionGroup.table(groups).rows.size, 2)
 
   test("deviations are relative to the paused truth, by loop, link and clock"):
     val deviations = Deviation.of(flights)
