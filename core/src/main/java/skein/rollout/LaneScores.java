@@ -11,17 +11,18 @@ import jdk.incubator.vector.FloatVector;
 final class LaneScores {
   private static final int WORLDS = LanePolicy.WORLDS;
 
-  private final int steps, lastSteps;
-  private final double periodS;
+  private final int steps;
+  private final double durationS, periodS;
   private final DuelKernel into;
   private float captureRadiusM;
+  private int lastScores;
   private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
 
   LaneScores(double durationS, double periodS, DuelKernel into) {
     this.into = into;
+    this.durationS = durationS;
     this.periodS = periodS;
     steps = (int) Math.round(durationS / periodS);
-    lastSteps = Math.min(steps, (int) Math.round(10 / periodS));
   }
 
   /**
@@ -29,6 +30,7 @@ final class LaneScores {
    */
   void start(float captureRadiusM) {
     this.captureRadiusM = captureRadiusM;
+    lastScores = 0;
     Arrays.fill(into.minDistance, Float.POSITIVE_INFINITY);
     Arrays.fill(into.captureS, Float.POSITIVE_INFINITY);
     Arrays.fill(sum, 0f);
@@ -41,7 +43,8 @@ final class LaneScores {
     FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
         radius = FloatVector.broadcast(SPECIES, captureRadiusM),
         infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
-    boolean isLast = period > steps - lastSteps;
+    boolean isLast = Rollout.isLast10s(period * periodS, durationS);
+    if (isLast) lastScores++;
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
           x =
@@ -65,7 +68,7 @@ final class LaneScores {
   void finish() {
     for (int i = 0; i < WORLDS; i++) {
       into.meanDistance[i] = sum[i] / steps;
-      into.meanLast10s[i] = lastSum[i] / lastSteps;
+      into.meanLast10s[i] = lastSum[i] / lastScores;
     }
   }
 }

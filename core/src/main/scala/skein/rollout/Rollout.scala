@@ -118,6 +118,9 @@ object Rollout:
   trait Listener:
     def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit
 
+  /** Whether what is scored at this time of an episode counts for the mean of its last 10 s. */
+  private[rollout] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
+
   private val NoListener: Listener = (_, _, _, _, _) => ()
 
   /** Places of the random sequence that belong to one step; the kernels use the same. */
@@ -139,7 +142,7 @@ private final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0)
     if distanceM < least then
       least = distanceM; leastAt = timeS
     if distanceM <= captureRadiusM && captureS.isInfinite then captureS = timeS
-    if timeS > durationS - 10 + 1e-9 then
+    if Rollout.isLast10s(timeS, durationS) then
       lastSum += distanceM
       lastCount += 1
 

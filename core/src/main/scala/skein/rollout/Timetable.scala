@@ -214,7 +214,7 @@ private[rollout] object Timetable:
     private def score(event: Int): Unit =
       val at                = notes.atS(event)
       val (evader, pursuer) = (at - stateAtS(0), at - stateAtS(1))
-      val isLast            = at > durationS - 10 + 1e-9
+      val isLast            = Rollout.isLast10s(at, durationS)
       operation(SCORE, 0, if isLast then 1 else 0, java.lang.Float.floatToRawIntBits(at.toFloat))
       numbers(evader, gain(evader), pursuer, gain(pursuer))
 

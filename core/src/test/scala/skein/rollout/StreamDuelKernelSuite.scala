@@ -24,14 +24,15 @@ class StreamDuelKernelSuite extends munit.FunSuite:
       radii: Array[Float],
       durationS: Double = 60,
       model: Reduced = lag,
-      shortCut: Boolean = true
+      shortCut: Boolean = true,
+      periodS: Double = 0.1
   ): StreamDuelKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, PaperPursuer(turnRates(world)))
       evaders.take(world, PaperEvader(radii(world)))
     val duel = Duel.paper.copy(durationS = durationS)
-    StreamDuelKernel(duel, LoopTiming.stream(0.1), model, pursuers, evaders, shortCut)
+    StreamDuelKernel(duel, LoopTiming.stream(periodS), model, pursuers, evaders, shortCut)
 
   private def fly(link: DelayTable, durationS: Double): StreamDuelKernel =
     val kernel = kernelOf(turnRates, radii, durationS)
@@ -73,6 +74,14 @@ class StreamDuelKernelSuite extends munit.FunSuite:
         s"$captured captured; median of the smallest distances ${scalars.map(_.minDistanceM).sorted.apply(worlds / 2)}"
       )
       assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
+
+  test("a period that does not divide 10 s: the last scores' mean is that of the scalar reference"):
+    val kernel = kernelOf(turnRates, radii, durationS = 12, periodS = 0.3)
+    kernel.fly(keys, Array.fill(worlds)(DelayTable.direct), captureRadiusM)
+    val off = (0 until worlds).map: world =>
+      val scalar = Rollout(duel(world, 12), LoopTiming.stream(0.3), DelayTable.direct, lag).fly(keys(world))
+      (kernel.meanLast10s(world) - scalar.meanLast10sM).abs
+    assert(off.sorted.apply(worlds / 2) < 5e-3, off.sorted.mkString(" "))
 
   private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
 
