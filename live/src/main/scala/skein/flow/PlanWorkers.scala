@@ -112,7 +112,9 @@ private object ThreadedPlanWorkers:
     def improve(by: JointPlanner): Boolean =
       if ended.get.isEmpty then
         try best.set(by.improved(problem, best.get, number))
-        catch case NonFatal(error) => ended.set(Some(Failure(error)))
+        catch
+          case NonFatal(error) =>
+            val _ = ended.compareAndSet(None, Some(Failure(error)))
       ended.get.isEmpty
 
     /** A slice that is searched now no longer counts. */
