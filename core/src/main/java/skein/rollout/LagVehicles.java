@@ -1,19 +1,17 @@
 package skein.rollout;
 
 import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
-import static skein.rollout.LaneMath.EXP_2;
-import static skein.rollout.LaneMath.EXP_3;
-import static skein.rollout.LaneMath.EXP_4;
-import static skein.rollout.LaneMath.EXP_5;
-import static skein.rollout.LaneMath.EXP_6;
-import static skein.rollout.LaneMath.EXP_7;
 import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
-import static skein.rollout.LaneMath.LN_2_1;
-import static skein.rollout.LaneMath.LN_2_2;
 import static skein.rollout.LaneMath.LOG2_E;
 import static skein.rollout.LaneMath.ONE;
+import static skein.rollout.LaneMath.POWER_1;
+import static skein.rollout.LaneMath.POWER_2;
+import static skein.rollout.LaneMath.POWER_3;
+import static skein.rollout.LaneMath.POWER_4;
+import static skein.rollout.LaneMath.POWER_5;
 import static skein.rollout.LaneMath.ROUND;
 import static skein.rollout.LaneMath.SPECIES;
 import static skein.rollout.LaneMath.ZERO;
@@ -211,39 +209,29 @@ final class LagVehicles {
         keep = FloatVector.broadcast(SPECIES, keepShare),
         lag = FloatVector.broadcast(SPECIES, lagS),
         minusLag = FloatVector.broadcast(SPECIES, -lagS),
-        decayRate = FloatVector.broadcast(SPECIES, -1 / lagS),
+        halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
         grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
-        log2E = FloatVector.broadcast(SPECIES, LOG2_E),
         round = FloatVector.broadcast(SPECIES, ROUND),
-        ln2Part1 = FloatVector.broadcast(SPECIES, LN_2_1),
-        ln2Part2 = FloatVector.broadcast(SPECIES, LN_2_2),
-        exp2 = FloatVector.broadcast(SPECIES, EXP_2),
-        exp3 = FloatVector.broadcast(SPECIES, EXP_3),
-        exp4 = FloatVector.broadcast(SPECIES, EXP_4),
-        exp5 = FloatVector.broadcast(SPECIES, EXP_5),
-        exp6 = FloatVector.broadcast(SPECIES, EXP_6),
-        exp7 = FloatVector.broadcast(SPECIES, EXP_7);
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector end =
           ((FloatVector)
                   IntVector.fromArray(INTS, sampledAt, i)
                       .convertShape(VectorOperators.I2F, SPECIES, 0))
               .mul(grainS);
-      FloatVector exponent = end.mul(decayRate);
-      FloatVector rounded = exponent.fma(log2E, round);
-      FloatVector power = rounded.sub(round);
-      FloatVector rest = power.fma(ln2Part2, power.fma(ln2Part1, exponent));
-      FloatVector series =
-          rest.fma(exp7, exp6)
-              .fma(rest, exp5)
-              .fma(rest, exp4)
-              .fma(rest, exp3)
-              .fma(rest, exp2)
-              .fma(rest.mul(rest), rest.add(one));
+      FloatVector exponent = end.mul(halvings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
       FloatVector decay =
-          series
+          rest.fma(power5, power4)
+              .fma(square, rest.fma(power3, power2))
+              .fma(square, rest.fma(power1, one))
               .reinterpretAsInts()
               .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
               .reinterpretAsFloats();
@@ -257,32 +245,38 @@ final class LagVehicles {
       lackX = lackX.mul(keep);
       lackY = lackY.mul(keep);
       FloatVector lagDecay = lag.mul(decay);
-      FloatVector laterX = zero, laterY = zero;
+      FloatVector died = lagDecay.sub(lag);
+      FloatVector seenX = lackX.fma(died, wantedX.fma(end, x)),
+          seenY = lackY.fma(died, wantedY.fma(end, y));
+      // Of commands that begin to act, an earlier reading shows an effect that lookBack takes back.
+      FloatVector horizon = end.max(zero);
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;
-        FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]);
+        FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]),
+            younger = FloatVector.broadcast(SPECIES, nearYounger[k]),
+            aged = FloatVector.broadcast(SPECIES, nearAged[k]);
         FloatVector acts = FloatVector.fromArray(SPECIES, commands, from + AT);
         FloatVector wait = acts.sub(age);
-        VectorMask<Float> isToAct = acts.compare(GT, age);
-        VectorMask<Float> begins = acts.compare(GT, nearYounger[k]).andNot(isToAct);
-        VectorMask<Float> isSeen = wait.compare(LT, end, isToAct);
+        VectorMask<Float> isNew = acts.compare(GT, younger);
+        VectorMask<Float> begins = acts.compare(LE, age, isNew);
+        VectorMask<Float> isSeen = wait.compare(LE, horizon, isNew);
         FloatVector left =
-            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(nearAged[k]);
+            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(aged);
         FloatVector late = minusLag.sub(wait);
-        FloatVector response = zero.blend(left.fma(lag, late), begins);
-        FloatVector seen = zero.blend(left.fma(lagDecay, late.add(end)), isSeen);
-        FloatVector lost = zero.blend(left, begins);
-        FloatVector felt = zero.blend(one, begins);
-        FloatVector changeX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
-            changeY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y);
+        FloatVector response = left.fma(lag, late);
+        FloatVector seen = left.fma(lagDecay, late.add(end));
+        FloatVector allX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
+            allY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y),
+            changeX = zero.blend(allX, begins),
+            changeY = zero.blend(allY, begins);
         x = changeX.fma(response, x);
         y = changeY.fma(response, y);
-        lackX = changeX.fma(lost, lackX);
-        lackY = changeY.fma(lost, lackY);
-        wantedX = changeX.fma(felt, wantedX);
-        wantedY = changeY.fma(felt, wantedY);
-        laterX = changeX.fma(seen, laterX);
-        laterY = changeY.fma(seen, laterY);
+        lackX = changeX.fma(left, lackX);
+        lackY = changeY.fma(left, lackY);
+        wantedX = wantedX.add(changeX);
+        wantedY = wantedY.add(changeY);
+        seenX = zero.blend(allX, isSeen).fma(seen, seenX);
+        seenY = zero.blend(allY, isSeen).fma(seen, seenY);
       }
       x.intoArray(state, X + i);
       y.intoArray(state, Y + i);
@@ -290,9 +284,8 @@ final class LagVehicles {
       lackY.intoArray(state, LACK_Y + i);
       wantedX.intoArray(state, WANTED_X + i);
       wantedY.intoArray(state, WANTED_Y + i);
-      FloatVector died = lagDecay.sub(lag);
-      lackX.fma(died, wantedX.fma(end, x)).add(laterX).intoArray(state, SEEN_X + i);
-      lackY.fma(died, wantedY.fma(end, y)).add(laterY).intoArray(state, SEEN_Y + i);
+      seenX.intoArray(state, SEEN_X + i);
+      seenY.intoArray(state, SEEN_Y + i);
       end.intoArray(state, END + i);
       decay.intoArray(state, DECAY + i);
     }

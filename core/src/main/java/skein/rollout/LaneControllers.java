@@ -3,17 +3,14 @@ package skein.rollout;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.XOR;
-import static skein.rollout.LaneMath.EXP_2;
-import static skein.rollout.LaneMath.EXP_3;
-import static skein.rollout.LaneMath.EXP_4;
-import static skein.rollout.LaneMath.EXP_5;
-import static skein.rollout.LaneMath.EXP_6;
-import static skein.rollout.LaneMath.EXP_7;
 import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
-import static skein.rollout.LaneMath.LN_2_1;
-import static skein.rollout.LaneMath.LN_2_2;
 import static skein.rollout.LaneMath.LOG2_E;
+import static skein.rollout.LaneMath.POWER_1;
+import static skein.rollout.LaneMath.POWER_2;
+import static skein.rollout.LaneMath.POWER_3;
+import static skein.rollout.LaneMath.POWER_4;
+import static skein.rollout.LaneMath.POWER_5;
 import static skein.rollout.LaneMath.ROUND;
 import static skein.rollout.LaneMath.SPECIES;
 
@@ -171,21 +168,17 @@ final class LaneControllers {
         toNext = IntVector.broadcast(INTS, toNextGrains);
     FloatVector toNextS = FloatVector.broadcast(SPECIES, toNextSeconds),
         speed = FloatVector.broadcast(SPECIES, speedMps),
-        perLag = FloatVector.broadcast(SPECIES, 1 / lagS),
+        doublings = FloatVector.broadcast(SPECIES, LOG2_E / lagS),
         undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
         grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
-        log2E = FloatVector.broadcast(SPECIES, LOG2_E),
         round = FloatVector.broadcast(SPECIES, ROUND),
-        ln2Part1 = FloatVector.broadcast(SPECIES, LN_2_1),
-        ln2Part2 = FloatVector.broadcast(SPECIES, LN_2_2),
-        exp2 = FloatVector.broadcast(SPECIES, EXP_2),
-        exp3 = FloatVector.broadcast(SPECIES, EXP_3),
-        exp4 = FloatVector.broadcast(SPECIES, EXP_4),
-        exp5 = FloatVector.broadcast(SPECIES, EXP_5),
-        exp6 = FloatVector.broadcast(SPECIES, EXP_6),
-        exp7 = FloatVector.broadcast(SPECIES, EXP_7);
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
     float[] commands = vehicles.commands;
     IntVector soonest = never, latest = past;
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -216,18 +209,12 @@ final class LaneControllers {
               ((FloatVector) actsAt.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS),
               yes);
       acts.intoArray(commands, slot + LagVehicles.AT + i);
-      FloatVector exponent = acts.mul(perLag);
-      FloatVector rounded = exponent.fma(log2E, round);
-      FloatVector power = rounded.sub(round);
-      FloatVector rest = power.fma(ln2Part2, power.fma(ln2Part1, exponent));
-      FloatVector series =
-          rest.fma(exp7, exp6)
-              .fma(rest, exp5)
-              .fma(rest, exp4)
-              .fma(rest, exp3)
-              .fma(rest, exp2)
-              .fma(rest.mul(rest), rest.add(one));
-      series
+      FloatVector exponent = acts.mul(doublings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
+      rest.fma(power5, power4)
+          .fma(square, rest.fma(power3, power2))
+          .fma(square, rest.fma(power1, one))
           .reinterpretAsInts()
           .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
           .reinterpretAsFloats()
