@@ -5,10 +5,7 @@ import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.rollout.LaneMath.INTS;
 import static skein.rollout.LaneMath.LANES;
-import static skein.rollout.LaneMath.ONE;
 import static skein.rollout.LaneMath.SPECIES;
-import static skein.rollout.LaneMath.ZERO;
-import static skein.rollout.LaneMath.constant;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -29,32 +26,28 @@ import skein.vehicle.ReducedModel;
  * thread.
  */
 final class PlanKernel implements CandidateBlock {
-  private static final FloatVector SIN_3 = constant(-1f / 6), SIN_5 = constant(1f / 120);
-  private static final FloatVector SIN_7 = constant(-1f / 5040);
-  private static final FloatVector COS_2 = constant(-0.5f), COS_4 = constant(1f / 24);
-  private static final FloatVector COS_6 = constant(-1f / 720);
+  private static final float SIN_3 = -1f / 6, SIN_5 = 1f / 120, SIN_7 = -1f / 5040;
+  private static final float COS_2 = -0.5f, COS_4 = 1f / 24, COS_6 = -1f / 720;
 
   // (1 − e^(−a)) / a = 1 − a/2 + a²/6 − …, whose next term is below 7e-6 for a up to 0.5.
-  private static final FloatVector GLIDE_1 = constant(-1f / 2), GLIDE_2 = constant(1f / 6);
-  private static final FloatVector GLIDE_3 = constant(-1f / 24), GLIDE_4 = constant(1f / 120);
-  private static final FloatVector GLIDE_5 = constant(-1f / 720);
+  private static final float GLIDE_1 = -1f / 2, GLIDE_2 = 1f / 6, GLIDE_3 = -1f / 24;
+  private static final float GLIDE_4 = 1f / 120, GLIDE_5 = -1f / 720;
 
-  private static final FloatVector ONE_AND_A_HALF = constant(1.5f), HALF = constant(0.5f);
-  private static final FloatVector TINY = constant((float) ManoeuvreRollout.Tiny());
-  private static final FloatVector BREACH = constant((float) ManoeuvreRollout.Breach());
-  private static final FloatVector GUARD = constant((float) ManoeuvreRollout.Guard());
-  private static final FloatVector FAR = constant(1e9f);
-  private static final FloatVector LEAST_EXPONENT = constant(-80f), MOST_EXPONENT = constant(20f);
+  private static final float TINY = (float) ManoeuvreRollout.Tiny();
+  private static final float BREACH = (float) ManoeuvreRollout.Breach();
+  private static final float GUARD = (float) ManoeuvreRollout.Guard();
+  private static final float FAR = 1e9f;
+  private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 
   // The sum of the four bytes of a hash: nearly normal, with mean 510 and this deviation.
-  private static final FloatVector NORMAL_SCALE = constant(Draws.Scale());
-  private static final IntVector BYTES = IntVector.broadcast(INTS, 0x00ff00ff);
-  private static final IntVector LOWER = IntVector.broadcast(INTS, 0xffff);
+  private static final float NORMAL_SCALE = Draws.Scale();
+  private static final int BYTES = 0x00ff00ff;
+  private static final int LOWER = 0xffff;
 
   /** The bits of 2²³, whose lowest ones count up from there: an integer becomes a float by them. */
-  private static final IntVector FLOAT_BITS = IntVector.broadcast(INTS, 0x4b000000);
+  private static final int FLOAT_BITS = 0x4b000000;
 
-  private static final FloatVector FLOAT_BASE = constant(8388608f + 510f);
+  private static final float FLOAT_BASE = 8388608f + 510f;
 
   private static final int SIZE = CandidateBlock.Size();
 
@@ -155,28 +148,33 @@ final class PlanKernel implements CandidateBlock {
 
   private void noise(int[] keys, int place, float[] into) {
     LaneRandom.upperBits(keys, place, 0, bits, SIZE);
+    IntVector bytes = IntVector.broadcast(INTS, BYTES),
+        lower = IntVector.broadcast(INTS, LOWER),
+        floatBits = IntVector.broadcast(INTS, FLOAT_BITS);
+    FloatVector base = FloatVector.broadcast(SPECIES, FLOAT_BASE),
+        scale = FloatVector.broadcast(SPECIES, NORMAL_SCALE);
     for (int i = 0; i < SIZE; i += LANES) {
       IntVector drawn = IntVector.fromArray(INTS, bits, i);
-      IntVector pairs = drawn.and(BYTES).add(drawn.lanewise(LSHR, 8).and(BYTES));
-      IntVector sum = pairs.and(LOWER).add(pairs.lanewise(LSHR, 16));
-      sum.or(FLOAT_BITS)
+      IntVector pairs = drawn.and(bytes).add(drawn.lanewise(LSHR, 8).and(bytes));
+      IntVector sum = pairs.and(lower).add(pairs.lanewise(LSHR, 16));
+      sum.or(floatBits)
           .reinterpretAsFloats()
-          .sub(FLOAT_BASE)
-          .mul(NORMAL_SCALE)
+          .sub(base)
+          .mul(scale)
           .intoArray(into, i);
     }
   }
 
   private void perturb(int step, Search search) {
     Limits limits = objective.limits();
-    FloatVector slowest = constant((float) limits.minSpeed());
-    FloatVector fastest = constant((float) limits.maxSpeed());
-    FloatVector steepest = constant((float) limits.maxTurnRate());
-    FloatVector curvature = constant((float) limits.curvature());
-    FloatVector turnMean = constant(search.turnMeans()[step]);
-    FloatVector turnSd = constant(search.turnSds()[step]);
-    FloatVector speedMean = constant(search.speedMeans()[step]);
-    FloatVector speedSd = constant(search.speedSds()[step]);
+    FloatVector slowest = FloatVector.broadcast(SPECIES, (float) limits.minSpeed());
+    FloatVector fastest = FloatVector.broadcast(SPECIES, (float) limits.maxSpeed());
+    FloatVector steepest = FloatVector.broadcast(SPECIES, (float) limits.maxTurnRate());
+    FloatVector curvature = FloatVector.broadcast(SPECIES, (float) limits.curvature());
+    FloatVector turnMean = FloatVector.broadcast(SPECIES, search.turnMeans()[step]);
+    FloatVector turnSd = FloatVector.broadcast(SPECIES, search.turnSds()[step]);
+    FloatVector speedMean = FloatVector.broadcast(SPECIES, search.speedMeans()[step]);
+    FloatVector speedSd = FloatVector.broadcast(SPECIES, search.speedSds()[step]);
     for (int i = 0, at = step * SIZE; i < SIZE; i += LANES, at += LANES) {
       FloatVector speed =
           FloatVector.fromArray(SPECIES, speedNoise, i)
@@ -211,16 +209,31 @@ final class PlanKernel implements CandidateBlock {
     Motion own = situation.own();
     ReducedModel model = situation.response();
     float lag = (float) model.lagS();
-    FloatVector gain = constant((float) model.gain());
-    FloatVector dt = constant(dtS), perLag = constant((float) (dtS / model.lagS()));
-    FloatVector drag = constant((float) (model.dragPerM() * dtS));
-    FloatVector brake = constant((float) (model.dragPerM() * model.lagS()));
-    FloatVector startVx = constant((float) own.vx()), startVy = constant((float) own.vy());
-    FloatVector startCos = constant((float) StrictMath.cos(situation.headingRad()));
-    FloatVector startSin = constant((float) StrictMath.sin(situation.headingRad()));
+    FloatVector gain = FloatVector.broadcast(SPECIES, (float) model.gain());
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS), perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
+    FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) own.vx()), startVy = FloatVector.broadcast(SPECIES, (float) own.vy());
+    FloatVector startCos = FloatVector.broadcast(SPECIES, (float) StrictMath.cos(situation.headingRad()));
+    FloatVector startSin = FloatVector.broadcast(SPECIES, (float) StrictMath.sin(situation.headingRad()));
     float firstTurnS = (float) situation.sinceDecisionS();
+    FloatVector sin3 = FloatVector.broadcast(SPECIES, SIN_3),
+        sin5 = FloatVector.broadcast(SPECIES, SIN_5),
+        sin7 = FloatVector.broadcast(SPECIES, SIN_7),
+        cos2 = FloatVector.broadcast(SPECIES, COS_2),
+        cos4 = FloatVector.broadcast(SPECIES, COS_4),
+        cos6 = FloatVector.broadcast(SPECIES, COS_6),
+        half = FloatVector.broadcast(SPECIES, 0.5f),
+        oneAndAHalf = FloatVector.broadcast(SPECIES, 1.5f);
+    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
+        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
+        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
+        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
+        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f);
     for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector px = ZERO, py = ZERO, vx = startVx, vy = startVy, c = startCos, s = startSin;
+      FloatVector px = zero, py = zero, vx = startVx, vy = startVy, c = startCos, s = startSin;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         c.intoArray(cos, at);
         s.intoArray(sin, at);
@@ -228,22 +241,22 @@ final class PlanKernel implements CandidateBlock {
             FloatVector.fromArray(SPECIES, turnRates, at).mul(step == 0 ? firstTurnS : dtS);
         FloatVector square = angle.mul(angle);
         FloatVector sinTurn =
-            square.fma(SIN_7, SIN_5).fma(square, SIN_3).mul(square).fma(angle, angle);
-        FloatVector cosTurn = square.fma(COS_6, COS_4).fma(square, COS_2).fma(square, ONE);
+            square.fma(sin7, sin5).fma(square, sin3).mul(square).fma(angle, angle);
+        FloatVector cosTurn = square.fma(cos6, cos4).fma(square, cos2).fma(square, one);
         FloatVector turned = c.mul(cosTurn).sub(s.mul(sinTurn));
         s = s.mul(cosTurn).add(c.mul(sinTurn));
         // One step of Newton's method keeps the length at 1.
-        FloatVector length = turned.fma(turned, s.mul(s)).mul(HALF);
-        FloatVector unit = ONE_AND_A_HALF.sub(length);
+        FloatVector length = turned.fma(turned, s.mul(s)).mul(half);
+        FloatVector unit = oneAndAHalf.sub(length);
         c = turned.mul(unit);
         s = s.mul(unit);
         FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
         FloatVector a = pace.fma(drag, perLag);
-        FloatVector slide = a.fma(GLIDE_5, GLIDE_4).fma(a, GLIDE_3).fma(a, GLIDE_2).fma(a, GLIDE_1);
-        FloatVector glided = slide.fma(a, ONE);
-        FloatVector decay = ONE.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector slide = a.fma(glide5, glide4).fma(a, glide3).fma(a, glide2).fma(a, glide1);
+        FloatVector glided = slide.fma(a, one);
+        FloatVector decay = one.sub(glided.mul(a)), glide = glided.mul(dt);
         FloatVector speed =
-            FloatVector.fromArray(SPECIES, speeds, at).mul(gain).div(pace.fma(brake, ONE));
+            FloatVector.fromArray(SPECIES, speeds, at).mul(gain).div(pace.fma(brake, one));
         FloatVector wantedX = speed.mul(c), wantedY = speed.mul(s);
         FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
         px = offX.fma(glide, wantedX.fma(dt, px));
@@ -262,15 +275,19 @@ final class PlanKernel implements CandidateBlock {
   /** What the manoeuvre costs by itself: effort, and leaving the geofence. */
   private void bound() {
     Geofence fence = objective.geofence();
-    FloatVector south = constant(within(fence.minNorth() - originX));
-    FloatVector north = constant(within(fence.maxNorth() - originX));
-    FloatVector west = constant(within(fence.minEast() - originY));
-    FloatVector east = constant(within(fence.maxEast() - originY));
-    FloatVector turning = constant((float) objective.turning() * dtS);
-    FloatVector hurry = constant((float) objective.speedChange() * dtS);
-    FloatVector cruise = constant((float) objective.cruiseSpeed());
+    FloatVector south = FloatVector.broadcast(SPECIES, within(fence.minNorth() - originX));
+    FloatVector north = FloatVector.broadcast(SPECIES, within(fence.maxNorth() - originX));
+    FloatVector west = FloatVector.broadcast(SPECIES, within(fence.minEast() - originY));
+    FloatVector east = FloatVector.broadcast(SPECIES, within(fence.maxEast() - originY));
+    FloatVector turning = FloatVector.broadcast(SPECIES, (float) objective.turning() * dtS);
+    FloatVector hurry = FloatVector.broadcast(SPECIES, (float) objective.speedChange() * dtS);
+    FloatVector cruise = FloatVector.broadcast(SPECIES, (float) objective.cruiseSpeed());
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        guard = FloatVector.broadcast(SPECIES, GUARD),
+        breach = FloatVector.broadcast(SPECIES, BREACH);
     for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector cost = ZERO;
+      FloatVector cost = zero;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         FloatVector turn = FloatVector.fromArray(SPECIES, turnRates, at);
         FloatVector speed = FloatVector.fromArray(SPECIES, speeds, at);
@@ -279,9 +296,9 @@ final class PlanKernel implements CandidateBlock {
         FloatVector px = FloatVector.fromArray(SPECIES, x, at);
         FloatVector py = FloatVector.fromArray(SPECIES, y, at);
         FloatVector beyond =
-            south.sub(px).max(px.sub(north)).max(west.sub(py)).max(py.sub(east)).add(GUARD);
-        VectorMask<Float> outside = beyond.compare(GT, ZERO);
-        cost = cost.add(ZERO.blend(beyond.add(ONE).mul(BREACH), outside));
+            south.sub(px).max(px.sub(north)).max(west.sub(py)).max(py.sub(east)).add(guard);
+        VectorMask<Float> outside = beyond.compare(GT, zero);
+        cost = cost.add(zero.blend(beyond.add(one).mul(breach), outside));
       }
       cost.intoArray(costs, i);
     }
@@ -294,8 +311,12 @@ final class PlanKernel implements CandidateBlock {
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
     Separation separation = objective.separation();
-    FloatVector least = constant((float) (separation.minimum() + ManoeuvreRollout.Guard()));
-    FloatVector price = constant((float) separation.price() * dtS);
+    FloatVector least = FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
+    FloatVector price = FloatVector.broadcast(SPECIES, (float) separation.price() * dtS);
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        tiny = FloatVector.broadcast(SPECIES, TINY),
+        breach = FloatVector.broadcast(SPECIES, BREACH);
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
@@ -304,14 +325,14 @@ final class PlanKernel implements CandidateBlock {
         float clearance = (float) separation.clearance((step + 1) * dtS);
         for (int other = step; other < othersX.length; other += steps) {
           FloatVector dx = px.sub(othersX[other]), dy = py.sub(othersY[other]);
-          FloatVector distance = dx.fma(dx, dy.fma(dy, TINY)).sqrt();
-          FloatVector missing = distance.neg().add(clearance).max(ZERO);
+          FloatVector distance = dx.fma(dx, dy.fma(dy, tiny)).sqrt();
+          FloatVector missing = distance.neg().add(clearance).max(zero);
           VectorMask<Float> breached = distance.compare(LT, least);
           cost =
               missing
                   .mul(missing)
                   .fma(price, cost)
-                  .add(ZERO.blend(least.sub(distance).add(ONE).mul(BREACH), breached));
+                  .add(zero.blend(least.sub(distance).add(one).mul(breach), breached));
         }
       }
       cost.intoArray(costs, i);
@@ -321,19 +342,27 @@ final class PlanKernel implements CandidateBlock {
   /** The paper's evader, which knows the heading commanded before this step's. */
   private void evade(Target.Evader evader) {
     ReducedModel model = evader.response();
-    FloatVector dt = constant(dtS), perLag = constant((float) (dtS / model.lagS()));
-    FloatVector drag = constant((float) (model.dragPerM() * dtS));
-    FloatVector brake = constant((float) (model.dragPerM() * model.lagS()));
-    FloatVector commanded = constant((float) (evader.speed() * model.gain()));
-    FloatVector radius = constant((float) evader.turningRadius());
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS), perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
+    FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
+    FloatVector commanded = FloatVector.broadcast(SPECIES, (float) (evader.speed() * model.gain()));
+    FloatVector radius = FloatVector.broadcast(SPECIES, (float) evader.turningRadius());
     FloatVector circle = radius.mul(radius), near = circle.mul(4f);
-    FloatVector startX = constant((float) (evader.motion().x() - originX));
-    FloatVector startY = constant((float) (evader.motion().y() - originY));
-    FloatVector startVx = constant((float) evader.motion().vx());
-    FloatVector startVy = constant((float) evader.motion().vy());
+    FloatVector startX = FloatVector.broadcast(SPECIES, (float) (evader.motion().x() - originX));
+    FloatVector startY = FloatVector.broadcast(SPECIES, (float) (evader.motion().y() - originY));
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) evader.motion().vx());
+    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) evader.motion().vy());
     float lag = (float) model.lagS();
+    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
+        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
+        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
+        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
+        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f);
+    FloatVector tiny = FloatVector.broadcast(SPECIES, TINY);
     for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector tx = startX, ty = startY, vx = startVx, vy = startVy, px = ZERO, py = ZERO;
+      FloatVector tx = startX, ty = startY, vx = startVx, vy = startVy, px = zero, py = zero;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         FloatVector c = FloatVector.fromArray(SPECIES, cos, at);
         FloatVector s = FloatVector.fromArray(SPECIES, sin, at);
@@ -348,11 +377,11 @@ final class PlanKernel implements CandidateBlock {
         FloatVector w = right.blend(ahead, isNear).blend(inner, inLeft).blend(outer, inRight);
         FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
         FloatVector a = pace.fma(drag, perLag);
-        FloatVector slide = a.fma(GLIDE_5, GLIDE_4).fma(a, GLIDE_3).fma(a, GLIDE_2).fma(a, GLIDE_1);
-        FloatVector glided = slide.fma(a, ONE);
-        FloatVector decay = ONE.sub(glided.mul(a)), glide = glided.mul(dt);
-        FloatVector length = u.fma(u, w.fma(w, TINY)).sqrt();
-        FloatVector scale = commanded.div(length.mul(pace.fma(brake, ONE)));
+        FloatVector slide = a.fma(glide5, glide4).fma(a, glide3).fma(a, glide2).fma(a, glide1);
+        FloatVector glided = slide.fma(a, one);
+        FloatVector decay = one.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector length = u.fma(u, w.fma(w, tiny)).sqrt();
+        FloatVector scale = commanded.div(length.mul(pace.fma(brake, one)));
         FloatVector wantedX = u.mul(c).sub(w.mul(s)).mul(scale);
         FloatVector wantedY = u.mul(s).add(w.mul(c)).mul(scale);
         FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
@@ -382,14 +411,16 @@ final class PlanKernel implements CandidateBlock {
   /** What the distance to the target costs, times the weight of the behaviour. */
   private void score(float weight) {
     float each = (float) objective.distance() * dtS;
-    FloatVector nearest = constant((float) objective.closest());
-    FloatVector carried = constant((float) objective.carried());
-    FloatVector radius = constant((float) objective.captureRadius());
-    FloatVector bonus = constant((float) objective.capture());
+    FloatVector nearest = FloatVector.broadcast(SPECIES, (float) objective.closest());
+    FloatVector carried = FloatVector.broadcast(SPECIES, (float) objective.carried());
+    FloatVector radius = FloatVector.broadcast(SPECIES, (float) objective.captureRadius());
+    FloatVector bonus = FloatVector.broadcast(SPECIES, (float) objective.capture());
     double softness = objective.softness();
-    FloatVector soft = constant((float) (softness * softness + ManoeuvreRollout.Tiny()));
+    FloatVector soft = FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        far = FloatVector.broadcast(SPECIES, FAR);
     for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector sum = ZERO, least = FAR, dx = ZERO, dy = ZERO;
+      FloatVector sum = zero, least = far, dx = zero, dy = zero;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         dx =
             FloatVector.fromArray(SPECIES, targetX, at)
@@ -408,7 +439,7 @@ final class PlanKernel implements CandidateBlock {
           dy.add(FloatVector.fromArray(SPECIES, targetEndVy, i))
               .sub(FloatVector.fromArray(SPECIES, endVy, i));
       FloatVector end = endX.fma(endX, endY.fma(endY, soft)).sqrt();
-      FloatVector captured = ZERO.blend(bonus, least.compare(LT, radius));
+      FloatVector captured = zero.blend(bonus, least.compare(LT, radius));
       FloatVector cost = sum.mul(each).add(least.mul(nearest)).add(end.mul(carried)).sub(captured);
       cost.mul(weight).add(FloatVector.fromArray(SPECIES, costs, i)).intoArray(costs, i);
     }

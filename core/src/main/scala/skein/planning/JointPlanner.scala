@@ -24,11 +24,20 @@ object PlanProblem:
   * candidates: one per thread.
   */
 final class JointPlanner:
-  private val blocks = mutable.Map.empty[Int, CandidateBlock]
+  private val blocks   = mutable.Map.empty[Int, CandidateBlock]
+  private val planners = mutable.Map.empty[(PlannerSettings, Objective), Planner]
 
   private def planner(settings: PlannerSettings, objective: Objective): Planner =
-    if blocks.size > JointPlanner.MostBlocks then blocks.clear()
-    new Planner(settings, objective, blocks.getOrElseUpdate(settings.steps, CandidateBlock(settings.steps)))
+    planners.getOrElse(
+      (settings, objective), {
+        if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
+        if planners.size >= JointPlanner.MostPlanners then planners.clear()
+        val block = blocks.getOrElseUpdate(settings.steps, CandidateBlock(settings.steps))
+        val made  = new Planner(settings, objective, block)
+        planners((settings, objective)) = made
+        made
+      }
+    )
 
   /** The plan to begin with: what is left of the last, or straight on for all. */
   def resumed(problem: PlanProblem, last: Option[JointPlan]): JointPlan =
@@ -70,6 +79,9 @@ final class JointPlanner:
 object JointPlanner:
   /** Kept, by their steps; of more, all are made anew. */
   private val MostBlocks = 8
+
+  /** Kept likewise, by their settings and objectives. */
+  private val MostPlanners = 64
 
   /** The best of what several searches have found; of equals the first. Its plans count the candidates of all. */
   def best(problem: PlanProblem, found: Vector[JointPlan]): JointPlan =

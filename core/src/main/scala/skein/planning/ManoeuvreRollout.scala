@@ -34,7 +34,8 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       val beyond = objective.geofence.beyond(own.x, own.y)
       if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
       if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
-      for (other, index) <- situation.others.zipWithIndex do
+      for index <- situation.others.indices do
+        val other    = situation.others(index)
         val distance = StrictMath.hypot(own.x - other.x(step), own.y - other.y(step))
         val missing  = objective.separation.clearance((step + 1) * dtS) - distance
         if missing > 0 then cost += missing * missing * objective.separation.price * dtS

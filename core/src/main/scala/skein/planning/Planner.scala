@@ -74,7 +74,7 @@ final class Planner private[planning] (
   private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
 
   /** Before anything was planned: straight on. */
-  val start: Plan = around(Manoeuvre.straight(cruise, steps))
+  def start: Plan = around(Manoeuvre.straight(cruise, steps))
 
   /** The plan to begin with when time has passed: what is left of the last, to be tried anew. */
   def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
@@ -155,10 +155,11 @@ final class Planner private[planning] (
     least
 
   private def manoeuvreAt(i: Int): Manoeuvre =
-    Manoeuvre(
-      IArray.tabulate(steps)(step => block.turnRates(step * size + i)),
-      IArray.tabulate(steps)(step => block.speeds(step * size + i))
-    )
+    def column(values: Array[Float]): IArray[Float] =
+      val of = Array.ofDim[Float](steps)
+      for step <- 0 until steps do of(step) = values(step * size + i)
+      IArray.unsafeFromArray(of)
+    Manoeuvre(column(block.turnRates), column(block.speeds))
 
   private def gatherElites(): Unit =
     var worst = indexOfWorst
@@ -184,18 +185,26 @@ final class Planner private[planning] (
 
   private def eliteSearch(before: Search, kept: Float): Search =
     def moments(values: Array[Float], means: IArray[Float], sds: IArray[Float]) =
-      val moved = IArray.tabulate(steps): step =>
-        val each     = eliteCosts.indices.map(elite => values(elite * steps + step).toDouble)
-        val mean     = each.sum / each.size
-        val variance = each.map(value => (value - mean) * (value - mean)).sum / each.size
-        (mean.toFloat, math.sqrt(variance).toFloat)
-      (
-        IArray.tabulate(steps)(step => kept * means(step) + (1 - kept) * moved(step)._1),
-        IArray.tabulate(steps)(step => kept * sds(step) + (1 - kept) * moved(step)._2)
-      )
+      val (newMeans, newSds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
+      for step <- 0 until steps do
+        val mean     = meanOverElites(elite => values(elite * steps + step))
+        val variance = meanOverElites: elite =>
+          val off = values(elite * steps + step) - mean
+          off * off
+        newMeans(step) = kept * means(step) + (1 - kept) * mean.toFloat
+        newSds(step) = kept * sds(step) + (1 - kept) * math.sqrt(variance).toFloat
+      (IArray.unsafeFromArray(newMeans), IArray.unsafeFromArray(newSds))
     val (turnMeans, turnSds)   = moments(eliteTurns, before.turnMeans, before.turnSds)
     val (speedMeans, speedSds) = moments(eliteSpeeds, before.speedMeans, before.speedSds)
     Search(turnMeans, turnSds, speedMeans, speedSds)
+
+  private inline def meanOverElites(inline value: Int => Double): Double =
+    var total = 0.0
+    var elite = 0
+    while elite < eliteCosts.length do
+      total += value(elite)
+      elite += 1
+    total / eliteCosts.length
 
   private def weightedSearch(before: Search): Search =
     val total                     = sum(block.weightSums, 0)
