@@ -101,6 +101,11 @@ lazy val app = project
       """  *" plan "*|*" --config"*|*" --duration"*|*" --pairs"*|*" --scenario"*) ;;""",
       """  *" fly"*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;;""",
       """esac""",
+      // Whoever chooses a collector or sizes chooses them all.
+      """case "${JAVA_OPTS-} $*" in""",
+      """  *-Xm[nsx]*|*-XX:+Use*GC*) ;;""",
+      s"""  *) ${Jvm.control.map(option => s"addJava $option").mkString("; ")} ;;""",
+      """esac""",
       """addJava "-Xlog:disable""""
     )
   )
@@ -109,7 +114,7 @@ lazy val app = project
 lazy val bench =
   project
     .dependsOn(app)
-    .settings(Jvm.vectorModule, underAgent)
+    .settings(Jvm.vectorModule, underAgent, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
 
 /** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */

@@ -3,6 +3,7 @@ package skein.experiment
 import org.apache.pekko.actor.ActorSystem
 import scala.annotation.tailrec
 import scala.concurrent.Future
+import skein.flow.BackgroundThread
 import skein.link.{Clock, Transport}
 import skein.loop.Outcome
 import skein.record.MemoryRecorder
@@ -57,7 +58,7 @@ object WarmUp:
 
   /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a link, against
     * built-in simulators, with more vehicles and more often: what virtual time replaces, sockets and threads, is warm
-    * then too.
+    * then too. Afterwards the compiler gives way to what is flown.
     *
     * @return
     *   how many decisions were made, or why a loop could not be flown
@@ -90,4 +91,5 @@ object WarmUp:
                 case _                      => Right(recorder.recording.decisions.size)
           .map(_.left.map(reason => s"${plan.id}, to warm up: $reason"))
       .map: flown =>
+        val _ = BackgroundThread.compilersGiveWay()
         flown.collectFirst { case Left(reason) => reason }.toLeft(flown.flatMap(_.toOption).sum)

@@ -1,18 +1,23 @@
 package skein.flow
 
-import java.lang.foreign.{FunctionDescriptor, Linker, ValueLayout}
+import java.lang.foreign.{Arena, FunctionDescriptor, Linker, ValueLayout}
+import java.nio.file.{Files, Path}
 import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.AtomicInteger
-import scala.util.Try
+import scala.jdk.CollectionConverters.*
+import scala.util.{Try, Using}
 
-/** Threads that give way to all others. */
+/** Threads that give way to all others of the user's session.
+  *
+  * Java's priorities have no effect on Linux, and neither has niceness on how soon a thread runs that wakes up: it waits
+  * until the one on its processor has used up its slice, some 3 to 5 ms, as nice as that may be. Only `SCHED_IDLE` (see
+  * sched(7)) is taken the processor from at once, which any process may ask for, and for ever. Its price: where other
+  * programs of the session keep all processors busy, such a thread hardly runs, and the JVM, which stops all threads now
+  * and then, has to wait for it; for one that is ready to run, 0.8 s were seen.
+  */
 object BackgroundThread:
 
-  /** Daemon threads of low priority. Java's priorities have no effect on Linux, so there each thread makes itself nicer
-    * (see setpriority(2), whose `who` is a thread on Linux), which any process may do: a thread of ours that wakes up
-    * takes the processor from it. It is not kept from the processor altogether, since the JVM stops all threads now and
-    * then and would wait for one that never runs.
-    */
+  /** Daemon threads that give way. */
   def factory(name: String): ThreadFactory =
     val count = AtomicInteger()
     (work: Runnable) =>
@@ -27,26 +32,46 @@ object BackgroundThread:
       thread.setPriority(Thread.MIN_PRIORITY)
       thread
 
-  /** Makes the calling thread nicer; says whether the system did so. */
-  private[flow] def giveWay(): Boolean =
-    System.getProperty("os.name") == "Linux" && Try(setPriority()).getOrElse(false)
+  /** Makes the calling thread give way; says whether the system did so. */
+  private[flow] def giveWay(): Boolean = isLinux && giveWay(CallingThread)
 
-  private def setPriority(): Boolean =
-    val linker = Linker.nativeLinker()
-    val call   = linker.downcallHandle(
-      linker.defaultLookup().findOrThrow("setpriority"),
-      FunctionDescriptor.of(
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT
+  /** Makes the threads give way that compile the program while it runs: for when most of it is compiled.
+    *
+    * @return
+    *   how many the system made do so
+    */
+  def compilersGiveWay(): Int =
+    if isLinux then Try(compilers.count(giveWay)).getOrElse(0) else 0
+
+  private def compilers: Vector[Int] =
+    Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector)
+      .filter(task => CompilerNames.exists(Files.readString(task.resolve("comm")).startsWith))
+      .map(_.getFileName.toString.toInt)
+
+  /** As HotSpot calls its compiler threads. */
+  private val CompilerNames = Vector("C1 Comp", "C2 Comp")
+
+  private def isLinux = System.getProperty("os.name") == "Linux"
+
+  private def giveWay(thread: Int): Boolean =
+    Try:
+      val linker = Linker.nativeLinker()
+      val call   = linker.downcallHandle(
+        linker.defaultLookup().findOrThrow("sched_setscheduler"),
+        FunctionDescriptor.of(
+          ValueLayout.JAVA_INT,
+          ValueLayout.JAVA_INT,
+          ValueLayout.JAVA_INT,
+          ValueLayout.ADDRESS
+        )
       )
-    )
-    val result: AnyRef = call.invokeWithArguments(Int.box(PrioProcess), Int.box(0), Int.box(Nice))
-    result == Int.box(0)
+      Using.resource(Arena.ofConfined()): arena =>
+        val priority       = arena.allocate(ValueLayout.JAVA_INT)
+        val result: AnyRef = call.invokeWithArguments(Int.box(thread), Int.box(SchedIdle), priority)
+        result == Int.box(0)
+    .getOrElse(false)
 
-  /** `PRIO_PROCESS` in Linux's sys/resource.h; 0 is then the calling thread. */
-  private val PrioProcess = 0
+  private val CallingThread = 0
 
-  /** A tenth of an ordinary thread's share, where both want the processor. */
-  private val Nice = 10
+  /** `SCHED_IDLE` in Linux's linux/sched.h. */
+  private[flow] val SchedIdle = 5

@@ -118,7 +118,7 @@ object PlanSettings:
     PathIntegral -> Method.PathIntegral(temperature = 0.1)
   )
 
-  /** Half a millisecond's work. */
+  /** Work for a tenth of a millisecond with lanes, for two without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
   /** Reads settings back from their text; absent where that is no such text. */

@@ -62,11 +62,3 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
     val later  = finished(workers, problem(2))
     assert(later.forall(_.slices > 3))
     assertEquals(search.finish().map(_.slices), found.map(_.slices))
-
-  test("on Linux a background thread gives way to others"):
-    assume(System.getProperty("os.name") == "Linux")
-    var became = false
-    val thread = Thread(() => became = BackgroundThread.giveWay())
-    thread.start()
-    thread.join()
-    assert(became, "the system refused setpriority")
