@@ -17,7 +17,7 @@ object PlanBench:
   private val evader =
     Target.paperEvader(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, PaperEvader())
 
-  private def problem(behaviours: Int): PlanProblem =
+  def problem(behaviours: Int): PlanProblem =
     val settings  = PlannerSettings(blocksPerSlice = 4)
     val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
     val situation = Situation(
@@ -29,7 +29,7 @@ object PlanBench:
     )
     PlanProblem(settings, Vector(Part(objective, situation, stream = 1)))
 
-  private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
+  def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
 
   def main(args: Array[String]): Unit =
     val seconds = args.headOption.fold(2.0)(_.toDouble)

@@ -5,36 +5,45 @@ import org.openjdk.jmh.annotations.*
 import skein.bench.Works
 import skein.rollout.*
 
-/** How long does one call of a batch take, warm, on one thread? `stream` over `vpn`, 60 s, the reduced model: divide
-  * `worlds` times 1,200 agent-steps by it. Run: `./sbtw "benchJmh/Jmh/run KernelBenchmark"`.
+/** How many million agent-steps a second do the engines of forward simulation make, on one thread? `stream` over `vpn`,
+  * 60 s, the reduced model; an agent-step is 0.1 s of one agent.
   */
 @State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.AverageTime))
-@OutputTimeUnit(TimeUnit.MILLISECONDS)
-@Warmup(iterations = 4, time = 4)
-@Measurement(iterations = 5, time = 2)
+@BenchmarkMode(Array(Mode.Throughput))
+@OutputTimeUnit(TimeUnit.MICROSECONDS)
+@Warmup(iterations = 3, time = 2)
+@Measurement(iterations = 5, time = 1)
 @Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
 class KernelBenchmark:
-  @Param(Array("128", "1024"))
-  var worlds: Int = 0
-
   private var batch: DuelBatch = null
+  private var rollout: Rollout = null
   private var witness          = 0.0
 
   @Setup
-  def prepare(): Unit = batch = Works.batch(LoopTiming.Stream(), 1)
+  def prepare(): Unit =
+    batch = Works.batch(LoopTiming.Stream(), 1)
+    rollout = Rollout(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, Works.model)
 
   @TearDown
   def show(): Unit = println(f"witness, mean of the last 10 s: $witness%.4f m")
 
   /** All candidates on one episode; its timetable is known after the first call. */
   @Benchmark
-  def candidates(): Double = fly(Works.Candidates(worlds, worlds, DelayTable.vpn, 1))
+  @OperationsPerInvocation(1024 * 1200)
+  def candidates(): Double = fly(Works.Candidates(1024, 1024, DelayTable.vpn, 1))
 
   /** Every world with delays of its own. */
   @Benchmark
-  def singleWorlds(): Double = fly(Works.Candidates(worlds, 1, DelayTable.vpn, 1))
+  @OperationsPerInvocation(1024 * 1200)
+  def singleWorlds(): Double = fly(Works.Candidates(1024, 1, DelayTable.vpn, 1))
+
+  /** The scalar reference, which flies any policy and any model. */
+  @Benchmark
+  @OperationsPerInvocation(1200)
+  def scalar(): Double =
+    witness = rollout.fly(WorldRandom.key(1, 0, 0)).meanLast10sM
+    witness
 
   private def fly(candidates: Works.Candidates): Double =
-    witness = batch.fly(candidates).meanLast10sM.map(_.toDouble).sum / worlds
+    witness = batch.fly(candidates).meanLast10sM.map(_.toDouble).sum / candidates.size
     witness

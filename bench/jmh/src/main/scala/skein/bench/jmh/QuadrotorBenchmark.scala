@@ -4,31 +4,44 @@ import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.rollout.QuadrotorKernel
 import skein.units.Vector3
+import skein.vehicle.{Quadrotor, Setpoint}
 
-/** How long does the quadrotor with its controller take for 1,000 steps of 3 ms, `QuadrotorKernel.VEHICLES` of them side
-  * by side, warm, on one thread? Run: `./sbtw "benchJmh/Jmh/run QuadrotorBenchmark"`.
+/** How many million steps of 3 ms does the quadrotor with its controller make a second, on one thread? By lanes,
+  * `QuadrotorKernel.VEHICLES` of them side by side, and one alone by the scalar reference.
   */
 @State(Scope.Benchmark)
-@BenchmarkMode(Array(Mode.AverageTime))
-@OutputTimeUnit(TimeUnit.MILLISECONDS)
-@Warmup(iterations = 4, time = 4)
-@Measurement(iterations = 5, time = 2)
+@BenchmarkMode(Array(Mode.Throughput))
+@OutputTimeUnit(TimeUnit.MICROSECONDS)
+@Warmup(iterations = 3, time = 2)
+@Measurement(iterations = 5, time = 1)
 @Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
 class QuadrotorBenchmark:
   private var kernel: QuadrotorKernel = null
   private var witness                 = 0.0
 
   @Setup
-  def prepare(): Unit = kernel = QuadrotorKernel()
+  def prepare(): Unit =
+    require(QuadrotorKernel.VEHICLES == 128, s"${QuadrotorKernel.VEHICLES} vehicles")
+    kernel = QuadrotorKernel()
 
   @TearDown
   def show(): Unit = println(f"witness, speed after 3 s: $witness%.4f m/s")
 
   @Benchmark
-  def steps(): Double =
+  @OperationsPerInvocation(128 * 1000)
+  def byLanes(): Double =
     for i <- 0 until QuadrotorKernel.VEHICLES do
       kernel.hover(i, Vector3(0, 0, -20))
       kernel.command(i, 10, 0, -20)
     kernel.fly(1000)
     witness = kernel.velocityNed(0).x
+    witness
+
+  @Benchmark
+  @OperationsPerInvocation(1000)
+  def scalar(): Double =
+    val state    = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
+    val setpoint = Setpoint.velocityZ(10, 0, -20)
+    for _ <- 1 to 1000 do Quadrotor.AirSim.step(state, setpoint)
+    witness = state.vx
     witness

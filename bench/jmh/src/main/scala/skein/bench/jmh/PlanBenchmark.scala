@@ -1,0 +1,37 @@
+package skein.bench.jmh
+
+import java.util.concurrent.TimeUnit
+import org.openjdk.jmh.annotations.*
+import skein.bench.PlanBench
+import skein.planning.*
+
+/** How many million manoeuvres does the planner draw, fly, price and search upon in a second, on one thread? Each is 2 s
+  * of pursuer and evader in 20 steps.
+  */
+@State(Scope.Benchmark)
+@BenchmarkMode(Array(Mode.Throughput))
+@OutputTimeUnit(TimeUnit.MICROSECONDS)
+@Warmup(iterations = 3, time = 2)
+@Measurement(iterations = 5, time = 1)
+@Fork(value = 1, jvmArgsAppend = Array("--add-modules", "jdk.incubator.vector"))
+class PlanBenchmark:
+  private val problem         = PlanBench.problem(behaviours = 1)
+  private val planner         = JointPlanner()
+  private var plan: JointPlan = null
+
+  @Setup(Level.Iteration)
+  def begin(): Unit =
+    require(
+      problem.settings.sliceCandidates == 512,
+      s"slices of ${problem.settings.sliceCandidates}"
+    )
+    plan = PlanBench.warm(problem)
+
+  @TearDown
+  def show(): Unit = println(f"witness, cost of the best plan: ${plan.plans.head.cost}%.3f")
+
+  @Benchmark
+  @OperationsPerInvocation(512)
+  def slices(): JointPlan =
+    plan = planner.improved(problem, plan, 0)
+    plan
