@@ -48,31 +48,34 @@ object PlanTable:
   /** Below this distance an evader is captured, m. */
   val CaptureM = 1.5
 
-  /** A row per flight that planned. */
+  /** A row per flight that planned; in what a pursuer caught, where duels were flown. */
   def of(set: FlightSet): TextTable =
+    val planned = set.flights.flatMap(summary => summary.planning.map(summary -> _))
+    val duels   = planned.exists(_._1.distance.nonEmpty)
     TextTable(
       Vector("<loop", "<link", "plans", "candidates per tick", "least", "slices", "ms", "p99") ++
-        Vector("deadlines missed", "limits broken", "captured at s", "below 1.5 m"),
-      for
-        summary  <- set.flights
-        planning <- summary.planning.toVector
-      yield
-        val below = summary.distance.fold(Vector.empty)(_.points.filter(_._2 < CaptureM))
-        val all   = summary.distance.fold(0)(_.points.size)
-        Vector(
-          summary.flight.loop,
-          summary.flight.link,
-          planning.candidates.count.toString,
-          SummaryTables.fixed(planning.candidates.mean, 0),
-          SummaryTables.fixed(planning.candidates.least, 0),
-          SummaryTables.fixed(planning.slices.mean, 1),
-          SummaryTables.brief(planning.tookMs.mean),
-          SummaryTables.brief(planning.tookMs.p99),
-          planning.missed.toString,
-          planning.breached.toString,
-          below.headOption.fold("never")(first => SummaryTables.fixed(first._1, 1)),
-          if all == 0 then "" else s"${SummaryTables.fixed(100.0 * below.size / all, 1)} %"
-        )
+        Vector("deadlines missed", "limits broken") ++
+        (if duels then Vector("captured at s", "below 1.5 m") else Vector.empty),
+      for (summary, planning) <- planned
+      yield Vector(
+        summary.flight.loop,
+        summary.flight.link,
+        planning.candidates.count.toString,
+        SummaryTables.fixed(planning.candidates.mean, 0),
+        SummaryTables.fixed(planning.candidates.least, 0),
+        SummaryTables.fixed(planning.slices.mean, 1),
+        SummaryTables.brief(planning.tookMs.mean),
+        SummaryTables.brief(planning.tookMs.p99),
+        planning.missed.toString,
+        planning.breached.toString
+      ) ++ (if duels then summary.distance.fold(Vector("", ""))(caught) else Vector.empty)
+    )
+
+  private def caught(distance: DistanceCurve): Vector[String] =
+    val below = distance.points.filter(_._2 < CaptureM)
+    Vector(
+      below.headOption.fold("never")(first => SummaryTables.fixed(first._1, 1)),
+      s"${SummaryTables.fixed(100.0 * below.size / distance.points.size, 1)} %"
     )
 
   val title = "Plans"

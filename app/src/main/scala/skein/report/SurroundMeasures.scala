@@ -17,9 +17,9 @@ object SurroundMeasures:
         Measure("gap °", Some(mean(last.map(gapDeg(track, _))))),
         Measure("surrounded after s", surroundedFromS(track))
       ),
-      "mean distance to the evader",
-      track.curve(meanDistanceM(track, _)),
-      Some(scenario.ringM)
+      "off the ring, rms",
+      track.curve(instant => offRingM(scenario, track, instant to instant)),
+      None
     )
 
   /** Of the pursuers from the evader, m. */

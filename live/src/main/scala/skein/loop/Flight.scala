@@ -78,7 +78,7 @@ object Flight:
         case Failure(error) =>
           val reason = Option(error.getMessage).getOrElse(error.toString)
           stopping.trySuccess(Outcome.Failed(reason))
-          team.note(EventKind.Aborted, None, reason)
+          team.log.note(EventKind.Aborted, None, reason)
           // `paused` has told them already.
           val hovering = if kind == LoopKind.Paused then Future.unit else team.hoverAll()
           hovering.transformWith(_ => stopping.future)

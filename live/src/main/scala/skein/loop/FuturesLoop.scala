@@ -18,7 +18,7 @@ object FuturesLoop:
       .conflate(_ + _)
       .mapConcat: ticks =>
         if ticks > 1 then
-          team.note(EventKind.Skipped, None, s"${ticks - 1} steps missed: too many futures run")
+          team.log.note(EventKind.Skipped, None, s"${ticks - 1} steps missed: too many futures run")
         team.vehicles
       .mapAsyncUnordered(team.settings.window * team.vehicles.size)(vehicle =>
         team.readAll().map(_.map(Percept.Seen(_, Set(vehicle))))

@@ -66,7 +66,7 @@ private final class PausedFlight(
           case Right(())                      => Future.fromTry(ended)
           case Left(error) if ended.isSuccess => Future.failed(LoopFailed(standsStill(error)))
           case Left(error)                    =>
-            team.note(EventKind.Aborted, None, standsStill(error))
+            team.log.note(EventKind.Aborted, None, standsStill(error))
             Future.fromTry(ended)
       yield done
 
@@ -95,15 +95,15 @@ private final class PausedFlight(
   private def send(decisions: Vector[Decision], picture: Picture): Unit =
     replaced = newest
     newest = decisions.zipWithIndex.map: (decision, vehicle) =>
-      team.record(vehicle, decision, picture)
-      team.sent(vehicle, decision, clock.now())
-      team.move(vehicle, decision).andThen(result => team.ended(vehicle, decision, clock.now(), result))
+      team.log.decided(vehicle, decision, picture)
+      team.log.sent(vehicle, decision, clock.now())
+      team.move(vehicle, decision).andThen(result => team.log.ended(vehicle, decision, clock.now(), result))
 
   private def verifyStep(step: Step, now: Instant): Unit =
     for before <- step.picture.readings(0) do
       val stepped = now.since(before.state.validAt)
       if stepped != team.settings.period then
-        team.note(
+        team.log.note(
           EventKind.StepDrift,
           None,
           s"step ${step.number} took ${stepped.toMillis} ms of simulator time instead of ${team.settings.period.toMillis} ms"

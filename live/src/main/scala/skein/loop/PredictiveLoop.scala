@@ -61,4 +61,4 @@ object PredictiveLoop:
 
   /** A prediction is made for the moment of its decision: when the command can leave. */
   private def newest(team: Team, vehicle: Option[Int]) =
-    Newest[Sight](_ => team.note(EventKind.Dropped, vehicle, "not commanded within a period"))
+    Newest[Sight](_ => team.log.note(EventKind.Dropped, vehicle, "not commanded within a period"))

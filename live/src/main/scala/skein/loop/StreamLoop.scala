@@ -50,9 +50,10 @@ object StreamLoop:
     Sense
       .at(team.ticks(start + offset), settings.window, settings.early)(() => team.read(vehicle))(
         onSkip = _.foreach(reading =>
-          team.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
+          team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
         ),
-        onMissed = ticks => team.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
+        onMissed =
+          ticks => team.log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
       )
       .via(stop.flow)
       .map((vehicle, _))
@@ -64,7 +65,7 @@ object StreamLoop:
         JoinLatest[Int, Reading](everyone, team.settings.patience)(
           isNewer = (arrived, held) => arrived.state.isNewerThan(held.state),
           onStale = (vehicle, reading) =>
-            team.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+            team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
         )
       )
       .map(Percept.Seen(_, everyone))

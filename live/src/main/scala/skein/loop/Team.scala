@@ -6,7 +6,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import scala.util.{Failure, Success, Try}
+import scala.util.{Failure, Success}
 import skein.flow.*
 import skein.forecast.{Commanded, Evidence, Forecast}
 import skein.link.Clock
@@ -29,6 +29,7 @@ final class Team(
 
   val vehicles: Range            = crafts.indices
   private val deciders           = vehicles.map(Decider(scenario, _))
+  val log: TeamLog               = TeamLog(scenario, deciders, clock, recorder)
   private val asked: Array[Long] = Array.fill(crafts.size)(0L)
 
   // The newest moves of each vehicle, oldest first: as many as may be unanswered.
@@ -42,11 +43,9 @@ final class Team(
       .read()
       .map:
         case Right(state) =>
-          val reading = Reading(sequence, name(vehicle), state)
-          recorder.offer(reading)
-          Right(reading)
+          Right(log.read(vehicle, sequence, state))
         case Left(error) =>
-          note(Team.kindOf(error), Some(vehicle), s"reading $sequence: ${error.message}")
+          log.failed(vehicle, s"reading $sequence", error)
           Left(error)
 
   /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
@@ -78,7 +77,7 @@ final class Team(
             case Percept.Read(vehicle, reading) if picture.isNews(vehicle, reading) =>
               (picture.withReading(vehicle, reading), None)
             case Percept.Read(vehicle, reading) =>
-              note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+              log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
               (picture, None)
             case Percept.Moved(move) =>
               val command = Commanded(move.decision, setpoint(move), move.sentAt)
@@ -119,7 +118,7 @@ final class Team(
       .collect(Function.unlift(sight => sight.picture.forecast.map((sight, _))))
       .via(Predict.whenActing(clock, vehicle => deciders.exists(verified(_)(vehicle)), lead)(outcome =>
         for decider <- deciders if verified(decider)(outcome.vehicle) do
-          recorder.offer(prediction(decider, outcome))
+          log.predicted(decider, outcome)
       ))
       .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
 
@@ -144,7 +143,7 @@ final class Team(
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
         val (next, decision) = decideAt(vehicle, memory, seen._1, seen._2)
         (next, (decision, seen._1)))
-      .via(Tap(record(vehicle, _, _)))
+      .via(Tap(log.decided(vehicle, _, _)))
       .map(_._1)
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
@@ -177,14 +176,14 @@ final class Team(
       .map:
         case Timely.Decided(decision)     => Some(decision)
         case Timely.Missed(miss, instead) =>
-          note(
+          log.note(
             EventKind.DeadlineMissed,
             Some(vehicle),
             MissedDeadline.detail(miss, instead.map(_._1.sequence))
           )
           instead
       .collect { case Some(decided) => decided }
-      .via(Tap(record(vehicle, _, _)))
+      .via(Tap(log.decided(vehicle, _, _)))
       .map(_._1)
 
   /** How the decisions of those vehicles are planned that plan. */
@@ -204,7 +203,7 @@ final class Team(
       ))
       .via(Tap((planned, answer, picture) =>
         for (vehicle, one) <- vehicles.zip(planned) do
-          record(vehicle, one, answer, picture, planning.regardsTeam(vehicle))
+          log.planned(vehicle, one, answer, picture, planning.regardsTeam(vehicle))
       ))
       .map((planned, _, _) => vehicles.zip(planned.map(_.decision)))
 
@@ -217,13 +216,13 @@ final class Team(
   /** Paces one vehicle: the newest element, at least an interval after the last. */
   def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
     Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
-      note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
+      log.note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
     ))
 
   /** Keeps the newest decision for a vehicle that cannot be commanded yet. */
   def newest(vehicle: Int): Flow[Decision, Decision, NotUsed] =
     Newest(decision =>
-      note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
+      log.note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
     )
 
   /** Commands one vehicle, records what is sent and answered, and emits the moves sent. */
@@ -243,15 +242,19 @@ final class Team(
           () => crafts(vehicle).hover(),
           Team.isCertain,
           decision =>
-            note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} not sent before the end")
+            log.note(
+              EventKind.Dropped,
+              Some(vehicle),
+              s"command ${decision.sequence} not sent before the end"
+            )
         )
       )
       .map:
         case Steered.Sent(decision, at) =>
-          sent(vehicle, decision, at)
+          log.sent(vehicle, decision, at)
           Some(Percept.Moved(Move(vehicle, decision.sequence, decision.heading.value, at, decision.speed)))
         case Steered.Ended(decision, at, result) =>
-          ended(vehicle, decision, at, result)
+          log.ended(vehicle, decision, at, result)
           result match
             case Success(Right(false)) =>
               Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
@@ -281,30 +284,6 @@ final class Team(
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
-  def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
-    val velocity = velocityNed(vehicle, decision)
-    recorder.offer(
-      Command(
-        decision.sequence,
-        name(vehicle),
-        Some(decision.sequence),
-        MetresPerSecond(velocity.x),
-        MetresPerSecond(velocity.y),
-        altitude(vehicle),
-        at
-      )
-    )
-
-  def ended(vehicle: Int, decision: Decision, at: Instant, result: Try[Either[RpcError, Boolean]]): Unit =
-    val outcome = result match
-      case Success(Right(true))  => "done"
-      case Success(Right(false)) => "superseded"
-      case Success(Left(error))  =>
-        note(Team.kindOf(error), Some(vehicle), s"command ${decision.sequence}: ${error.message}")
-        error.message
-      case Failure(error) => error.toString
-    recorder.offer(Acknowledgement(name(vehicle), decision.sequence, at, outcome))
-
   /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one that never
     * says that it does is noted. Ends when every move has been answered, too.
     */
@@ -320,51 +299,12 @@ final class Team(
       _      <- allEnded(sent.takeRight(1))
     yield answer match
       case Success(Left(error)) if !Team.isHovering(Left(error)) =>
-        note(Team.kindOf(error), Some(vehicle), s"not known to hover: ${error.message}")
+        log.failed(vehicle, "not known to hover", error)
       case Success(_)     => ()
-      case Failure(error) => note(EventKind.Aborted, Some(vehicle), s"not known to hover: $error")
+      case Failure(error) => log.note(EventKind.Aborted, Some(vehicle), s"not known to hover: $error")
 
   private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
-
-  def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
-    recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
-
-  /** Records a decision and what it was made from. */
-  def record(vehicle: Int, decision: Decision, picture: Picture): Unit =
-    record(vehicle, decision, picture, deciders(vehicle).regardsTeam)
-
-  private def record(vehicle: Int, decision: Decision, picture: Picture, regardsTeam: Boolean): Unit =
-    recorder.offer(decision)
-    deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
-
-  private def record(
-      vehicle: Int,
-      planned: PlannedDecision,
-      answer: Plan.Answer,
-      picture: Picture,
-      regardsTeam: Boolean
-  ): Unit =
-    val PlannedDecision(decision, action, plan, byPolicy) = planned
-    record(vehicle, decision, picture, regardsTeam)
-    recorder.offer(
-      Planned(
-        name(vehicle),
-        decision.sequence,
-        plan.candidates,
-        answer.slices.mkString(","),
-        Option.when(plan.cost.isFinite)(plan.cost),
-        clock.now().since(decision.decidedAt),
-        action.breaches.size
-      )
-    )
-    if plan.slices == 0 then
-      val instead = if byPolicy then "the policy decides" else "the last plan goes on"
-      note(EventKind.DeadlineMissed, Some(vehicle), s"no slice was searched: $instead")
-    for breach <- action.breaches.headOption do
-      note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
-
-  private def name(vehicle: Int): String = scenario.agents(vehicle).name
 
   private def setpoint(move: Move): Setpoint =
     val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
@@ -377,16 +317,6 @@ final class Team(
   private def verified(decider: Int): Int => Boolean = scenario.agents(decider).policy match
     case _: Policy     => _ => true
     case _: TeamPolicy => _ == decider
-
-  private def prediction(decider: Int, verified: Verified): Prediction = Prediction(
-    decider = name(decider),
-    vehicle = name(verified.vehicle),
-    madeAt = verified.madeAt,
-    predictedFor = verified.estimate.predictedFor,
-    age = verified.estimate.age,
-    positionNed = verified.estimate.kinematics.positionNed,
-    error = verified.error
-  )
 
   private def altitude(vehicle: Int): Metres = Metres(scenario.agents(vehicle).startPositionNed.z)
 
@@ -403,30 +333,3 @@ object Team:
   private def isHovering(result: Either[RpcError, Boolean]): Boolean = result match
     case Right(_) | Left(_: RpcError.Refused) => true
     case Left(_)                              => false
-
-  private def kindOf(error: RpcError): EventKind = error match
-    case _: RpcError.Timeout                                 => EventKind.TimedOut
-    case _: (RpcError.ConnectionLost | RpcError.Unreachable) => EventKind.Disconnected
-    case _: RpcError.Overloaded                              => EventKind.Overloaded
-    case _: (RpcError.Refused | RpcError.Malformed)          => EventKind.Refused
-    case _: RpcError.Cancelled                               => EventKind.Cancelled
-
-/** What enters the picture. */
-enum Percept:
-  /** Readings by vehicle, and the vehicles to decide upon them. */
-  case Seen(readings: Map[Int, Reading], deciders: Set[Int])
-
-  /** A reading that nobody decides upon at once. */
-  case Read(vehicle: Int, reading: Reading)
-
-  /** The vehicles to decide upon what is known. */
-  case Due(deciders: Set[Int])
-
-  /** A command that was sent. */
-  case Moved(move: Move)
-
-  /** What a forecast is told of besides. */
-  case Heard(evidence: Evidence)
-
-/** A picture and the vehicles to decide upon it. */
-final case class Sight(picture: Picture, deciders: Set[Int])
