@@ -27,7 +27,7 @@ final case class BudgetOptions(
     means: Int = 40,
     @arg(doc = "cells along the jitter")
     jitters: Int = 20,
-    @arg(doc = "of each cell (default: 1000 by SIMD, fewer by the scalar engine)")
+    @arg(doc = "of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)")
     episodes: Option[Int],
     @arg(doc = "share of the truth that counts as holding, in per cent")
     tolerance: Double = 5,
@@ -142,7 +142,7 @@ object BudgetCommand
           if policy.role == Role.Pursuer then (policy.policy, opponent.policy)
           else (opponent.policy, policy.policy)
         val isFast   = batch.fliesByLanes(pursuer, evader)
-        val episodes = options.episodes.getOrElse(Effort.of(isFast, resolved.vehicle).cellEpisodes)
+        val episodes = options.episodes.getOrElse(Effort.of(isFast, isFast, resolved.vehicle).cellEpisodes)
         val sweep    = BudgetSweep(
           resolved,
           policy,

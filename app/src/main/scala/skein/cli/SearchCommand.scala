@@ -30,7 +30,7 @@ final case class SearchOptions(
     @arg(doc = "of a generation of cma-es and cross-entropy (default: 40, or more for many parameters)")
     population: Option[Int],
     @arg(doc =
-      "fresh episodes on which the winner is measured (default: 4096 by SIMD, fewer by the scalar engine)"
+      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more)"
     )
     fresh: Option[Int],
     forward: ForwardOptions,

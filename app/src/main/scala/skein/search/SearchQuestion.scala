@@ -142,10 +142,14 @@ final case class SearchSetup(
     shareEpisodes = many
   )
 
-  /** Whether this family's policies fly by lanes. */
-  def isFast(batch: DuelBatch): Boolean =
+  /** Whether this family's policies fly by lanes.
+    *
+    * @param many
+    *   whether many candidates will meet the same episodes
+    */
+  def isFast(batch: DuelBatch, many: Boolean = true): Boolean =
     val (pursuer, evader) = pair
-    batch.fliesByLanes(pursuer, evader, shareEpisodes = true)
+    batch.fliesByLanes(pursuer, evader, shareEpisodes = many)
 
   /** A line that says what flies the candidates. */
   def engine(batch: DuelBatch): String =

@@ -98,13 +98,22 @@ object SearchResult:
 final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, cellEpisodes: Int)
 
 object Effort:
-  private val Lanes   = Effort(4096, 256, Landscape.OnMap, 1000)
-  private val Scalar  = Effort(512, 16, 21, 30)
-  private val Physics = Effort(64, 4, 13, 4)
+  private val Cheap  = Effort(4096, 256, Landscape.OnMap, 1000)
+  private val Dear   = Effort(512, 16, 21, 30)
+  private val Dearer = Effort(64, 4, 13, 4)
 
-  def of(setup: SearchSetup, batch: DuelBatch): Effort = of(setup.isFast(batch), setup.conditions.vehicle)
+  def of(setup: SearchSetup, batch: DuelBatch): Effort =
+    of(setup.isFast(batch), setup.isFast(batch, many = false), setup.conditions.vehicle)
 
-  def of(isFast: Boolean, vehicle: VehicleChoice): Effort =
-    if isFast then Lanes
-    else if vehicle.name == "quadrotor" then Physics
-    else Scalar
+  /** @param together
+    *   whether candidates that share their episodes fly by lanes
+    * @param alone
+    *   whether worlds with delays of their own do
+    */
+  def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice): Effort =
+    def level(byLanes: Boolean) = (byLanes, vehicle.name == "quadrotor") match
+      case (true, false)                 => Cheap
+      case (true, true) | (false, false) => Dear
+      case (false, true)                 => Dearer
+    val (candidates, worlds) = (level(together), level(alone))
+    Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)

@@ -79,13 +79,9 @@ public final class QuadrotorKernel {
   private static final FloatVector MIN_THROTTLE = constant((float) GAINS.minThrottle());
 
   // One entry per vehicle; names and frames as in QuadrotorState.
-  private final float[] x = new float[VEHICLES], y = new float[VEHICLES], z = new float[VEHICLES];
-  private final float[] vx = new float[VEHICLES],
-      vy = new float[VEHICLES],
-      vz = new float[VEHICLES];
-  private final float[] ax = new float[VEHICLES],
-      ay = new float[VEHICLES],
-      az = new float[VEHICLES];
+  final float[] x = new float[VEHICLES], y = new float[VEHICLES], z = new float[VEHICLES];
+  final float[] vx = new float[VEHICLES], vy = new float[VEHICLES], vz = new float[VEHICLES];
+  final float[] ax = new float[VEHICLES], ay = new float[VEHICLES], az = new float[VEHICLES];
   private final float[] qw = new float[VEHICLES],
       qx = new float[VEHICLES],
       qy = new float[VEHICLES],
@@ -111,7 +107,7 @@ public final class QuadrotorKernel {
   private final float[] integral = new float[VEHICLES];
 
   // What is commanded: velocity north and east, altitude.
-  private final float[] goalX = new float[VEHICLES],
+  final float[] goalX = new float[VEHICLES],
       goalY = new float[VEHICLES],
       goalZ = new float[VEHICLES];
 
@@ -132,6 +128,9 @@ public final class QuadrotorKernel {
   private final float[] f20 = new float[VEHICLES],
       f21 = new float[VEHICLES],
       f22 = new float[VEHICLES];
+
+  /** Whether vehicles were placed since the last step, so that their rotations are not known. */
+  private boolean isPlaced;
 
   private static FloatVector drag(double factor) {
     return constant((float) (-factor * Atmosphere.SeaLevelDensity() / FRAME.massKg()));
@@ -154,6 +153,7 @@ public final class QuadrotorKernel {
           thrust1, thrust2, thrust3
         }) rotor[vehicle] = control;
     integral[vehicle] = (float) state.verticalIntegral();
+    isPlaced = true;
     command(vehicle, 0f, 0f, (float) goalNed.z());
   }
 
@@ -174,7 +174,8 @@ public final class QuadrotorKernel {
 
   /** Flies all vehicles for {@code steps} steps of 3 ms. */
   public void fly(int steps) {
-    frame();
+    if (isPlaced) frame();
+    isPlaced = false;
     for (int step = 0; step < steps; step++) {
       translate();
       turn();

@@ -5,9 +5,9 @@ import skein.policy.Policy
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
-  * With a [[Reduced]] model the policies of `skein.policy` fly by lanes ([[LanePolicy]]): worlds that share episodes under any loop
-  * ([[TimetableKernel]]), other worlds under `LoopTiming.Stream` ([[StreamDuelKernel]]). All else flies by the scalar
-  * reference ([[Rollout]]). Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do
+  * The policies of `skein.policy` fly by lanes ([[LanePolicy]]): worlds that share episodes with every model of a lag and
+  * with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with a [[Reduced]] model under `LoopTiming.Stream`
+  * ([[StreamDuelKernel]]). Other worlds' quadrotors fly by lanes under the scalar loops ([[QuadrotorFleet]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do
   * not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param duel
@@ -22,25 +22,26 @@ final class DuelBatch(
   require(threads > 0, s"threads must be positive, got $threads")
 
   // A class with vectors is not touched where their module is missing.
-  private val lanes: Either[String, Reduced] =
+  private val lanes: Either[String, TimetableModel] =
     if ModuleLayer.boot().findModule("jdk.incubator.vector").isEmpty then
       Left("the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector")
     else
-      (timing, model) match
-        case (_: LoopTiming.Predictive, _) =>
+      timing match
+        case _: LoopTiming.Predictive =>
           Left("the lanes decide on readings as they were made, without a forecast")
-        case (_, reduced: Reduced) if reduced.lagS > 0 => Right(reduced)
-        case _ => Left("the lanes fly only the reduced model with a lag")
+        case _ => TimetableModel.of(model, duel)
 
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
-    val alone: DuelFlyer  = (timing, lanes) match
-      case (stream: LoopTiming.Stream, Right(reduced)) => StreamFlyer(duel, stream, reduced, scalar)
-      case _                                           => scalar
+    val alone: DuelFlyer  = (timing, model) match
+      case (stream: LoopTiming.Stream, reduced: Reduced) if lanes.isRight =>
+        StreamFlyer(duel, stream, reduced, scalar)
+      case (_, quadrotor: QuadrotorResponse) if lanes.isRight => QuadrotorFleet(duel, timing, quadrotor)
+      case _                                                  => scalar
     val together: DuelFlyer = lanes match
-      case Right(reduced) => TimetableFlyer(duel, timing, reduced, timetables, scalar)
-      case _              => scalar
+      case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
+      case _           => scalar
 
   private val timetables = Timetables(MostTimetables)
   private val workers    = Vector.fill(threads)(Worker())
@@ -51,26 +52,30 @@ final class DuelBatch(
     *   see [[DuelWorlds.shareEpisodes]]
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): String =
-    whyScalar(pursuer, evader, shareEpisodes) match
-      case Some(reason)          => s"scalar: $reason"
-      case None if shareEpisodes => s"SIMD, ${LaneMath.LANES} candidates of an episode at a time"
-      case None                  => s"SIMD, ${LaneMath.LANES} worlds at a time"
+    lanesOf(pursuer, evader, shareEpisodes).fold(reason => s"scalar: $reason", "SIMD, " + _)
 
   /** Whether worlds of these policies fly by lanes. */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean = false): Boolean =
-    whyScalar(pursuer, evader, shareEpisodes).isEmpty
+    lanesOf(pursuer, evader, shareEpisodes).isRight
 
-  private def whyScalar(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Option[String] = lanes match
-    case Left(reason) => Some(reason)
-    case Right(_)     =>
-      Seq(pursuer, evader).find(LanePolicy.formOf(_) == null) match
-        case Some(unknown) =>
-          Some(s"no lanes know the policy ${unknown.getClass.getSimpleName.stripSuffix("$")}")
-        case None => timing match
-            case _: LoopTiming.Stream => None
-            case _ if shareEpisodes   => None
-            case _                    =>
-              Some("worlds with delays of their own fly by lanes under the stream loop alone")
+  /** What flies by lanes, or why nothing does. */
+  private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
+    lanes.flatMap: _ =>
+      val each    = LaneMath.LANES
+      val unknown = Seq(pursuer, evader).find(LanePolicy.formOf(_) == null)
+      (timing, model) match
+        case _ if shareEpisodes && unknown.isEmpty => Right(s"$each candidates of an episode at a time")
+        case (_, _: QuadrotorResponse)             =>
+          Right(s"$each quadrotors at a time; their loops by the scalar engine")
+        case _ if unknown.isDefined =>
+          Left(s"no lanes know the policy ${unknown.get.getClass.getSimpleName.stripSuffix("$")}")
+        case (_: LoopTiming.Stream, _: Reduced) => Right(s"$each worlds at a time")
+        case (_: LoopTiming.Stream, _)          =>
+          Left(
+            "worlds with delays of their own fly by lanes with reduced, a model of three parameters, or quadrotor"
+          )
+        case _ =>
+          Left("worlds with delays of their own fly by lanes under the stream loop, or with quadrotor")
 
   /** Flies all worlds, unless it is cancelled.
     *
@@ -129,7 +134,7 @@ final class DuelBatch(
     outcomes.flown = done
     outcomes
 
-  /** Of some 100 kB for a minute each; a search flies the same few episodes again and again. */
+  /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostTimetables = 256
 
 /** Which worlds fly together. */

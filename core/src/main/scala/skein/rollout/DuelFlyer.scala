@@ -25,10 +25,10 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
         rollout = Rollout(own, timing, link, model)
       into.set(world, rollout.fly(worlds.key(world), captureRadiusM))
 
-/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know fly by the
-  * scalar reference.
+/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know are flown by
+  * another.
   */
-private abstract class LaneFlyer(scalar: DuelFlyer) extends DuelFlyer:
+private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
 
   /** A kernel and its policies, and the worlds that will fly by it. */
@@ -78,7 +78,8 @@ private abstract class LaneFlyer(scalar: DuelFlyer) extends DuelFlyer:
   private val byForm = collection.mutable.HashMap.empty[(AnyRef, AnyRef), Lanes]
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
-    val filled = collection.mutable.LinkedHashSet.empty[Lanes]
+    val filled  = collection.mutable.LinkedHashSet.empty[Lanes]
+    val unknown = Array.newBuilder[Int]
     for world <- numbers do
       val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
       val forms             = (LanePolicy.formOf(pursuer), LanePolicy.formOf(evader))
@@ -86,12 +87,13 @@ private abstract class LaneFlyer(scalar: DuelFlyer) extends DuelFlyer:
         val chosen = byForm.getOrElseUpdate(forms, lanes(pursuer, evader))
         chosen.add(worlds, world)
         filled += chosen
-      else scalar.fly(worlds, Array(world), captureRadiusM, into)
+      else unknown += world
+    other.fly(worlds, unknown.result(), captureRadiusM, into)
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
 
 /** By [[StreamDuelKernel]], where a world's link allows. */
-private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Reduced, scalar: DuelFlyer)
-    extends LaneFlyer(scalar):
+private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Reduced, other: DuelFlyer)
+    extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = link match
     case table: DelayTable => StreamDuelKernel.canFly(timing, table, model)
@@ -112,10 +114,10 @@ private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Re
 private final class TimetableFlyer(
     duel: Duel,
     timing: LoopTiming,
-    model: Reduced,
+    model: TimetableModel,
     timetables: Timetables,
-    scalar: DuelFlyer
-) extends LaneFlyer(scalar):
+    other: DuelFlyer
+) extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = true
 

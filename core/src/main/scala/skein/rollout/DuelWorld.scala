@@ -63,6 +63,9 @@ private final class DuelWorld(
   def schedule(atNs: Long, kind: Int, vehicle: Int, number: Int): Unit =
     queue.add(atNs, (kind.toLong << 40) | (vehicle.toLong << 32) | number)
 
+  /** When the next event happens. */
+  def nextNs: Long = queue.nextTime
+
   /** Lets time pass up to the next event. */
   def next(): Long =
     time = queue.nextTime

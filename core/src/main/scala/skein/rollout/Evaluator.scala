@@ -15,6 +15,9 @@ trait Evaluator:
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally]
 
+  /** So many candidates take no longer than one. */
+  def sideBySide: Int = 1
+
   /** The same, or none if it was cancelled.
     *
     * @param isCancelled
@@ -50,6 +53,11 @@ final class DuelEvaluator(
     shareEpisodes: Boolean = true
 ) extends Evaluator:
 
+  override def sideBySide: Int =
+    val policy = family.defaultPolicy
+    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true) then LanePolicy.WORLDS
+    else 1
+
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
     talliesUnless(() => false)(candidates, episodes).get
 
@@ -66,14 +74,17 @@ final class DuelEvaluator(
         Tally.of(keys.length): episode =>
           objective.value(outcomes, candidate * keys.length + episode, role, durationS)
 
+  private def pursuer(candidate: Policy): Policy = if role == Role.Pursuer then candidate else opponent
+  private def evader(candidate: Policy): Policy  = if role == Role.Evader then candidate else opponent
+
   /** The candidate does not enter the key: all meet the same delays. */
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link
-    def pursuer(world: Int): Policy = if role == Role.Pursuer then policies(world / keys.length) else opponent
-    def evader(world: Int): Policy  = if role == Role.Evader then policies(world / keys.length) else opponent
+    def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
+    def evader(world: Int): Policy      = DuelEvaluator.this.evader(policies(world / keys.length))
 
 /** Judges by any function of a trajectory, by the scalar reference, on the calling thread.
   *

@@ -9,7 +9,8 @@ import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint}
   * its start; a command acts from the first step after it on; a position between two steps is carried on from the last.
   * What is read and commanded are 32-bit floats on AirSim's wire, positions in the frame whose origin is the start.
   */
-private final class QuadrotorResponse(quadrotor: Quadrotor, hoveredS: Double) extends VelocityResponse:
+private final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
+    extends VelocityResponse:
   def create(): Vehicle = QuadrotorVehicle(quadrotor, DuelWorld.nanos(hoveredS))
 
   /** AirSim's: `skein.airsim.simulator.SimulatorSettings.Handover`. */

@@ -43,6 +43,17 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       onScore: Rollout.Listener = Rollout.NoListener,
       observer: LoopObserver = LoopObserver.Nobody
   ): Outcome =
+    start(worldKey, captureRadiusM, onScore, observer)
+    while !isOver do handle(world.next())
+    outcome
+
+  /** Begins an episode, as [[fly]] does. */
+  private[rollout] def start(
+      worldKey: Int,
+      captureRadiusM: Double,
+      onScore: Rollout.Listener = Rollout.NoListener,
+      observer: LoopObserver = LoopObserver.Nobody
+  ): Unit =
     listener = onScore
     tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
     watching = observer
@@ -50,14 +61,23 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     world.schedule(periodNs, ScoreNow, 0, 1)
     for controller <- loop.controllers do controller.start()
     loop.start()
-    while tallies(0).count < scores do handle(world.next())
-    outcome
+
+  /** Handles the events before this time.
+    *
+    * @return
+    *   the time of the next event; [[Rollout.Never]] when the episode is over
+    */
+  private[rollout] def flyUntil(timeNs: Long): Long =
+    while !isOver && world.nextNs < timeNs do handle(world.next())
+    if isOver then Rollout.Never else world.nextNs
+
+  private def isOver: Boolean = tallies(0).count >= scores
 
   /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last was captured;
     * distances are to the nearest pursuer, efforts summed over a side. In a team without sides all are judged, by the
     * distance to the nearest other, and the effort is that of the evaders.
     */
-  private def outcome: Outcome =
+  private[rollout] def outcome: Outcome =
     val each    = evaderOutcomes
     val nearest = each.minBy(_.minDistanceM)
     Outcome(
@@ -120,6 +140,8 @@ object Rollout:
 
   /** Whether what is scored at this time of an episode counts for the mean of its last 10 s. */
   private[rollout] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
+
+  private[rollout] val Never: Long = Long.MaxValue
 
   private val NoListener: Listener = (_, _, _, _, _) => ()
 

@@ -82,7 +82,7 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     * @param state
     *   not done
     * @param atMost
-    *   episodes that the step flies, about. How a search is cut into steps does not change how it ends.
+    *   episodes that the step flies, about; more where candidates fly side by side. How a search is cut into steps does not change how it ends.
     * @param isCancelled
     *   asked now and then, from any thread; a step that is cancelled leaves the state as it was
     */
@@ -94,7 +94,10 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
   ): SearchState =
     require(!state.isDone, "the search is done")
     val (candidates, episodes) = round(state.course)
-    val batch = candidates.slice(state.results.size, state.results.size + (atMost / episodes.size).max(1))
+    val batch                  = candidates.slice(
+      state.results.size,
+      state.results.size + (atMost / episodes.size).max(evaluator.sideBySide)
+    )
     evaluator.talliesUnless(isCancelled)(batch, episodes).fold(state): tallies =>
       val results = state.results ++ tallies
       val flown   = state.flown + batch.size.toLong * episodes.size

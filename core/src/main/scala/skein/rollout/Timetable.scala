@@ -12,8 +12,8 @@ import skein.policy.Policy
   * @param operations
   *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle or agent; then places
   * @param times
-  *   [[Timetable.Numbers]] numbers each, s: how long after the state of a vehicle the event is, how far a velocity's
-  *   error carries it until then, over the error, and what remains of the error
+  *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
+  *   time since the one before; of a score, the time; s
   * @param readings
   *   places that the readings of one vehicle need at a time
   * @param headings
@@ -29,19 +29,19 @@ private[rollout] final class Timetable private (
 
 private[rollout] object Timetable:
   val Fields: Int  = 7
-  val Numbers: Int = 4
+  val Numbers: Int = 3
 
-  /** The timetable of a world of this key; the model's dead time and lag are in it. */
-  def of(durationS: Double, timing: LoopTiming, link: Delays, key: Int, model: Reduced): Timetable =
-    val notes               = Notes(model.deadTimeS)
+  /** The timetable of a world of this key, for vehicles of this kind. */
+  def of(durationS: Double, timing: LoopTiming, link: Delays, key: Int, model: TimetableModel): Timetable =
+    val notes               = Notes(model)
     def duelist(agent: Int) = Duelist(1, agent, 0, 0, 0, notes.policies(agent))
     Rollout(Duel(duelist(1), duelist(0), durationS), timing, link, notes).fly(key, 0.0, notes): Unit
-    Compiler(notes, durationS, model.lagS).result
+    Compiler(notes, durationS, model).result
 
   import TimetableKernel.{ACT, DECIDE, LOOK, SCORE}
 
   /** Flies along and notes what happens, in the order in which it does. */
-  private final class Notes(deadTimeS: Double) extends VelocityResponse, Rollout.Listener:
+  private final class Notes(model: TimetableModel) extends VelocityResponse, Rollout.Listener:
     var size                    = 0
     var looks                   = 0
     private var now             = 0.0
@@ -54,7 +54,7 @@ private[rollout] object Timetable:
     /** `LOOK`: the reading's number. `ACT`: the heading's. `DECIDE`: that of the heading before; the new one's is one more. */
     var number: Array[Int] = Array.ofDim[Int](capacity)
 
-    // `DECIDE`: the numbers of the readings, and of the opponent's heading that is known.
+    // `DECIDE` and `SCORE`: the numbers of the readings; `DECIDE`: that of the opponent's heading that is known.
     var evaderSeen, pursuerSeen, opponent: Array[Int] = Array.ofDim[Int](capacity)
 
     private def note(what: Int, who: Int, time: Double, which: Int): Unit =
@@ -69,12 +69,14 @@ private[rollout] object Timetable:
       opponent = opponent.padTo(capacity, 0)
       atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
 
+    override def handoverS: Double = model.handoverS
+
     def create(): Vehicle = new Vehicle:
       private var who                                  = 0
       private var reading                              = 0
       def start(x: Double, y: Double, z: Double): Unit = who = x.toInt
       def command(vx: Double, vy: Double): Unit        =
-        note(ACT, who, now + deadTimeS, (StrictMath.atan2(vy, vx) / Turn).round.toInt)
+        note(ACT, who, now + model.deadTimeS, (StrictMath.atan2(vy, vx) / Turn).round.toInt)
       def advance(timeS: Double): Unit =
         now = timeS
         reading = 0
@@ -90,18 +92,21 @@ private[rollout] object Timetable:
 
     val policies: Vector[Policy] = Vector.tabulate(2): who =>
       (dx, _, _, _, own, known, elapsed) =>
-        val both    = dx.abs
-        val pursuer = (both / Pursuers).toInt
-        val before  = (own / Turn).round.toInt
+        val before = (own / Turn).round.toInt
         note(DECIDE, who, now, before)
-        evaderSeen(size - 1) = (both - pursuer * Pursuers).toInt
-        pursuerSeen(size - 1) = pursuer
+        noteSeen(dx.abs)
         opponent(size - 1) = (known / Turn).round.toInt
         elapsedS(size - 1) = elapsed
         (before + 1) * Turn
 
     def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit =
       note(SCORE, 0, timeS, 0)
+      noteSeen(evaderX - pursuerX)
+
+    private def noteSeen(both: Double): Unit =
+      val pursuer = (both / Pursuers).toInt
+      evaderSeen(size - 1) = (both - pursuer * Pursuers).toInt
+      pursuerSeen(size - 1) = pursuer
 
   /** Makes room for readings of the evader in a number that holds one of each. */
   private val Pursuers = (1 << 24).toDouble
@@ -110,15 +115,15 @@ private[rollout] object Timetable:
   private val Turn = 1e-6
 
   /** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
-    * computes what the lag does between events.
+    * tells each vehicle when what happens to it.
     */
-  private final class Compiler(notes: Notes, durationS: Double, lagS: Double):
+  private final class Compiler(notes: Notes, durationS: Double, model: TimetableModel):
     private val order    = inOrder
     private val scores   = notes.kind.iterator.take(notes.size).count(_ == SCORE)
     private val end      = endOf(scores)
     private val readings = Array.fill(2)(Places(notes.looks + 1))
     private val headings = Array.fill(2)(Places(notes.size + 1))
-    private val stateAtS = Array.ofDim[Double](2)
+    private val clocks   = Array.fill(2)(model.clock())
 
     private val operations = Array.ofDim[Int](end * Fields)
     private val times      = Array.ofDim[Float](end * Numbers)
@@ -133,7 +138,7 @@ private[rollout] object Timetable:
           case LOOK   => look(event)
           case DECIDE => decide(event, i)
           case ACT    => act(event, i)
-          case SCORE  => score(event)
+          case SCORE  => score(event, i)
       Timetable(
         java.util.Arrays.copyOf(operations, size * Fields),
         java.util.Arrays.copyOf(times, size * Numbers),
@@ -171,16 +176,18 @@ private[rollout] object Timetable:
           headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
-        case ACT => headings(agent).usedAt(notes.number(event), at)
-        case _   => ()
+        case ACT   => headings(agent).usedAt(notes.number(event), at)
+        case SCORE =>
+          readings(0).usedAt(notes.evaderSeen(event), at)
+          readings(1).usedAt(notes.pursuerSeen(event), at)
+        case LOOK => ()
 
     private def look(event: Int): Unit =
       val vehicle = notes.agent(event)
       val reading = notes.number(event)
       if readings(vehicle).isUsed(reading) then
-        val dt = notes.atS(event) - stateAtS(vehicle)
         operation(LOOK, vehicle, readings(vehicle).take(reading))
-        numbers(dt, gain(dt))
+        happens(event, acts = false)
 
     private def decide(event: Int, at: Int): Unit =
       val agent    = notes.agent(event)
@@ -196,7 +203,7 @@ private[rollout] object Timetable:
         // Taken before the one before is given back: its effort is counted from there.
         headings(agent).take(own + 1)
       )
-      numbers(notes.elapsedS(event))
+      took(notes.elapsedS(event))
       readings(0).release(notes.evaderSeen(event), at)
       readings(1).release(notes.pursuerSeen(event), at)
       headings(agent).release(own, at)
@@ -205,21 +212,17 @@ private[rollout] object Timetable:
 
     private def act(event: Int, at: Int): Unit =
       val vehicle = notes.agent(event)
-      val dt      = notes.atS(event) - stateAtS(vehicle)
       operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
-      numbers(dt, gain(dt), StrictMath.exp(-dt / lagS))
-      stateAtS(vehicle) = notes.atS(event)
+      happens(event, acts = true)
       headings(vehicle).release(notes.number(event), at)
 
-    private def score(event: Int): Unit =
-      val at                = notes.atS(event)
-      val (evader, pursuer) = (at - stateAtS(0), at - stateAtS(1))
-      val isLast            = Rollout.isLast10s(at, durationS)
-      operation(SCORE, 0, if isLast then 1 else 0, java.lang.Float.floatToRawIntBits(at.toFloat))
-      numbers(evader, gain(evader), pursuer, gain(pursuer))
-
-    /** How far a velocity's error carries a vehicle, over the error. */
-    private def gain(dt: Double): Double = -lagS * StrictMath.expm1(-dt / lagS)
+    private def score(event: Int, at: Int): Unit =
+      val (evader, pursuer) = (notes.evaderSeen(event), notes.pursuerSeen(event))
+      val isLast            = Rollout.isLast10s(notes.atS(event), durationS)
+      operation(SCORE, 0, readings(0).place(evader), readings(1).place(pursuer), if isLast then 1 else 0)
+      took(notes.atS(event))
+      readings(0).release(evader, at)
+      readings(1).release(pursuer, at)
 
     private def operation(
         kind: Int,
@@ -235,10 +238,14 @@ private[rollout] object Timetable:
       operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
       operations(at + 5) = d; operations(at + 6) = e
 
-    /** Ends an operation. */
-    private def numbers(a: Double, b: Double = 0, c: Double = 0, d: Double = 0): Unit =
-      val at = size * Numbers
-      times(at) = a.toFloat; times(at + 1) = b.toFloat; times(at + 2) = c.toFloat; times(at + 3) = d.toFloat
+    /** Ends an operation that happens to a vehicle. */
+    private def happens(event: Int, acts: Boolean): Unit =
+      clocks(notes.agent(event)).tell(notes.atS(event), acts, times, size * Numbers)
+      size += 1
+
+    /** Ends another operation. */
+    private def took(seconds: Double): Unit =
+      times(size * Numbers) = seconds.toFloat
       size += 1
 
   /** Places for numbered things until their last use; as few as possible. */

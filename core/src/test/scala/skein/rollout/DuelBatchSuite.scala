@@ -3,6 +3,7 @@ package skein.rollout
 import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
 import skein.policy.*
+import skein.vehicle.ReducedModel
 
 class DuelBatchSuite extends munit.FunSuite:
   import DuelBatchSuite.*
@@ -75,6 +76,48 @@ class DuelBatchSuite extends munit.FunSuite:
             s"world $world: $ours, scalar $reference"
           )
 
+  for (name, model) <- Seq(
+      "the quadrotor" -> VelocityResponse.quadrotor(),
+      "drag"          -> ReducedResponse(ReducedModel.AirSim)
+    )
+  do
+    test(
+      s"candidates with $name that share episodes fly by lanes as each alone, and close to the scalar engine"
+    ):
+      val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val batch   = DuelBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
+      val worlds  = candidates(30)
+      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true))
+      val all       = batch.fly(worlds, captureRadiusM = 5)
+      val backwards = batch.fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
+      for world <- 0 until worlds.size do
+        assertEquals(numbers(backwards, worlds.size - 1 - world), numbers(all, world), s"world $world")
+      for world <- 0 until worlds.size by 17 do
+        val near = numbers(all, world).zip(scalar(worlds, world, LoopTiming.Futures(), model, offAxis))
+        assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
+
+  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential()) do
+    test(s"quadrotors with delays of their own under $timing fly by lanes, close to the scalar engine"):
+      val (model, count) = (VelocityResponse.quadrotor(), 150)
+      val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val all = DuelBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
+      assert(DuelBatch(offAxis, timing, model).fliesByLanes(PaperPursuer(), KeepHeading))
+      val single    = DuelBatch(offAxis, timing, model, threads = 1)
+      val backwards = single.fly(reordered(mixed(count), count - 1 - _), captureRadiusM = 5)
+      assertEquals(all.flown, count)
+      for world <- 0 until count do
+        assertEquals(numbers(backwards, count - 1 - world), numbers(all, world), s"world $world")
+      for world <- 0 until count by 5 do
+        val near = numbers(all, world).zip(scalar(mixed(count), world, timing, model, offAxis))
+        assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
+
+  test("low quadrotors fly by the scalar reference, which knows the ground"):
+    val batch = DuelBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponse.quadrotor())
+    assertEquals(
+      batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true),
+      "scalar: the lanes know no ground and fly from 5.0 m altitude on"
+    )
+
   test("what a world throws reaches the caller"):
     val worlds = mixed(300)
     val broken = new DuelWorlds:
@@ -146,10 +189,16 @@ object DuelBatchSuite:
       o.evaderEffortRad
     ).map(_(world))
 
-  def scalar(worlds: DuelWorlds, world: Int, timing: LoopTiming, model: VelocityResponse): Vector[Float] =
+  def scalar(
+      worlds: DuelWorlds,
+      world: Int,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      from: Duel = Duel.paper
+  ): Vector[Float] =
     val duel = Duel(
-      Duel.paper.pursuer.copy(policy = worlds.pursuer(world)),
-      Duel.paper.evader.copy(policy = worlds.evader(world)),
+      from.pursuer.copy(policy = worlds.pursuer(world)),
+      from.evader.copy(policy = worlds.evader(world)),
       12
     )
     val o = Rollout(duel, timing, worlds.link(world), model).fly(worlds.key(world), 5)
