@@ -109,7 +109,7 @@ object HtmlReport:
 
   private def plans(set: FlightSet): Option[TypedTag[String]] =
     Option.when(set.flights.exists(_.planning.isDefined)):
-      section(h2(PlanTable.title), table(PlanTable.of(set)), p(cls := "note", s"${PlanTable.note}."))
+      section(h2(PlanTable.title), table(PlanTable.of(set)), p(cls := "note", s"${PlanTable.note(set)}."))
 
   private def twins(set: FlightSet, figures: Seq[Figure]): Option[TypedTag[String]] =
     Option.when(set.twins.nonEmpty):

@@ -50,13 +50,14 @@ object PlanTable:
 
   /** A row per flight that planned; in what a pursuer caught, where duels were flown. */
   def of(set: FlightSet): TextTable =
-    val planned = set.flights.flatMap(summary => summary.planning.map(summary -> _))
-    val duels   = planned.exists(_._1.distance.nonEmpty)
+    val duels = hasDuels(set)
     TextTable(
       Vector("<loop", "<link", "plans", "candidates per tick", "least", "slices", "ms", "p99") ++
         Vector("deadlines missed", "limits broken") ++
         (if duels then Vector("captured at s", "below 1.5 m") else Vector.empty),
-      for (summary, planning) <- planned
+      for
+        summary  <- set.flights
+        planning <- summary.planning.toVector
       yield Vector(
         summary.flight.loop,
         summary.flight.link,
@@ -78,10 +79,15 @@ object PlanTable:
       s"${SummaryTables.fixed(100.0 * below.size / distance.points.size, 1)} %"
     )
 
+  private def hasDuels(set: FlightSet): Boolean =
+    set.flights.exists(summary => summary.planning.nonEmpty && summary.distance.nonEmpty)
+
   val title = "Plans"
 
   /** How to read it. */
-  val note: String =
+  def note(set: FlightSet): String =
     "Candidate manoeuvres flown forward per vehicle and tick, all searches together; slices are of all vehicles planned for together; ms from the tick to the decision; a deadline is " +
-      "missed where no slice was ready, and the last plan went on or the policy decided; captured where the distance first is below 1.5 m, and " +
-      "the share of the flight below it"
+      "missed where no slice was ready, and the last plan went on or the policy decided" +
+      (if hasDuels(set) then
+         "; captured where the distance first is below 1.5 m, and the share of the flight below it"
+       else "")

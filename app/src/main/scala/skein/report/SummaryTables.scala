@@ -115,7 +115,7 @@ object SummaryTables:
       titled("Predictions", PredictionGroup.table(set.predictions))
     val planned =
       if set.flights.forall(_.planning.isEmpty) then Vector.empty
-      else Vector("", s"${PlanTable.title}: ${PlanTable.note}", PlanTable.of(set).render)
+      else Vector("", s"${PlanTable.title}: ${PlanTable.note(set)}", PlanTable.of(set).render)
     val twinned =
       if set.twins.isEmpty then Vector.empty
       else Vector("", s"Live against virtual: $twinsNote", twins(set).render)

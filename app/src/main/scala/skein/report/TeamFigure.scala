@@ -54,7 +54,7 @@ object TeamFigure:
   private def panel(link: String, flights: Vector[TeamFlights.Flown]): Drawing =
     val first   = flights.head.result
     val curves  = flights.map(_.result.curve)
-    val highest = (curves.flatten.map(_._2) ++ first.bound).max
+    val highest = (curves.map(highestShown) ++ first.bound).max
     val panel   = Panel(
       Axis.around("time, s", 0, curves.map(_.last._1).max, 8),
       Axis.around(s"${first.curveName}, m", 0, highest),
@@ -64,7 +64,10 @@ object TeamFigure:
       plotHeight
     )
     val lines = flights.map(flight =>
-      panel.curve(flight.result.curve, Looks.line(Looks.of(flight.summary.flight.loop)))
+      panel.curve(
+        flight.result.curve.dropWhile(_._2 > panel.y.to),
+        Looks.line(Looks.of(flight.summary.flight.loop))
+      )
     )
     val bound = first.bound.map: value =>
       Shape.line(Point(panel.left, panel.atY(value)), Point(panel.right, panel.atY(value)), boundLine)
@@ -78,6 +81,12 @@ object TeamFigure:
       (panel.title(Looks.link(link)) +: panel.axes) ++ bound ++ lines ++
         legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
     )
+
+  /** The highest of a curve, but where it begins far above all that follows: then some more than what follows. */
+  private def highestShown(curve: Vector[(Double, Double)]): Double =
+    val highest = curve.map(_._2).max
+    val settled = curve.drop(curve.size / 2).map(_._2).max
+    if highest > 5 * settled then 2 * settled else highest
 
   private def boundName(scenario: TeamScenario): String = scenario match
     case _: TeamScenario.Crossing => "set minimum"
