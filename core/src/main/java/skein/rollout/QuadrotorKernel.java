@@ -129,11 +129,19 @@ public final class QuadrotorKernel {
       f21 = new float[VEHICLES],
       f22 = new float[VEHICLES];
 
+  /** Vehicles that fly, up to a whole number of lanes. */
+  private int used = VEHICLES;
+
   /** Whether vehicles were placed since the last step, so that their rotations are not known. */
   private boolean isPlaced;
 
   private static FloatVector drag(double factor) {
     return constant((float) (-factor * Atmosphere.SeaLevelDensity() / FRAME.massKg()));
+  }
+
+  /** Flies no more than the first vehicles from now on. What each does is the same, to the bit. */
+  void use(int vehicles) {
+    used = (vehicles + LANES - 1) / LANES * LANES;
   }
 
   /** Places a vehicle at hover, settled, told to keep its place. */
@@ -172,7 +180,7 @@ public final class QuadrotorKernel {
     return new Vector3(vx[vehicle], vy[vehicle], vz[vehicle]);
   }
 
-  /** Flies all vehicles for {@code steps} steps of 3 ms. */
+  /** Flies the vehicles for {@code steps} steps of 3 ms. */
   public void fly(int steps) {
     if (isPlaced) frame();
     isPlaced = false;
@@ -183,14 +191,14 @@ public final class QuadrotorKernel {
       frame();
       climb();
       aim();
-      LaneMath.atan2(rollSin, rollCos, rollSin, VEHICLES);
-      LaneMath.atan2(pitchSin, pitchCos, pitchSin, VEHICLES);
+      LaneMath.atan2(rollSin, rollCos, rollSin, used);
+      LaneMath.atan2(pitchSin, pitchCos, pitchSin, used);
       mix();
     }
   }
 
   private void frame() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector w = FloatVector.fromArray(SPECIES, qw, i),
           a = FloatVector.fromArray(SPECIES, qx, i),
           b = FloatVector.fromArray(SPECIES, qy, i),
@@ -217,7 +225,7 @@ public final class QuadrotorKernel {
 
   /** Forces, and the next position and velocity. */
   private void translate() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector altitude = ORIGIN_ALTITUDE.sub(FloatVector.fromArray(SPECIES, z, i));
       FloatVector ratio = altitude.fma(DENSITY_2, DENSITY_1).fma(altitude, ONE);
       ratio.intoArray(density, i);
@@ -273,7 +281,7 @@ public final class QuadrotorKernel {
 
   /** Torques, and the next orientation and angular velocity. */
   private void turn() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector t0 = FloatVector.fromArray(SPECIES, thrust0, i),
           t1 = FloatVector.fromArray(SPECIES, thrust1, i);
       FloatVector t2 = FloatVector.fromArray(SPECIES, thrust2, i),
@@ -326,7 +334,7 @@ public final class QuadrotorKernel {
 
   /** The rotors' lag. */
   private void spin() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector lag0 = FloatVector.fromArray(SPECIES, lagged0, i),
           set0 = FloatVector.fromArray(SPECIES, control0, i);
       lag0.intoArray(thrust0, i);
@@ -348,7 +356,7 @@ public final class QuadrotorKernel {
 
   /** The controller of the vertical: altitude and velocity down give throttle. */
   private void climb() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector r02 = FloatVector.fromArray(SPECIES, f02, i),
           r12 = FloatVector.fromArray(SPECIES, f12, i);
       FloatVector r22 = FloatVector.fromArray(SPECIES, f22, i),
@@ -371,7 +379,7 @@ public final class QuadrotorKernel {
 
   /** The controller of the horizontal, upper half: velocity gives the goals of roll and pitch. */
   private void aim() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector r00 = FloatVector.fromArray(SPECIES, f00, i),
           r01 = FloatVector.fromArray(SPECIES, f01, i),
           r02 = FloatVector.fromArray(SPECIES, f02, i);
@@ -412,7 +420,7 @@ public final class QuadrotorKernel {
    * rotor controls.
    */
   private void mix() {
-    for (int i = 0; i < VEHICLES; i += LANES) {
+    for (int i = 0; i < used; i += LANES) {
       FloatVector rollOff =
           FloatVector.fromArray(SPECIES, rollGoal, i)
               .sub(FloatVector.fromArray(SPECIES, rollSin, i));

@@ -63,7 +63,7 @@ final class TimetableDragVehicles extends TimetableVehicles {
   }
 
   @Override
-  void start() {
+  void start(int worlds) {
     Arrays.fill(x, startX);
     Arrays.fill(y, startY);
     Arrays.fill(newX, startX);

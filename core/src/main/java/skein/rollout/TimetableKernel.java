@@ -49,8 +49,8 @@ final class TimetableKernel extends DuelKernel {
       startHeading = (float) duelist.startHeadingRad();
     }
 
-    void start(Timetable timetable) {
-      vehicles.start(timetable.readings());
+    void start(Timetable timetable, int worlds) {
+      vehicles.start(timetable.readings(), worlds);
       headings.reserve(timetable.headings() * WORLDS);
       // The timetable keeps the first heading at place 0.
       headings.fill(0, WORLDS, startHeading);
@@ -78,11 +78,12 @@ final class TimetableKernel extends DuelKernel {
   /**
    * Flies {@link #WORLDS} candidates through one episode, by the policies' parameters.
    *
+   * @param worlds those that count are the first
    * @param captureRadiusM a distance of at most this is a capture
    */
-  void fly(Timetable timetable, float captureRadiusM) {
-    evader.start(timetable);
-    pursuer.start(timetable);
+  void fly(Timetable timetable, int worlds, float captureRadiusM) {
+    evader.start(timetable, worlds);
+    pursuer.start(timetable, worlds);
     Arrays.fill(minDistance, Float.POSITIVE_INFINITY);
     Arrays.fill(captureS, Float.POSITIVE_INFINITY);
     for (float[] zero : new float[][] {sum, lastSum, pursuerEffortRad, evaderEffortRad})

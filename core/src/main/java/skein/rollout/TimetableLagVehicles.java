@@ -36,7 +36,7 @@ final class TimetableLagVehicles extends TimetableVehicles {
   }
 
   @Override
-  void start() {
+  void start(int worlds) {
     Arrays.fill(x, startX);
     Arrays.fill(y, startY);
     for (float[] zero : new float[][] {askedX, askedY, errorX, errorY}) Arrays.fill(zero, 0f);

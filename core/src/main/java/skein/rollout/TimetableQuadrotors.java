@@ -33,7 +33,8 @@ final class TimetableQuadrotors extends TimetableVehicles {
   }
 
   @Override
-  void start() {
+  void start(int worlds) {
+    kernel.use(worlds);
     for (int i = 0; i < WORLDS; i++) kernel.hover(i, hold);
   }
 

@@ -11,18 +11,23 @@ abstract class TimetableVehicles {
   /** How the vehicles answered, by place: positions, m, and velocities, m/s, north and east. */
   float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
-  /** Back to the start of an episode whose timetable needs so many places for readings. */
-  final void start(int readings) {
+  /**
+   * Back to the start of an episode.
+   *
+   * @param readings places that its timetable needs
+   * @param worlds those that count are the first
+   */
+  final void start(int readings, int worlds) {
     if (seenX.length < readings * WORLDS) {
       seenX = new float[readings * WORLDS];
       seenY = new float[readings * WORLDS];
       seenVx = new float[readings * WORLDS];
       seenVy = new float[readings * WORLDS];
     }
-    start();
+    start(worlds);
   }
 
-  abstract void start();
+  abstract void start(int worlds);
 
   /**
    * Reads the vehicles.

@@ -40,7 +40,10 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
 
     protected def kernel: DuelKernel
 
-    /** Flies the worlds that the lanes were filled with. */
+    /** Worlds that the lanes were filled with. */
+    protected def count: Int = filled
+
+    /** Flies them. */
     protected def fly(captureRadiusM: Float): Unit
 
     /** Fills a lane besides its policies. */
@@ -130,7 +133,7 @@ private final class TimetableFlyer(
         val (link, key) = (worlds.link(world), worlds.key(world))
         timetable = timetables.getOrMake(link, key)(Timetable.of(duel.durationS, timing, link, key, model))
 
-    protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, captureRadiusM)
+    protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 
 /** The timetables used last, for all threads. */
 private final class Timetables(most: Int):

@@ -31,6 +31,7 @@ private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: Quadro
       for lane <- some.indices do
         rolloutOf(lane, worlds, some(lane)).start(worlds.key(some(lane)), captureRadiusM)
         nextNs(lane) = 0
+      kernel.use(some.length * Vehicles)
       flyAll(some.length)
       for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
 

@@ -93,6 +93,8 @@ class DuelBatchSuite extends munit.FunSuite:
       for world <- 0 until worlds.size do
         assertEquals(numbers(backwards, worlds.size - 1 - world), numbers(all, world), s"world $world")
       for world <- 0 until worlds.size by 17 do
+        val alone = batch.fly(reordered(worlds, _ => world, Some(1)), captureRadiusM = 5)
+        assertEquals(numbers(alone, 0), numbers(all, world), s"world $world")
         val near = numbers(all, world).zip(scalar(worlds, world, LoopTiming.Futures(), model, offAxis))
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 

@@ -43,7 +43,7 @@ class TimetableKernelSuite extends munit.FunSuite:
     val duel   = paper.copy(durationS = durationS)
     val lanes  = TimetableModel.of(model, duel).fold(fail(_), identity)
     val kernel = TimetableKernel(duel, timing, lanes, pursuers, evaders)
-    kernel.fly(Timetable.of(durationS, timing, link, key, lanes), captureM)
+    kernel.fly(Timetable.of(durationS, timing, link, key, lanes), worlds, captureM)
     kernel
 
   private val loops =
