@@ -55,7 +55,7 @@ final class DuelEvaluator(
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
-    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true) then LanePolicy.WORLDS
+    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true) then LaneMath.LANES
     else 1
 
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
