@@ -6,9 +6,11 @@ import skein.policy.Policy
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
   * The policies of `skein.policy` fly by lanes ([[LanePolicy]]): worlds that share episodes with every model of a lag and
-  * with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with a [[Reduced]] model under `LoopTiming.Stream`
-  * ([[StreamDuelKernel]]). Other worlds' quadrotors fly by lanes under the scalar loops ([[QuadrotorFleet]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the world and on `shareEpisodes` alone, so results do
-  * not depend on threads, on a call's other worlds or on their order. One call at a time.
+  * with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with a [[Reduced]] model under
+  * `LoopTiming.Stream` ([[StreamDuelKernel]]). Other worlds' quadrotors fly by lanes under the scalar loops
+  * ([[QuadrotorFleet]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the
+  * world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
+  * One call at a time.
   *
   * @param duel
   *   start, speeds and duration; the policies come from the worlds
