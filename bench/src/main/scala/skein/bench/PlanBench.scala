@@ -1,5 +1,7 @@
 package skein.bench
 
+import com.sun.management.ThreadMXBean
+import java.lang.management.ManagementFactory
 import java.util.concurrent.atomic.AtomicLong
 import skein.flow.{BackgroundThread, PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
@@ -9,7 +11,8 @@ import skein.vehicle.ReducedModel
 /** How many candidate manoeuvres does a tick of 100 ms hold? One candidate is 2 s of flight in 20 steps of pursuer and
   * evader, drawn, flown, priced and searched upon; with several behaviours, that often. Threads are those of the `plan`
   * loop, which give way to all others, so other work on the machine takes its share first: rates are given per second of the
-  * clock and of the processor time used.
+  * clock and of the processor time used. Bytes are what a candidate leaves to the garbage collector: above a hundred, a
+  * loop of the kernel boxes its vectors, and collections fall into decisions.
   *
   * The witness is the cost of the best plan. Run: `./sbtw "bench/runMain skein.bench.PlanBench"`.
   */
@@ -34,11 +37,11 @@ object PlanBench:
   def main(args: Array[String]): Unit =
     val seconds = args.headOption.fold(2.0)(_.toDouble)
     val cores   = Runtime.getRuntime.availableProcessors
-    println("behaviours  threads  candidates per 100 ms  per 100 ms of processor time  witness")
+    println("behaviours  threads  candidates per 100 ms  per 100 ms of processor time  bytes each  witness")
     for behaviours <- Seq(1, 3); threads <- Seq(1, cores).distinct do
       for _ <- 1 to 2 do
-        val (byWall, byCpu, witness) = run(problem(behaviours), threads, seconds)
-        println(f"$behaviours%10d $threads%8d $byWall%22.0f $byCpu%29.0f  $witness%.3f")
+        val (byWall, byCpu, bytes, witness) = run(problem(behaviours), threads, seconds)
+        println(f"$behaviours%10d $threads%8d $byWall%22.0f $byCpu%29.0f $bytes%11.0f  $witness%.3f")
 
   /** A search that goes on until it is finished, on the `plan` loop's own threads. */
   def endlessly(threads: Int): Option[PlanSearch] =
@@ -46,24 +49,30 @@ object PlanBench:
       val problem = this.problem(behaviours = 1)
       new ThreadedPlanWorkers(threads).begin(problem, warm(problem))
 
-  private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Float) =
-    val (candidates, cpuNanos) = (AtomicLong(), AtomicLong())
-    val start                  = System.nanoTime()
-    val until                  = start + (seconds * 1e9).toLong
-    val timer                  = java.lang.management.ManagementFactory.getThreadMXBean
-    val factory                = BackgroundThread.factory("bench")
-    val best                   = Array.fill(threads)(Float.PositiveInfinity)
-    val workers                = Vector.tabulate(threads): search =>
+  private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Double, Float) =
+    val (candidates, cpuNanos, bytes) = (AtomicLong(), AtomicLong(), AtomicLong())
+    val start                         = System.nanoTime()
+    val until                         = start + (seconds * 1e9).toLong
+    val meter                         = ManagementFactory.getPlatformMXBean(classOf[ThreadMXBean])
+    val factory                       = BackgroundThread.factory("bench")
+    val best                          = Array.fill(threads)(Float.PositiveInfinity)
+    val workers                       = Vector.tabulate(threads): search =>
       factory.newThread: () =>
         val planner = JointPlanner()
         var plan    = warm(problem)
-        val before  = timer.getCurrentThreadCpuTime
+        val before  = (cpu = meter.getCurrentThreadCpuTime, bytes = meter.getCurrentThreadAllocatedBytes)
         while System.nanoTime() < until do
           plan = planner.improved(problem, plan, search)
-        cpuNanos.addAndGet(timer.getCurrentThreadCpuTime - before): Unit
+        cpuNanos.addAndGet(meter.getCurrentThreadCpuTime - before.cpu): Unit
+        bytes.addAndGet(meter.getCurrentThreadAllocatedBytes - before.bytes): Unit
         candidates.addAndGet(plan.plans.head.candidates): Unit
         best(search) = plan.plans.head.cost
     workers.foreach(_.start())
     workers.foreach(_.join())
     val wallNanos = System.nanoTime() - start
-    (candidates.get * 1e8 / wallNanos, candidates.get * 1e8 / cpuNanos.get, best.min)
+    (
+      candidates.get * 1e8 / wallNanos,
+      candidates.get * 1e8 / cpuNanos.get,
+      bytes.get.toDouble / candidates.get,
+      best.min
+    )

@@ -210,12 +210,16 @@ final class PlanKernel implements CandidateBlock {
     ReducedModel model = situation.response();
     float lag = (float) model.lagS();
     FloatVector gain = FloatVector.broadcast(SPECIES, (float) model.gain());
-    FloatVector dt = FloatVector.broadcast(SPECIES, dtS), perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
+    FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
     FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
     FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
-    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) own.vx()), startVy = FloatVector.broadcast(SPECIES, (float) own.vy());
-    FloatVector startCos = FloatVector.broadcast(SPECIES, (float) StrictMath.cos(situation.headingRad()));
-    FloatVector startSin = FloatVector.broadcast(SPECIES, (float) StrictMath.sin(situation.headingRad()));
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) own.vx());
+    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) own.vy());
+    FloatVector startCos =
+        FloatVector.broadcast(SPECIES, (float) StrictMath.cos(situation.headingRad()));
+    FloatVector startSin =
+        FloatVector.broadcast(SPECIES, (float) StrictMath.sin(situation.headingRad()));
     float firstTurnS = (float) situation.sinceDecisionS();
     FloatVector sin3 = FloatVector.broadcast(SPECIES, SIN_3),
         sin5 = FloatVector.broadcast(SPECIES, SIN_5),
@@ -311,7 +315,8 @@ final class PlanKernel implements CandidateBlock {
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
     Separation separation = objective.separation();
-    FloatVector least = FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
+    FloatVector least =
+        FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
     FloatVector price = FloatVector.broadcast(SPECIES, (float) separation.price() * dtS);
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
@@ -342,7 +347,8 @@ final class PlanKernel implements CandidateBlock {
   /** The paper's evader, which knows the heading commanded before this step's. */
   private void evade(Target.Evader evader) {
     ReducedModel model = evader.response();
-    FloatVector dt = FloatVector.broadcast(SPECIES, dtS), perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
+    FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
     FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
     FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
     FloatVector commanded = FloatVector.broadcast(SPECIES, (float) (evader.speed() * model.gain()));
@@ -416,7 +422,8 @@ final class PlanKernel implements CandidateBlock {
     FloatVector radius = FloatVector.broadcast(SPECIES, (float) objective.captureRadius());
     FloatVector bonus = FloatVector.broadcast(SPECIES, (float) objective.capture());
     double softness = objective.softness();
-    FloatVector soft = FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
+    FloatVector soft =
+        FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
         far = FloatVector.broadcast(SPECIES, FAR);
     for (int i = 0; i < SIZE; i += LANES) {
