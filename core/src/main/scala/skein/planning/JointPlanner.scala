@@ -28,16 +28,15 @@ final class JointPlanner:
   private val planners = mutable.Map.empty[(PlannerSettings, Objective), Planner]
 
   private def planner(settings: PlannerSettings, objective: Objective): Planner =
-    planners.getOrElse(
-      (settings, objective), {
-        if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
-        if planners.size >= JointPlanner.MostPlanners then planners.clear()
-        val block = blocks.getOrElseUpdate(settings.steps, CandidateBlock(settings.steps))
-        val made  = new Planner(settings, objective, block)
-        planners((settings, objective)) = made
-        made
-      }
-    )
+    planners.getOrElse((settings, objective), made(settings, objective))
+
+  private def made(settings: PlannerSettings, objective: Objective): Planner =
+    if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
+    if planners.size >= JointPlanner.MostPlanners then planners.clear()
+    val block   = blocks.getOrElseUpdate(settings.steps, CandidateBlock(settings.steps))
+    val planner = new Planner(settings, objective, block)
+    planners((settings, objective)) = planner
+    planner
 
   /** The plan to begin with: what is left of the last, or straight on for all. */
   def resumed(problem: PlanProblem, last: Option[JointPlan]): JointPlan =

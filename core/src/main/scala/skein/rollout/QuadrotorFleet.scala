@@ -73,7 +73,9 @@ private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: Quadro
     private var sinceStep        = 0.0
 
     def start(x: Double, y: Double, z: Double): Unit =
-      originX = x; originY = y; down = z.toFloat
+      originX = x
+      originY = y
+      down = z.toFloat
       kernel.hover(place, Vector3(0, 0, z - Quadrotor.AirSim.hoverSagM(z, Environment.Calm)))
 
     def command(vx: Double, vy: Double): Unit = kernel.command(place, vx.toFloat, vy.toFloat, down)

@@ -9,11 +9,11 @@ import scala.util.{Try, Using}
 
 /** Threads that give way to all others of the user's session.
   *
-  * Java's priorities have no effect on Linux, and neither has niceness on how soon a thread runs that wakes up: it waits
-  * until the one on its processor has used up its slice, some 3 to 5 ms, as nice as that may be. Only `SCHED_IDLE` (see
-  * sched(7)) is taken the processor from at once, which any process may ask for, and for ever. Its price: where other
-  * programs of the session keep all processors busy, such a thread hardly runs, and the JVM, which stops all threads now
-  * and then, has to wait for it; for one that is ready to run, 0.8 s were seen.
+  * Java's priorities have no effect on Linux, and niceness has none on how soon a thread runs that wakes up: it waits
+  * until the one on its processor has used up its slice, some 3 to 5 ms, however nice that is. Only from a thread of
+  * `SCHED_IDLE` (see sched(7)) is the processor taken at once. Any process may choose it, and may not go back. Its price:
+  * where other programs of the session keep all processors busy, such a thread hardly runs, and the JVM, which stops all
+  * threads now and then, waits for one that is ready to run; 0.8 s were seen.
   */
 object BackgroundThread:
 
