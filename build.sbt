@@ -1,8 +1,20 @@
 import Dependencies.*
 
-ThisBuild / organization := "skein"
-ThisBuild / version      := "0.1.0-SNAPSHOT"
-ThisBuild / scalaVersion := "3.8.4"
+ThisBuild / organization         := "io.github.skein-uav"
+ThisBuild / organizationName     := "Skein"
+ThisBuild / organizationHomepage := Some(url("https://github.com/skein-uav"))
+ThisBuild / homepage             := Some(url("https://github.com/skein-uav/skein"))
+ThisBuild / licenses             := Seq(License.Apache2)
+ThisBuild / scmInfo              := Some(
+  ScmInfo(url("https://github.com/skein-uav/skein"), "scm:git:https://github.com/skein-uav/skein.git")
+)
+ThisBuild / developers := List(
+  Developer("skein-uav", "The Skein authors", "", url("https://github.com/skein-uav"))
+)
+ThisBuild / version       := "0.1.0-SNAPSHOT"
+ThisBuild / versionScheme := Some("early-semver")
+ThisBuild / publishTo     := localStaging.value
+ThisBuild / scalaVersion  := "3.8.4"
 ThisBuild / scalacOptions ++= Seq(
   "-Werror",
   "-Wunused:all",
@@ -11,9 +23,10 @@ ThisBuild / scalacOptions ++= Seq(
   "-feature",
   "-unchecked"
 )
-// What is built at its first start need not wait for archives that nobody publishes.
-ThisBuild / packageDoc / publishArtifact := false
-ThisBuild / packageSrc / publishArtifact := false
+// What is built at its first start need not wait for archives that nobody publishes: sources and documentation are made
+// by an sbt that was started to publish, `./sbtw publishLocal`.
+ThisBuild / packageDoc / publishArtifact := Publishing.isWanted
+ThisBuild / packageSrc / publishArtifact := Publishing.isWanted
 ThisBuild / Test / fork               := true
 ThisBuild / run / fork                := true
 ThisBuild / Test / testForkedParallel := false
@@ -22,20 +35,35 @@ ThisBuild / run / javaOptions ++= Jvm.options
 Global / onChangedBuildSource   := ReloadOnSourceChanges
 Global / concurrentRestrictions := Seq(Tags.limitAll(2), Tags.limit(Tags.ForkedTestGroup, 1))
 
-lazy val root =
-  project.in(file(".")).aggregate(core, vtimeAgent, vtime, live, app, bench, benchJmh).settings(publish / skip := true)
+// No sockets, no wall clock, no whole flights: for while one works.
+addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
 
-/** Pure: units, signals, vehicle dynamics, policies, forward simulation. No Pekko, no I/O, no clock. */
-lazy val core = project.settings(
-  Jvm.vectorModule,
-  libraryDependencies ++= munit
-)
+lazy val root =
+  project
+    .in(file("."))
+    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
+    .aggregate(ownGraph, virtualTime)
+    .settings(publish / skip := true)
+
+/** What a part is published as: `skein-core` and so on. */
+def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
+
+/** Pure: units, signals, vehicle dynamics, policies, scenarios. No Pekko, no I/O. */
+lazy val core = project
+  .settings(artifact("core", "Pure: units, signals, dynamics, policies, scenarios"))
+  .settings(libraryDependencies ++= munit)
+
+/** Forward simulation, search, identification, planning. No Pekko. */
+lazy val forward = project
+  .settings(artifact("forward", "Forward simulation, search, identification, planning"))
+  .dependsOn(core).settings(Jvm.vectorModule, libraryDependencies ++= munit)
 
 /** Rewrites clock readings as classes load. Java alone; the JVM is started with its jar as `-javaagent`. */
 lazy val vtimeAgent = project
   .in(file("vtime-agent"))
   .settings(
-    name             := "vtime-agent",
+    name             := "skein-vtime-agent",
+    description      := "Rewrites clock readings of Pekko as classes load",
     crossPaths       := false,
     autoScalaLibrary := false,
     exportJars       := true,
@@ -52,25 +80,55 @@ lazy val underAgent = Seq(
 
 /** Any Pekko graph in virtual time. Depends on Pekko alone. */
 lazy val vtime = project
+  .settings(artifact("vtime", "Any Pekko graph in virtual time"))
   .dependsOn(vtimeAgent)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit ++ pekkoTyped.map(_ % Test))
 
-/** Everything that touches the network and the clock, through interfaces that virtual time can replace. */
-lazy val live = project
+/** Transport, and the emulated network. */
+lazy val link = project
+  .settings(artifact("link", "Transport, and an emulated network"))
   .dependsOn(core, vtime % Test)
+  .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit :+ streamTestkit)
+
+/** Operators for control: ordinary Pekko flows, usable with nothing else of ours but the core. */
+lazy val flow = project
+  .settings(artifact("flow", "Operators for control: ordinary Pekko flows"))
+  .dependsOn(core, vtime % Test)
+  .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit :+ streamTestkit)
+
+/** MessagePack-RPC; AirSim's typed client and wire. */
+lazy val airsim = project
+  .settings(artifact("airsim", "MessagePack-RPC and a typed client for AirSim"))
+  .dependsOn(link % "compile->compile;test->test", vtime % Test)
+  .settings(underAgent, libraryDependencies ++= upickle +: munit ++: Seq(streamTestkit, msgpackOracle))
+
+/** The built-in simulator, which speaks AirSim's wire. */
+lazy val simulator = project
+  .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
+  .dependsOn(airsim % "compile->compile;test->test", vtime % Test)
+  .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
+
+/** Recordings. */
+lazy val record = project
+  .settings(artifact("record", "Recordings of flights"))
+  .dependsOn(core)
+  .settings(libraryDependencies ++= duckdb +: (pekkoStream ++ munit))
+
+/** The loops; flights put together, live and in virtual time, and through faults. */
+lazy val flight = project
+  .settings(artifact("flight", "Control loops, and flights put together"))
+  .dependsOn(forward, flow, simulator, record % "compile->compile;test->test", vtime)
   .settings(underAgent)
-  .settings(libraryDependencies ++= pekko ++ Seq(upickle, duckdb) ++ munit ++ Seq(
-    streamTestkit,
-    msgpackOracle
-  ))
+  .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
 
 /** Commands and reports. */
-lazy val app = project
-  .dependsOn(live, vtime)
+lazy val cli = project
+  .settings(artifact("cli", "Commands and reports"))
+  .dependsOn(flight % "compile->compile;test->test")
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
-    libraryDependencies ++= Seq(mainargs, pureconfig, logback, progressbar, scalatags) ++ munit,
+    libraryDependencies ++= Seq(mainargs, logback, scalatags) ++ munit,
     Compile / mainClass  := Some("skein.cli.Main"),
     executableScriptName := "skein",
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
@@ -113,10 +171,34 @@ lazy val app = project
 /** Measurements: plain programs that print a witness of what they did. */
 lazy val bench =
   project
-    .dependsOn(app)
+    .dependsOn(cli)
     .settings(Jvm.vectorModule, underAgent, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
 
 /** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */
 lazy val benchJmh =
   project.in(file("bench/jmh")).dependsOn(bench).enablePlugins(JmhPlugin).settings(publish / skip := true)
+
+/** Changes one thing at a time in the sources and sees whether the tests notice: `docs/testing.md`. */
+lazy val mutation = project
+  .in(file("bench/mutation"))
+  .dependsOn(core % "compile->test", flow % "compile->test", record % "compile->test", cli % "compile->test")
+  .settings(underAgent)
+  .settings(
+    publish / skip      := true,
+    run / baseDirectory := (ThisBuild / baseDirectory).value,
+    libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
+      "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
+  )
+
+/** The operators on a data source that is not a drone. */
+lazy val ownGraph = project
+  .in(file("examples/own-graph"))
+  .dependsOn(flow, vtime % Test)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+
+/** A plain Pekko program, tested in virtual time. */
+lazy val virtualTime = project
+  .in(file("examples/virtual-time"))
+  .dependsOn(vtime % Test)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= pekkoStream ++ munit)

@@ -9,7 +9,7 @@ object Dependencies {
 
   val pekkoStream   = pekkoModules("actor", "stream")
   val pekkoTyped    = pekkoModules("actor-typed")
-  val pekko         = pekkoStream ++ pekkoTyped ++ pekkoModules("slf4j")
+  val pekkoLog      = pekkoModules("slf4j")
   val streamTestkit = "org.apache.pekko"      %% "pekko-stream-testkit" % pekkoVersion % Test
   val upickle       = "com.lihaoyi"           %% "upickle"              % "4.4.3"
   val msgpackOracle = "org.msgpack"            % "msgpack-core"         % "0.9.11"     % Test

@@ -10,10 +10,11 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
-import skein.experiment.*
+import skein.flight.{FlightRigs, WarmUp}
 import skein.link.*
 import skein.loop.LoopKind
 import skein.record.MemoryRecorder
+import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -25,7 +26,7 @@ import skein.units.*
   *
   * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default 10), threads
   * that plan without a pause meanwhile, as the `plan` loop's do (default 0), virtual flights
-  * to warm up by before the rehearsal (default [[skein.experiment.WarmUp.Flights]]; 0 for a cold start without one).
+  * to warm up by before the rehearsal (default [[skein.flight.WarmUp.Flights]]; 0 for a cold start without one).
   */
 object FrameworkLatency:
 

@@ -3,7 +3,7 @@ package skein.bench
 import com.sun.management.ThreadMXBean
 import java.lang.management.ManagementFactory
 import java.util.concurrent.atomic.AtomicLong
-import skein.flow.{BackgroundThread, PlanSearch, ThreadedPlanWorkers}
+import skein.loop.planning.{BackgroundThread, PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
 import skein.policy.PaperEvader
 import skein.vehicle.ReducedModel

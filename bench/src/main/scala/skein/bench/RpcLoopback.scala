@@ -7,8 +7,9 @@ import java.util.concurrent.locks.LockSupport
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
-import skein.link.{Address, Clock, TcpTransport}
+import skein.link.{Address, TcpTransport}
 import skein.rpc.*
+import skein.units.Clock
 import upack.{Binary, Float32, Msg, Obj, Str}
 
 /** How fast is the RPC over loopback, client and server in one JVM? A kinematics request carries a vehicle's name and

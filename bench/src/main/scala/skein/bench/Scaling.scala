@@ -1,11 +1,12 @@
 package skein.bench
 
+import skein.forward.{DelayTable, Engagement, LoopTiming, Rollout}
 import skein.policy.Scenario
-import skein.rollout.*
+import skein.simd.WorldRandom
 
 /** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size of a team?
-  * `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.rollout.DuelBatch]], teams by
-  * [[skein.rollout.Rollout]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
+  * `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.lanes.DuelBatch]], teams by
+  * [[skein.forward.Rollout]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
   */
 object Scaling:
   def main(args: Array[String]): Unit =

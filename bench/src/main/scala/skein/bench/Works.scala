@@ -1,7 +1,9 @@
 package skein.bench
 
+import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
+import skein.lanes.{DuelBatch, DuelWorlds, QuadrotorKernel}
 import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, Policy}
-import skein.rollout.*
+import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 
@@ -59,18 +61,19 @@ object Works:
   private val network = NeuralShape(Vector(8, 8))
   private val weights = Vector.tabulate(network.parameters)(i => math.sin(i))
 
-  val networkByLanes: Work = Work("network, SIMD", Decision): thread =>
-    val (worlds, rounds) = (512, 20_000)
-    val kernel           = NeuralKernel(network.widths.toArray, worlds)
-    val dx, dy, heading  = Array.tabulate(worlds)(i => (i + thread) * 0.01f)
-    val dvx, dvy, turns  = Array.ofDim[Float](worlds)
-    kernel.load(weights.toArray)
-    var sum = 0.0
-    for round <- 1 to rounds do
-      dvx(round % worlds) += 0.1f
-      kernel.turnShares(dx, dy, dvx, dvy, heading, turns)
-      sum += turns(round % worlds)
-    (worlds * rounds.toDouble, sum / rounds)
+  /** Searched as any policy is: pursuers with weights of their own, candidates of one episode. */
+  val networkByLanes: Work = Work("network, candidates of 8 episodes", AgentStep): thread =>
+    val worlds   = 2048
+    val policies = Array.tabulate(256)(i => NeuralPolicy(network, weights.map(_ * (0.5 + i / 256.0))))
+    val all      = new DuelWorlds:
+      def size: Int                       = worlds
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = WorldRandom.key(thread, 0, world / 256)
+      def link(world: Int): DelayTable    = DelayTable.vpn
+      def pursuer(world: Int): Policy     = policies(world % 256)
+      def evader(world: Int): Policy      = Works.evader
+    val outcomes = batch(LoopTiming.Stream(), 1).fly(all)
+    (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
 
   val networkScalar: Work = Work("network, scalar", Decision): thread =>
     val steps  = 500_000

@@ -4,12 +4,15 @@ package skein.policy
   * and forward simulation. Agents are numbered by their places in a scenario.
   *
   * @param rivals
-  *   of each agent, at least one, in ascending order; with a single one the agent is assigned for good
+  *   of each agent, at least one, in ascending order; with a single one the agent is assigned for good. One that flies
+  *   alone has itself
   */
 final case class Assignment(rivals: Vector[Vector[Int]]):
   for (mine, self) <- rivals.zipWithIndex do
     require(
-      mine.nonEmpty && mine.forall(other => other != self && rivals.indices.contains(other)),
+      mine.nonEmpty && mine.forall(other =>
+        (other != self || rivals.size == 1) && rivals.indices.contains(other)
+      ),
       s"agent $self needs rivals among the others of ${rivals.size}, came ${mine.mkString(", ")}"
     )
 

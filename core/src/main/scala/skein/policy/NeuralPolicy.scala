@@ -4,8 +4,7 @@ package skein.policy
   * [[NeuralPolicy.LengthM]] and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead and to the right; its one
   * output, in −1 to 1, times the turn rate is how fast it turns.
   *
-  * Allocates two arrays as wide as its widest layer at a decision. `NeuralKernel` computes the same for many worlds at
-  * once.
+  * Allocates two arrays as wide as its widest layer at a decision; by lanes the network has no arrays.
   *
   * @param parameters
   *   as [[NeuralShape]] lays them out
@@ -21,6 +20,7 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
 
   private val weights = parameters.toArray
   private val widths  = shape.widths.toArray
+  private val widest  = shape.widest
 
   def heading(
       dxM: Double,
@@ -36,8 +36,8 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
   def turnRate(dxM: Double, dyM: Double, dvxMps: Double, dvyMps: Double, ownHeadingRad: Double): Double =
     val cos    = StrictMath.cos(ownHeadingRad)
     val sin    = StrictMath.sin(ownHeadingRad)
-    var input  = Array.ofDim[Double](shape.widest)
-    var output = Array.ofDim[Double](shape.widest)
+    var input  = Array.ofDim[Double](widest)
+    var output = Array.ofDim[Double](widest)
     input(0) = (dxM * cos + dyM * sin) / NeuralPolicy.LengthM
     input(1) = (dyM * cos - dxM * sin) / NeuralPolicy.LengthM
     input(2) = (dvxMps * cos + dvyMps * sin) / NeuralPolicy.SpeedMps

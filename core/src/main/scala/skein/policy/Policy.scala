@@ -1,5 +1,7 @@
 package skein.policy
 
+import skein.units.Radians
+
 /** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
   * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same object
   * without allocation.
@@ -7,7 +9,7 @@ package skein.policy
   * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its calls:
   * deciding twice as often must not turn twice as fast.
   */
-trait Policy:
+trait Policy extends PlanarPolicy:
 
   /** The heading to command now, rad, from north (+x) towards east (+y); any number of turns.
     *
@@ -35,3 +37,23 @@ trait Policy:
       opponentHeadingRad: Double,
       elapsedS: Double
   ): Double
+
+  type Memory = Any
+
+  /** Nothing, but for an [[ObservingPolicy]]. */
+  def start: Any = ()
+
+  def planar(seen: Observation, memory: Any): (Planar, Any) =
+    val (here, there) = (seen.own.kinematics, seen.vehicles(seen.opponent).kinematics)
+    val toOpponent    = there.positionNed - here.positionNed
+    val closing       = there.velocityNed - here.velocityNed
+    val chosenRad     = heading(
+      toOpponent.x,
+      toOpponent.y,
+      closing.x,
+      closing.y,
+      seen.headings(seen.self).value,
+      seen.headings(seen.opponent).value,
+      seen.elapsed.toSeconds
+    )
+    (Planar(Radians(chosenRad), None), memory)

@@ -79,7 +79,6 @@ object PolicyFamily:
     parameters => LeadPursuit(parameters(0), parameters(1), parameters(2))
   )
 
-  /** Flown by the scalar engine alone. */
   val chauffeurPursuer: PolicyFamily = PolicyFamily(
     "chauffeur-pursuer",
     "turns hard towards the opponent and dashes; flies off first where it would slip by",

@@ -6,6 +6,10 @@ import skein.units.*
 enum Role:
   case Pursuer, Evader, Leader, Follower, Traveller
 
+object Role:
+  /** By its name, in letters of any case. */
+  def parse(name: String): Option[Role] = values.find(_.toString.equalsIgnoreCase(name))
+
 /** One vehicle of a scenario and how it behaves.
   *
   * @param speed
@@ -15,7 +19,7 @@ enum Role:
   * @param startHeading
   *   the heading its policy starts from
   * @param policy
-  *   against one opponent, or for a vehicle among all
+  *   [[Policy]] against one opponent, [[TeamPolicy]] for a vehicle among all, or any other in three dimensions
   */
 final case class Agent(
     name: String,
@@ -23,7 +27,7 @@ final case class Agent(
     speed: MetresPerSecond,
     startPositionNed: Vector3,
     startHeading: Radians,
-    policy: Policy | TeamPolicy
+    policy: AgentPolicy
 ):
   /** The velocity to command for a heading, m/s, horizontal, world NED.
     *
@@ -37,19 +41,19 @@ final case class Agent(
   /** The policy of an agent that plays against one other. */
   def duelPolicy: Policy = policy match
     case against: Policy => against
-    case _: TeamPolicy   =>
+    case _               =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 
 /** Who takes part. Every agent has an opponent: the nearest one of another role, or, where all have the same role, the
-  * nearest.
+  * nearest; one that flies alone has itself.
   */
 final case class Scenario(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
     val others = agents.indices.filter(_ != self).toVector
     val rivals = others.filter(agents(_).role != agents(self).role)
     agents(self).policy match
-      case _: Policy     => rivals
-      case _: TeamPolicy => if rivals.nonEmpty then rivals else others
+      case _: Policy => rivals
+      case _         => Vector(rivals, others, Vector(self)).find(_.nonEmpty).getOrElse(Vector(self))
 
   require(
     agents.map(_.name).distinct.size == agents.size,
@@ -58,7 +62,7 @@ final case class Scenario(agents: Vector[Agent]):
   for (agent, i) <- agents.zipWithIndex do
     require(
       opponents(i).nonEmpty,
-      s"vehicle ${agent.name} has no opponent: a duel needs both roles, a team two vehicles"
+      s"vehicle ${agent.name} has no opponent: a duel needs both roles"
     )
 
   /** Whom each agent plays against. */

@@ -1,12 +1,22 @@
 package skein.policy
 
+import skein.units.{MetresPerSecond, Radians}
+
 /** Chooses a velocity for one vehicle from what it knows of its whole team. A pure function of its argument; it
   * integrates over elapsed time and never counts its calls.
   */
-trait TeamPolicy:
+trait TeamPolicy extends PlanarPolicy:
 
   /** The horizontal velocity to command now. */
   def course(seen: TeamSight): Course
+
+  type Memory = Unit
+
+  final def start: Unit = ()
+
+  final def planar(seen: Observation, memory: Unit): (Planar, Unit) =
+    val chosen = course(TeamSight.of(seen))
+    (Planar(Radians(chosen.headingRad), Some(MetresPerSecond(chosen.speedMps))), ())
 
 /** A policy of a vehicle that wants to be somewhere: what a planner can plan for in its place. */
 trait GoalPolicy extends TeamPolicy:
@@ -50,6 +60,19 @@ final case class TeamSight(
 
   /** How many vehicles there are. */
   def count: Int = northM.length
+
+object TeamSight:
+  def of(seen: Observation): TeamSight =
+    val all = seen.vehicles.map(_.kinematics)
+    TeamSight(
+      seen.self,
+      IArray.from(all.map(_.positionNed.x)),
+      IArray.from(all.map(_.positionNed.y)),
+      IArray.from(all.map(_.velocityNed.x)),
+      IArray.from(all.map(_.velocityNed.y)),
+      seen.headings(seen.self).value,
+      seen.elapsed.toSeconds
+    )
 
 /** A horizontal velocity to command.
   *

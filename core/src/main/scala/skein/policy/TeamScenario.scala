@@ -1,5 +1,6 @@
 package skein.policy
 
+import java.util.Locale
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
 import skein.units.*
@@ -12,7 +13,7 @@ sealed trait TeamScenario extends Product:
 
   def altitudeM: Double
 
-  def name: String = productPrefix.toLowerCase
+  def name: String = productPrefix.toLowerCase(Locale.ROOT)
 
   /** Every setting by name, as [[TeamScenario.of]] reads it back. */
   def settings: Seq[(String, String)] = productElementNames.zip(productIterator.map(_.toString)).toSeq

@@ -18,4 +18,10 @@ final case class Kinematics(
     velocityNed: Vector3,
     orientation: Quaternion,
     angularVelocityFrd: Vector3
-)
+):
+  /** Whether every component is a number, and none endless. */
+  def isFinite: Boolean =
+    def all(v: Vector3) = v.x.isFinite && v.y.isFinite && v.z.isFinite
+    val turn            = Seq(orientation.w, orientation.x, orientation.y, orientation.z)
+    all(positionNed) && all(velocityNed) && all(angularVelocityFrd) && turn.forall(_.isFinite)
+

@@ -5,7 +5,7 @@ enum LatencyError(val message: String):
 
   /** The text has the form of no profile. */
   case UnknownProfile(text: String)
-      extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyText.forms}")
+      extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyError.forms}")
 
   /** A profile's name is right and what follows it is not. */
   case Malformed(text: String, expected: String, came: String)
@@ -22,3 +22,9 @@ enum LatencyError(val message: String):
   /** The file of samples holds none. */
   case NoSamples(path: String)
       extends LatencyError(s"$path: expected at least one round trip in ms, one a line; the file has none")
+
+object LatencyError:
+  /** What [[LatencyProfile.parse]] reads. */
+  val forms: String =
+    "none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, lognormal:36ms,0.3 " +
+      "or file:PATH (times are round trips)"

@@ -50,3 +50,65 @@ object LatencyProfile:
     */
   def parse(text: String, read: String => Either[String, String]): Either[LatencyError, LatencyProfile] =
     LatencyText.parse(text, read)
+
+/** The text form of latency profiles, for flags and configuration files. */
+private object LatencyText:
+  import LatencyDistribution.*
+  import LatencyError.*
+  import LatencyProfile.Steady
+
+  private val named =
+    List(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
+      .map(profile => profile.name -> profile)
+      .toMap
+
+  def parse(text: String, read: String => Either[String, String]): Either[LatencyError, LatencyProfile] =
+    def malformed(expected: String, came: String)      = Malformed(text, expected, came)
+    def time(came: String): Either[LatencyError, Span] =
+      span(came).toRight(malformed("a time such as 200ms", came))
+
+    text match
+      case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
+      case s"uniform:$least..$most" =>
+        for
+          from  <- time(least)
+          until <- time(most)
+          _     <- Either.cond(from <= until, (), malformed("the smaller time first", s"$least..$most"))
+        yield Steady(text, Uniform(from, until))
+      case s"uniform:$came"            => Left(malformed("two times such as 10ms..40ms", came))
+      case s"lognormal:$median,$sigma" =>
+        for
+          middle <- time(median)
+          spread <- sigma.trim.toDoubleOption
+            .filter(s => s >= 0 && s <= 3)
+            .toRight(malformed("a standard deviation of the logarithm from 0 to 3", sigma))
+        yield Steady(text, LogNormal(middle, spread))
+      case s"lognormal:$came" =>
+        Left(malformed("the median and the standard deviation of the logarithm such as 36ms,0.3", came))
+      case s"file:$path" =>
+        for
+          content      <- read(path).left.map(Unreadable(path, _))
+          roundTripsMs <- samples(path, content)
+        yield Steady(text, ofSamples(roundTripsMs))
+      case _ => named.get(text).toRight(UnknownProfile(text))
+
+  private def samples(path: String, content: String): Either[LatencyError, Vector[Double]] =
+    val lines = content.linesIterator.map(_.trim).zipWithIndex.filterNot: (line, _) =>
+      line.isEmpty || line.startsWith("#")
+    val parsed = lines.map: (line, index) =>
+      line.toDoubleOption.filter(ms => ms >= 0 && ms <= 3_600_000).toRight(BadSample(path, index + 1, line))
+    parsed.foldLeft[Either[LatencyError, Vector[Double]]](Right(Vector.empty)): (before, next) =>
+      before.flatMap(ms => next.map(ms :+ _))
+    .filterOrElse(_.nonEmpty, NoSamples(path))
+
+  private val time = """\s*(\d+(?:\.\d+)?)\s*(us|ms|s)\s*""".r
+
+  /** At most an hour; a longer round trip is a mistake. */
+  private def span(text: String): Option[Span] = text match
+    case time(number, unit) =>
+      val ms = unit match
+        case "us" => number.toDouble / 1000
+        case "ms" => number.toDouble
+        case _    => number.toDouble * 1000
+      Option.when(ms <= 3_600_000)(Span.ofMillis(ms))
+    case _ => None

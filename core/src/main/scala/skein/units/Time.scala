@@ -40,6 +40,33 @@ object Span:
   /** Rounds to the nearest nanosecond. */
   inline def ofSeconds(seconds: Double): Span = math.round(seconds * 1e9)
 
+  /** Reads a length of time with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
+    *
+    * @return
+    *   or what was expected and came
+    */
+  def parse(text: String): Either[String, Span] =
+    text.trim match
+      case withUnit(number, unit)
+          if nanosOf.contains(unit) && number.toDouble * nanosOf(unit) < Long.MaxValue =>
+        Right((BigDecimal(number) * nanosOf(unit)).setScale(0, BigDecimal.RoundingMode.HALF_UP).toLong)
+      case number =>
+        val example = if number.matches(digits) then s"${number}s" else "100ms"
+        Left(s"expected a duration with unit, such as $example, came '$text'")
+
+  private val digits   = """\d+(?:\.\d+)?"""
+  private val withUnit = s"($digits)\\s*([a-zµ]+)".r
+
+  private val nanosOf: Map[String, Double] = Seq(
+    1.0     -> "ns nano nanos nanosecond nanoseconds",
+    1e3     -> "us µs micro micros microsecond microseconds",
+    1e6     -> "ms milli millis millisecond milliseconds",
+    1e9     -> "s sec secs second seconds",
+    60e9    -> "m min mins minute minutes",
+    3600e9  -> "h hr hrs hour hours",
+    86400e9 -> "d day days"
+  ).flatMap((nanos, names) => names.split(' ').map(_ -> nanos)).toMap
+
   given Ordering[Span] = Ordering.Long
 
   extension (span: Span)

@@ -1,5 +1,7 @@
 package skein.vehicle
 
+import scala.annotation.unused
+
 /** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that are zero
   * there (all derivatives, all integrals but the vertical velocity's) have no field here.
   *
@@ -50,11 +52,14 @@ final case class ControllerGains(
   * body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so a vehicle tilted
   * by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the more the higher it flies.
   *
+  * [[TunedFlightController]] is the same cascade with gains of every controller's own.
+  *
   * @param stepS
   *   time between updates, s
   */
-final class FlightController(val gains: ControllerGains, stepS: Double):
+open class FlightController(val gains: ControllerGains, stepS: Double):
   import gains.*
+  import CascadeLoop.*
 
   /** Sets the rotor controls of `state` for its next step. */
   def update(state: QuadrotorState, setpoint: Setpoint): Unit =
@@ -96,26 +101,27 @@ final class FlightController(val gains: ControllerGains, stepS: Double):
           frontGoal = r00 * setpoint.first + r10 * setpoint.second + r20 * setpoint.third
           rightGoal = r01 * setpoint.first + r11 * setpoint.second + r21 * setpoint.third
         else
-          frontGoal = r00 * velocityTowards(setpoint.first, state.x)
-          rightGoal = r11 * velocityTowards(setpoint.second, state.y)
+          frontGoal = r00 * velocityTowards(state, NorthPosition, setpoint.first - state.x)
+          rightGoal = r11 * velocityTowards(state, EastPosition, setpoint.second - state.y)
         val front = r00 * state.vx + r10 * state.vy + r20 * state.vz
         val right = r01 * state.vx + r11 * state.vy + r21 * state.vz
-        roll = unit(velocityP * (rightGoal - right)) * maxTilt
-        pitch = -unit(velocityP * (frontGoal - front)) * maxTilt
-      rollRate = rateTowards(clamp(roll, maxTilt), StrictMath.atan2(r21, r22))
-      pitchRate = rateTowards(clamp(pitch, maxTilt), -StrictMath.asin(unit(r20)))
+        roll = respond(state, RightVelocity, velocityP, rightGoal - right) * maxTilt
+        pitch = -respond(state, FrontVelocity, velocityP, frontGoal - front) * maxTilt
+      rollRate = rateTowards(state, RollAngle, clamp(roll, maxTilt) - StrictMath.atan2(r21, r22))
+      pitchRate = rateTowards(state, PitchAngle, clamp(pitch, maxTilt) + StrictMath.asin(unit(r20)))
     val yawRate =
       if setpoint.yaw eq YawMode.Rate then setpoint.yawGoal
-      else rateTowards(setpoint.yawGoal, StrictMath.atan2(r10, r00))
+      else rateTowards(state, YawAngle, setpoint.yawGoal - StrictMath.atan2(r10, r00))
 
-    val rollCommand  = torque(rollRate, state.wx)
-    val pitchCommand = torque(pitchRate, state.wy)
-    val yawCommand   = torque(yawRate, state.wz)
+    val rollCommand  = torque(state, RollRate, rollRate, state.wx)
+    val pitchCommand = torque(state, PitchRate, pitchRate, state.wy)
+    val yawCommand   = torque(state, YawRate, yawRate, state.wz)
     val throttle     =
       if setpoint.vertical eq VerticalMode.Throttle then setpoint.third
       else
         val downGoal =
-          if setpoint.vertical eq VerticalMode.Position then r22 * velocityTowards(setpoint.third, state.z)
+          if setpoint.vertical eq VerticalMode.Position then
+            r22 * velocityTowards(state, DownPosition, setpoint.third - state.z)
           else if setpoint.horizontal eq HorizontalMode.Velocity then
             r02 * setpoint.first + r12 * setpoint.second + r22 * setpoint.third
           else r22 * setpoint.third
@@ -133,20 +139,39 @@ final class FlightController(val gains: ControllerGains, stepS: Double):
     (error * integralPerError, error)
 
   private def verticalThrottle(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
+    math.max((1 - climb(state, setpoint, error)) / 2, minThrottle)
+
+  /** What the vertical velocity's controller makes of an error, −1 to 1. */
+  protected def climb(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
     // A controller just created does not integrate: its clock has not advanced yet.
     if state.verticalMode eq setpoint.vertical then
       state.verticalIntegral = unit(state.verticalIntegral * verticalDiscount + stepS * error * verticalI)
     else state.verticalIntegral = 0.0
-    math.max((1 - unit(verticalP * error + state.verticalIntegral)) / 2, minThrottle)
+    unit(verticalP * error + state.verticalIntegral)
 
-  private def velocityTowards(goal: Double, position: Double): Double =
-    unit(positionP * (goal - position)) * maxVelocity
+  /** What one controller of the cascade makes of its error, −1 to 1.
+    *
+    * @param loop
+    *   which one; see the companion
+    * @param gain
+    *   its share of `gains`
+    */
+  protected def respond(
+      @unused state: QuadrotorState,
+      @unused loop: Int,
+      gain: Double,
+      error: Double
+  ): Double =
+    unit(gain * error)
 
-  private def rateTowards(goal: Double, angle: Double): Double =
-    unit(angleP * shorterWay(goal - angle)) * maxRate
+  private def velocityTowards(state: QuadrotorState, loop: Int, error: Double): Double =
+    respond(state, loop, positionP, error) * maxVelocity
 
-  private def torque(rateGoal: Double, rate: Double): Double =
-    unit(rateP * (clamp(rateGoal, maxRate) - rate))
+  private def rateTowards(state: QuadrotorState, loop: Int, error: Double): Double =
+    respond(state, loop, angleP, shorterWay(error)) * maxRate
+
+  private def torque(state: QuadrotorState, loop: Int, rateGoal: Double, rate: Double): Double =
+    respond(state, loop, rateP, clamp(rateGoal, maxRate) - rate)
 
   private def mix(
       state: QuadrotorState,
@@ -170,7 +195,7 @@ final class FlightController(val gains: ControllerGains, stepS: Double):
       state.control2 = (c2 + raise) * scale
       state.control3 = (c3 + raise) * scale
 
-  private inline def unit(value: Double): Double = math.max(-1.0, math.min(value, 1.0))
+  protected inline def unit(value: Double): Double = math.max(-1.0, math.min(value, 1.0))
 
   private inline def clamp(value: Double, limit: Double): Double = math.max(-limit, math.min(value, limit))
 

@@ -8,34 +8,47 @@ import skein.units.Vector3
   *
   * @param stepS
   *   s; AirSim's is 3 ms
+  * @param cascade
+  *   gains that a client has set, which then stand for those of `gains`
   */
 final class Quadrotor(
     val airframe: Airframe = Airframe(),
     val gains: ControllerGains = ControllerGains(),
-    val stepS: Double = Quadrotor.AirSimStepS
+    val stepS: Double = Quadrotor.AirSimStepS,
+    val cascade: Option[CascadeGains] = None
 ):
   import airframe.*
 
-  private val controller     = FlightController(gains, stepS)
+  private val controller =
+    cascade.fold(FlightController(gains, stepS))(TunedFlightController(gains, _, stepS))
   private val rotorKeep      = StrictMath.exp(-stepS / rotorTimeConstantS)
   private val rollTorque     = rotorOffsetM * maxThrustN
   private val halfStep       = stepS / 2
   private val halfStepSquare = halfStep * halfStep
 
   /** Advances `state` by one step: forces, then the next kinematics, then the rotors' lag, then the controller, which
-    * sees the new kinematics and sets the rotors. Deterministic; allocates nothing; about 0.13 µs.
+    * sees the new kinematics and sets the rotors. Deterministic; allocates nothing in the air; about 0.13 µs.
     * `QuadrotorGolden` holds it to AirSim's own step responses.
     */
   def step(state: QuadrotorState, setpoint: Setpoint, environment: Environment = Environment.Calm): Unit =
     val densityRatio = Atmosphere.densityRatio(environment.originAltitudeM - state.z)
     val lift         =
       (state.thrust0 + state.thrust1 + state.thrust2 + state.thrust3) * maxThrustN * densityRatio
-    if state.grounded && lift >= massKg * Airframe.Gravity then state.grounded = false
-    if !state.grounded then
+    if state.grounded then
+      // Its thrust moves it from the next step on, as in AirSim.
+      if lift >= massKg * Airframe.Gravity then state.grounded = false
+    else if state.z + (state.vz + halfStep * state.az) * stepS >= environment.groundDownM then
+      val before = state.copy
       move(state, environment, densityRatio, lift)
-      if state.z >= environment.groundDownM && state.vz > 0 then touchGround(state, environment)
+      if state.vz > 0 then touchGround(state, before, environment)
+    else move(state, environment, densityRatio, lift)
     spinRotors(state)
     controller.update(state, setpoint)
+
+  /** The same vehicle with these gains. A state that it is to fly on must
+    * [[QuadrotorState.restartController]]; [[hovering]] goes on to mean the gains that it was made with.
+    */
+  def tuned(cascade: CascadeGains): Quadrotor = Quadrotor(airframe, gains, stepS, Some(cascade))
 
   /** A vehicle that has long held `goalNed` at this yaw, level and at rest, its integrator settled: it hangs
     * [[hoverSagM]] below its goal, and a step under [[Setpoint.hold]] of that goal leaves it there.
@@ -168,26 +181,34 @@ final class Quadrotor(
   private def drag(factor: Double, speed: Double): Double =
     if math.abs(speed) > dragMinSpeed then -factor * speed * math.abs(speed) else 0.0
 
-  /** AirSim's collision response with flat ground: a vehicle that comes down more than sideways, and near level, stays;
-    * any other bounces.
+  /** AirSim's collision response with flat ground, in place of the step: a vehicle that comes down more than sideways, and
+    * near level, stays; any other bounces. The contact is taken at the centre of mass, so it turns nothing; in AirSim it is
+    * where the engine's shapes meet.
     */
-  private def touchGround(state: QuadrotorState, environment: Environment): Unit =
-    import state.{qx, qy}
+  private def touchGround(state: QuadrotorState, before: QuadrotorState, environment: Environment): Unit =
+    import before.{qx, qy}
     val upright = 1 - 2 * (qx * qx + qy * qy)
-    val landing = state.vz > math.abs(state.vx) && state.vz > math.abs(state.vy)
-    state.z = environment.groundDownM
+    val vx      = before.vx + before.ax * stepS
+    val vy      = before.vy + before.ay * stepS
+    val vz      = before.vz + before.az * stepS
+    state.contacts += 1
+    state.x = before.x; state.y = before.y; state.z = environment.groundDownM
     state.ax = 0; state.ay = 0; state.az = 0
     state.wxDot = 0; state.wyDot = 0; state.wzDot = 0
-    if landing && math.abs(math.abs(upright) - 1) < Quadrotor.LevelTolerance then
-      val yaw = state.yawRad
+    if vz > math.abs(vx) && vz > math.abs(vy) && math.abs(math.abs(upright) - 1) < Quadrotor.LevelTolerance
+    then
+      val yaw = before.yawRad
       state.grounded = true
       state.vx = 0; state.vy = 0; state.vz = 0
       state.wx = 0; state.wy = 0; state.wz = 0
       state.qw = StrictMath.cos(yaw / 2); state.qx = 0; state.qy = 0; state.qz = StrictMath.sin(yaw / 2)
     else
-      state.vx *= 1 - friction; state.vy *= 1 - friction
-      state.vz *= -restitution
-      state.wx *= Quadrotor.BounceSpin; state.wy *= Quadrotor.BounceSpin; state.wz *= Quadrotor.BounceSpin
+      state.vx = vx * (1 - friction); state.vy = vy * (1 - friction); state.vz = vz * -restitution
+      state.x += state.vx * stepS; state.y += state.vy * stepS; state.z += state.vz * stepS
+      state.wx = (before.wx + before.wxDot * stepS) * Quadrotor.BounceSpin
+      state.wy = (before.wy + before.wyDot * stepS) * Quadrotor.BounceSpin
+      state.wz = (before.wz + before.wzDot * stepS) * Quadrotor.BounceSpin
+      state.qw = before.qw; state.qx = before.qx; state.qy = before.qy; state.qz = before.qz
 
 object Quadrotor:
   /** AirSim's physics period, s. */

@@ -49,6 +49,22 @@ final class QuadrotorState:
     */
   private[vehicle] var verticalMode: VerticalMode | Null = null
 
+  /** What a [[TunedFlightController]] remembers of all axes; null under the plain one. */
+  private[vehicle] var cascadeMemory: CascadeMemory | Null = null
+
+  /** All controllers start anew at the next step, as when AirSim's gains are set. */
+  def restartController(): Unit =
+    verticalMode = null
+    cascadeMemory = null
+
+  /** How often it has touched the ground. */
+  var contacts = 0
+
+  def copy: QuadrotorState =
+    val same = QuadrotorState()
+    same.copyFrom(this)
+    same
+
   def copyFrom(other: QuadrotorState): Unit =
     x = other.x; y = other.y; z = other.z
     vx = other.vx; vy = other.vy; vz = other.vz
@@ -61,8 +77,10 @@ final class QuadrotorState:
     lagged0 = other.lagged0; lagged1 = other.lagged1; lagged2 = other.lagged2; lagged3 = other.lagged3
     thrust0 = other.thrust0; thrust1 = other.thrust1; thrust2 = other.thrust2; thrust3 = other.thrust3
     grounded = other.grounded
+    contacts = other.contacts
     verticalIntegral = other.verticalIntegral
     verticalMode = other.verticalMode
+    cascadeMemory = if other.cascadeMemory == null then null else other.cascadeMemory.nn.copy
 
   def positionNed: Vector3            = Vector3(x, y, z)
   def velocityNed: Vector3            = Vector3(vx, vy, vz)

@@ -70,8 +70,10 @@ object Setpoint:
   /** Motors off. */
   val Disarmed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0)
 
-  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet. */
-  val Armed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0.1)
+  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet, two thirds of the one above which a vehicle
+    * counts as driven.
+    */
+  val Armed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0.1 / 1.5)
 
   /** `moveByVelocity`: north, east, down, m/s. */
   def velocity(northMps: Double, eastMps: Double, downMps: Double): Setpoint =

@@ -73,13 +73,26 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
   test(
     "clocks that run at rates 50 parts in a million apart stay aligned over ten minutes, also without a network"
   ):
-    for legMs <- Seq(0.01, 9.0) do
+    for
+      legMs <- Seq(0.01, 9.0)
+      rate  <- Seq(50e-6, -50e-6)
+    do
       val start  = reading(0, (legMs, legMs))
       val states = (1 to 12000).map: at =>
         val passed = Span.ofMillis(50.0 * at)
-        val drift  = Span.ofMillis(50.0 * at * 50e-6)
+        val drift  = Span.ofMillis(50.0 * at * rate)
         Stamped((), start.validAt + passed, start.sentAt + passed + drift, start.receivedAt + passed + drift)
       .scanLeft(ClockAlignment.of(start))(_.updated(_))
-      assertEquals(states.last.restarts, 0)
-      val trueNow = trueOffset + Span.ofMillis(600_000 * 50e-6)
+      assertEquals(states.last.restarts, 0, s"$legMs ms, rate $rate")
+      val trueNow = trueOffset + Span.ofMillis(600_000 * rate)
       assertEqualsDouble((states.last.offset - trueNow).toMillis, 0, 0.5)
+      assert(states.last.lower <= trueNow && trueNow <= states.last.upper, s"$legMs ms, rate $rate")
+
+  test("between readings both bounds give way by the drift that is allowed for, and no more"):
+    val fast  = ClockAlignment.of(reading(0, (1, 1)))
+    val slow  = reading(1000, (100, 100))
+    val after = fast.updated(slow)
+    val slack = Span.ofNanos(
+      math.ceil(slow.receivedAt.since(reading(0, (1, 1)).receivedAt).toNanos * ClockAlignment.MaxDrift).toLong
+    )
+    assertEquals((after.lower, after.upper), (fast.lower - slack, fast.upper + slack))

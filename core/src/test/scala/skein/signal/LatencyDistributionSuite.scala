@@ -51,3 +51,9 @@ class LatencyDistributionSuite extends munit.FunSuite:
 
   test("one sample is a constant"):
     assertEquals(ofSamples(List(30)), Constant(Span.ofMillis(30)))
+
+  test("the paper's links have the quantiles that were published of them"):
+    def ms(distribution: LatencyDistribution) =
+      Seq(0.0, 0.05, 0.5, 0.95, 0.99, 1.0).map(p => (distribution.quantile(p).toMillis * 10).round / 10.0)
+    assertEquals(ms(Direct), Seq(17.8, 22.4, 35.9, 53.8, 58.3, 85.4))
+    assertEquals(ms(Vpn), Seq(38.3, 64.8, 99.4, 148.2, 165.5, 207.4))

@@ -92,6 +92,21 @@ class QuadrotorSuite extends munit.FunSuite:
     assert(state.vz < 0, state.vz)
     assert(state.vx < 4, state.vx)
 
+  test(
+    "a bounce keeps the orientation, returns 0.55 of the speed down and leaves half of that along the ground"
+  ):
+    val state = quadrotor.hovering(Vector3(0, 0, -0.005), 0.4)
+    state.vx = 6; state.vy = -1; state.vz = 3; state.az = 2; state.wz = 1
+    quadrotor.step(state, Setpoint.Disarmed)
+    assertEquals(state.contacts, 1)
+    assertEquals((state.vx, state.vy), (3.0, -0.5))
+    assertEqualsDouble(state.vz, -0.55 * (3 + 2 * 0.003), 1e-12)
+    assertEqualsDouble(state.x, 3 * 0.003, 1e-12)
+    assertEqualsDouble(state.z, state.vz * 0.003, 1e-12)
+    assertEqualsDouble(state.yawRad, 0.4, 1e-12)
+    assertEqualsDouble(state.wz, 0.9, 1e-12)
+    assertEquals(state.accelerationNed, Vector3.Zero)
+
   test("wind pushes a hovering vehicle until the controller leans against it"):
     val windy = Environment(windNed = Vector3(0, 8, 0))
     val state = quadrotor.hovering(goal)

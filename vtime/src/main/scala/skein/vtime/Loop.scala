@@ -1,5 +1,6 @@
 package skein.vtime
 
+import java.lang.management.ManagementFactory
 import java.util.ArrayDeque
 import java.util.SplittableRandom
 import java.util.random.RandomGenerator
@@ -21,6 +22,8 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
   private var supervisors                                    = 0
   private var booting                                        = true
   private var sampled                                        = Map.empty[String, Int]
+  private var takenAtFirstLook                               = 0L
+  private var isOverlong                                     = false
   @volatile private var failure: VirtualTimeException | Null = null
 
   val random: RandomGenerator = SplittableRandom(seed)
@@ -46,7 +49,7 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
   def removeTimers(): Seq[Runnable] = timers.removeAll().map(_.task)
 
   /** Records the problem, which ends the run however the exception is treated by its catchers. */
-  def fail(problem: Problem, culprit: Throwable = Loop.Culprit()): VirtualTimeException =
+  def fail(problem: Problem, culprit: Throwable = Culprit()): VirtualTimeException =
     val error = VirtualTimeException(problem, culprit)
     if failure == null then failure = error
     error
@@ -77,7 +80,8 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
   /** Makes this loop the calling thread's for the duration of `body`. */
   def governing[A](body: => A): A =
     Redirect.setEnvironment(this)
-    val watchdog = Watchdog(this, limits.standstill)
+    val watchdog =
+      Watchdog(thread, () => begun, limits.standstill, fail(Problem.Stuck(limits.standstill), _): Unit)
     try BlockContext.withBlockContext(this)(body)
     catch case _: Throwable if failure != null => throw failure.nn // it explains whatever followed from it
     finally
@@ -109,8 +113,17 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
     val task = queue.poll()
     tasks += 1
     tasksThisTime += 1
-    if tasksThisTime > limits.tasksPerInstant then sample(task)
+    if tasksThisTime > limits.tasksPerInstant || isOverlong then sample(task)
+    else if tasksThisTime % Loop.tasksPerLook == 0 then lookAtProcessor()
     task.run()
+
+  /** Not at every task, since it takes as long as a short one; from the first look on, so that one long task counts for
+    * nothing.
+    */
+  private def lookAtProcessor(): Unit =
+    val taken = Loop.processorNanos()
+    if tasksThisTime == Loop.tasksPerLook then takenAtFirstLook = taken
+    isOverlong = taken >= 0 && taken - takenAtFirstLook > limits.processorPerInstant.toNanos
 
   private def advance(actors: => String): Unit =
     timers.head match
@@ -122,6 +135,7 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
           now = timer.dueNanos
           instants += 1
           tasksThisTime = 0
+          isOverlong = false
           sampled = Map.empty
         timers.removeHead()
         fired += 1
@@ -130,7 +144,7 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
   /** Past the limit, notes what runs a while longer, and then reports it. */
   private def sample(task: Runnable): Unit =
     sampled = sampled.updatedWith(TaskName.of(task))(times => Some(times.getOrElse(0) + 1))
-    if tasksThisTime >= limits.tasksPerInstant + Loop.sampleSize then
+    if sampled.values.sum >= Loop.sampleSize then
       val running = sampled.toSeq.sortBy((name, times) => (-times, name)).take(10)
       throw VirtualTimeException(Problem.Livelock(elapsed, tasksThisTime, running))
 
@@ -140,8 +154,16 @@ private object Loop:
 
   private val sampleSize = 1000
 
-  /** Shows where the culprit stood. */
-  final class Culprit extends RuntimeException(s"on thread '${Thread.currentThread.getName}'")
+  /** Of the instant's tasks, after which the processor time is looked at. */
+  private val tasksPerLook = 256L
+
+  private val threads = ManagementFactory.getThreadMXBean
+
+  /** Of the calling thread, so far; -1 where the JVM cannot tell. */
+  private def processorNanos(): Long =
+    if threads.isCurrentThreadCpuTimeSupported && threads.isThreadCpuTimeEnabled then
+      threads.getCurrentThreadCpuTime
+    else -1
 
   /** The loop of the calling thread. */
   def current: Loop = Redirect.environment() match

@@ -47,4 +47,8 @@ private final class RefusedDispatcher(config: Config, prerequisites: DispatcherP
   def dispatcher(): MessageDispatcher =
     val id = config.getString("id")
     throw Loop.current.fail:
-      if id == VirtualConfig.socketsDispatcher then Problem.Sockets else Problem.NeedsThreads(id)
+      if id == RefusedDispatcher.sockets then Problem.Sockets else Problem.NeedsThreads(id)
+
+private object RefusedDispatcher:
+  /** Where Pekko would run its sockets. */
+  val sockets = "skein.vtime.sockets"

@@ -6,8 +6,6 @@ import scala.jdk.CollectionConverters.*
 /** Any configuration, changed so that its actor system lives on the loop. */
 private object VirtualConfig:
 
-  val socketsDispatcher = "skein.vtime.sockets"
-
   /** Every dispatcher in `config` runs on the loop; one that needs threads, and sockets, are refused. */
   def apply(config: Config): Config =
     val (of, made) = latest
@@ -34,11 +32,11 @@ private object VirtualConfig:
     pekko.jvm-shutdown-hooks = off
     pekko.jvm-exit-on-fatal-error = off
     pekko.coordinated-shutdown { run-by-jvm-shutdown-hook = off, exit-jvm = off, log-info = off }
-    $socketsDispatcher { type = $refused }
-    pekko.io.tcp.management-dispatcher = "$socketsDispatcher"
-    pekko.io.udp.management-dispatcher = "$socketsDispatcher"
-    pekko.io.udp-connected.management-dispatcher = "$socketsDispatcher"
-    pekko.io.dns.dispatcher = "$socketsDispatcher"
+    ${RefusedDispatcher.sockets} { type = $refused }
+    pekko.io.tcp.management-dispatcher = "${RefusedDispatcher.sockets}"
+    pekko.io.udp.management-dispatcher = "${RefusedDispatcher.sockets}"
+    pekko.io.udp-connected.management-dispatcher = "${RefusedDispatcher.sockets}"
+    pekko.io.dns.dispatcher = "${RefusedDispatcher.sockets}"
     """
 
   /** Path and `type` of each dispatcher. */

@@ -6,8 +6,16 @@ import scala.concurrent.duration.*
 
 /** Ends a run whose thread stands still, waiting in one task for a lock, a latch or an answer that nobody on the loop can
   * give. Looks every half of `patience` (real time).
+  *
+  * @param begun
+  *   how many tasks the thread has begun so far
   */
-private final class Watchdog(loop: Loop, patience: FiniteDuration):
+private final class Watchdog(
+    thread: Thread,
+    begun: () => Long,
+    patience: FiniteDuration,
+    onStandstill: Culprit => Unit
+):
   import Watchdog.*
 
   private var stopped = false
@@ -27,14 +35,14 @@ private final class Watchdog(loop: Loop, patience: FiniteDuration):
         if standsStill(looks) then end()
     catch case _: InterruptedException => ()
 
-  private def look() = Look(waiting.contains(loop.thread.getState), loop.begun, processorNanos(loop.thread))
+  private def look() = Look(waiting.contains(thread.getState), begun(), processorNanos(thread))
 
   private def end(): Unit = synchronized:
     if !stopped then
-      val culprit = Loop.Culprit()
-      culprit.setStackTrace(loop.thread.getStackTrace)
-      loop.fail(Problem.Stuck(patience), culprit): Unit
-      loop.thread.interrupt()
+      val culprit = Culprit()
+      culprit.setStackTrace(thread.getStackTrace)
+      onStandstill(culprit)
+      thread.interrupt()
 
 private object Watchdog:
 

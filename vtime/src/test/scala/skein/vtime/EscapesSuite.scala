@@ -10,6 +10,8 @@ import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 
 /** What cannot be right in virtual time stops the run and names the culprit. */
 class EscapesSuite extends munit.FunSuite:
+  // Livelocks are told by processor time, of which a busy machine gives little.
+  override val munitTimeout: Duration = 3.minutes
 
   private def stopped(limits: Limits = Limits(), config: String = "")(
       body: ActorSystem => Future[?]
@@ -102,6 +104,26 @@ class EscapesSuite extends munit.FunSuite:
         assertEquals(at, 0.seconds)
         assert(clue(running).exists((name, _) => name.contains("/user/echo")))
       case other => fail(s"another problem: $other")
+
+  test("a stream that never ends at one instant is a livelock after seconds of processor time, not minutes"):
+    val threads = java.lang.management.ManagementFactory.getThreadMXBean
+    val before  = threads.getCurrentThreadCpuTime
+    val error   = stopped(): system =>
+      given ActorSystem = system
+      Source.repeat(1).runWith(Sink.ignore)
+    val taken = (threads.getCurrentThreadCpuTime - before).nanos
+    error.problem match
+      case Problem.Livelock(at, _, running) =>
+        assertEquals(at, 0.seconds)
+        assert(clue(running).exists((name, _) => name.contains("StreamSupervisor")))
+      case other => fail(s"another problem: $other")
+    assert(clue(taken) < 10.seconds)
+
+  test("a stream of many elements at one instant is none"):
+    val run = VirtualTime.run(1): system =>
+      given ActorSystem = system
+      Source(1 to 3_000_000).runWith(Sink.fold(0L)(_ + _))
+    assertEquals(run.value, 4_500_001_500_000L)
 
   test(
     "a future that nothing can complete is a deadlock, at the time of the last event, with the actors alive"

@@ -17,7 +17,7 @@ public final class Agent {
     var prefixes = new ArrayList<>(List.of("org/apache/pekko/", "scala/concurrent/"));
     if (packages != null)
       for (var name : packages.split(",")) if (!name.isBlank()) prefixes.add(name.strip().replace('.', '/') + "/");
-    instrumentation.addTransformer(new Rewriter(List.copyOf(prefixes)));
+    instrumentation.addTransformer(new Rewriter(List.copyOf(prefixes), Agent::failed));
   }
 
   /** The first class that could not be rewritten and why, or null. */
@@ -25,7 +25,7 @@ public final class Agent {
     return failure;
   }
 
-  static void failed(String className, Throwable cause) {
+  private static void failed(String className, Throwable cause) {
     if (failure == null) failure = className + ": " + cause;
   }
 }

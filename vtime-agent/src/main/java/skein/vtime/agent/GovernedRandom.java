@@ -1,6 +1,7 @@
 package skein.vtime.agent;
 
 import java.util.Random;
+import java.util.function.Supplier;
 
 /**
  * Draws from the environment of the thread that asks; without one, or once a seed was set, as any {@code Random}. For
@@ -13,12 +14,15 @@ final class GovernedRandom extends Random {
   private boolean isMade;
   private boolean isSeeded;
 
-  GovernedRandom() {
+  private final transient Supplier<Environment> environment;
+
+  GovernedRandom(Supplier<Environment> environment) {
+    this.environment = environment;
     isMade = true;
   }
 
   private Environment environment() {
-    return isSeeded ? null : Redirect.environment();
+    return isSeeded ? null : environment.get();
   }
 
   @Override

@@ -64,7 +64,7 @@ public final class Redirect {
   }
 
   public static Clock clock(ZoneId zone) {
-    return new RedirectedClock(zone);
+    return new RedirectedClock(zone, Redirect::instantNow, Redirect::currentTimeMillis);
   }
 
   public static Clock clockUtc() {
@@ -147,7 +147,7 @@ public final class Redirect {
 
   /** In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run. */
   public static Random governed(Random real) {
-    return new GovernedRandom();
+    return new GovernedRandom(Redirect::environment);
   }
 
   public static int nextInt(ThreadLocalRandom real) {

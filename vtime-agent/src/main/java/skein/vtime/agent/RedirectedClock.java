@@ -4,13 +4,19 @@ import java.time.Clock;
 import java.time.Instant;
 import java.time.ZoneId;
 import java.util.Objects;
+import java.util.function.LongSupplier;
+import java.util.function.Supplier;
 
-/** The system's clock as {@link Redirect} tells it to the thread that reads it. */
+/** The system's clock as the redirected calls tell it to the thread that reads it. */
 final class RedirectedClock extends Clock {
   private final ZoneId zone;
+  private final Supplier<Instant> instant;
+  private final LongSupplier millis;
 
-  RedirectedClock(ZoneId zone) {
+  RedirectedClock(ZoneId zone, Supplier<Instant> instant, LongSupplier millis) {
     this.zone = Objects.requireNonNull(zone, "zone");
+    this.instant = instant;
+    this.millis = millis;
   }
 
   @Override
@@ -20,17 +26,17 @@ final class RedirectedClock extends Clock {
 
   @Override
   public Clock withZone(ZoneId other) {
-    return new RedirectedClock(other);
+    return new RedirectedClock(other, instant, millis);
   }
 
   @Override
   public Instant instant() {
-    return Redirect.instantNow();
+    return instant.get();
   }
 
   @Override
   public long millis() {
-    return Redirect.currentTimeMillis();
+    return millis.getAsLong();
   }
 
   @Override

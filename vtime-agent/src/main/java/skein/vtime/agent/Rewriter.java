@@ -27,6 +27,7 @@ import java.util.HashMap;
 import java.util.List;
 import java.util.Map;
 import java.util.Set;
+import java.util.function.BiConsumer;
 
 /** Leads the calls listed here, inside the given packages, to {@link Redirect}. */
 final class Rewriter implements ClassFileTransformer {
@@ -158,10 +159,15 @@ final class Rewriter implements ClassFileTransformer {
           "sendSystemMessage(Lorg/apache/pekko/dispatch/sysmsg/SystemMessage;)V");
 
   private final List<String> packages;
+  private final BiConsumer<String, Throwable> failed;
 
-  /** @param packages internal names such as {@code org/apache/pekko/}; classes below them are rewritten. */
-  Rewriter(List<String> packages) {
+  /**
+   * @param packages internal names such as {@code org/apache/pekko/}; classes below them are rewritten
+   * @param failed told of a class that could not be rewritten, and why
+   */
+  Rewriter(List<String> packages, BiConsumer<String, Throwable> failed) {
     this.packages = packages;
+    this.failed = failed;
   }
 
   @Override
@@ -184,7 +190,7 @@ final class Rewriter implements ClassFileTransformer {
       return classFile.transformClass(model, transform);
     } catch (Throwable failure) {
       // The JVM swallows what a transformer throws and loads the class as it was, which would read the wrong clock.
-      Agent.failed(name, failure);
+      failed.accept(name, failure);
       return null;
     }
   }

@@ -3,7 +3,9 @@ package skein.bench.jmh
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.Works
-import skein.rollout.*
+import skein.forward.{DelayTable, Duel, LoopTiming, Rollout}
+import skein.lanes.DuelBatch
+import skein.simd.WorldRandom
 
 /** How many million agent-steps a second do the engines of forward simulation make, on one thread? `stream` over `vpn`,
   * 60 s, the reduced model; an agent-step is 0.1 s of one agent.

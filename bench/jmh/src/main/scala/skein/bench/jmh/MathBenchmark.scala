@@ -2,7 +2,7 @@ package skein.bench.jmh
 
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
-import skein.rollout.LaneMath
+import skein.simd.LaneMath
 
 /** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions of numbers a
   * second, on one thread.

@@ -3,8 +3,9 @@ package skein.bench.jmh
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
 import skein.bench.Works
+import skein.forward.{DelayTable, Delays, LoopTiming}
+import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{ChauffeurEvader, Policy, PolicyFamily}
-import skein.rollout.*
 
 /** What does a family of policies cost? Millions of agent-steps a second, on one thread: 1,024 candidates of the family,
   * drawn from its space, fly one episode of 60 s of `stream` over `vpn` against the chauffeur's evader.

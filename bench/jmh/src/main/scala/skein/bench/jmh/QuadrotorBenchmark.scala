@@ -2,7 +2,7 @@ package skein.bench.jmh
 
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
-import skein.rollout.QuadrotorKernel
+import skein.lanes.QuadrotorKernel
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
 

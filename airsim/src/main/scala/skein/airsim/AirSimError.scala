@@ -1,0 +1,27 @@
+package skein.airsim
+
+import skein.rpc.RpcError
+import skein.units.Decimals.fixed
+
+/** Why a vehicle of a simulator is not at hand. Expected, so a value. */
+enum AirSimError:
+
+  /** The simulator did not answer, or refused. */
+  case Call(error: RpcError)
+
+  /** It has no vehicle of this name; `existing` are those it has. */
+  case UnknownVehicle(name: String, existing: Seq[String])
+
+  /** What it sent as its settings cannot be read. */
+  case Settings(error: SettingsError)
+
+  /** It did not come to rest where it was sent: so far from there, m, and so fast, m/s. */
+  case NotAtStart(name: String, offM: Double, speedMps: Double)
+
+  def message: String = this match
+    case Call(error)                    => error.message
+    case UnknownVehicle(name, existing) =>
+      s"the simulator has no vehicle '$name'; it has ${existing.map(n => s"'$n'").mkString(", ")}"
+    case Settings(error)                  => s"the simulator's settings: ${error.message}"
+    case NotAtStart(name, offM, speedMps) =>
+      s"'$name' did not come to rest at its start: ${offM.fixed(1)} m off, at ${speedMps.fixed(2)} m/s; is something in its way?"

@@ -1,0 +1,73 @@
+package skein.airsim
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.policy.{Action, Yaw as ActionYaw}
+import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
+import skein.rpc.RpcError
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** A multirotor of AirSim as a loop sees it.
+  *
+  * Answers that are missed are dealt with by its [[MoveQueue]]: control goes on 0.6 s and a round trip after a cancel was
+  * lost, and as long and another round trip after an answer was lost; where the sign of life or the cancel is lost too,
+  * after the timeout of that more.
+  *
+  * @param onLost
+  *   told of every answer that was missed, and what became of it
+  */
+final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem)
+    extends VehiclePort:
+  import AirSimVehicle.*
+  import VehicleErrors.errorOf
+  import system.dispatcher
+
+  private val moves = MoveQueue(multirotor, onLost)
+
+  /** Calls that were made beside readings and moves. */
+  def callsBeside: Int = moves.callsBeside
+
+  def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
+    multirotor.kinematics().map(_.left.map(errorOf))
+
+  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = action match
+    case Action.VelocityAt(north, east, down, yaw) =>
+      val velocity = Vector3(north, east, 0)
+      sent(withdrawn => multirotor.moveByVelocityZ(velocity, down, lasts, yawOf(yaw), Some(withdrawn)))
+    case Action.Velocity(velocityNed, yaw) =>
+      sent(withdrawn => multirotor.moveByVelocity(velocityNed, lasts, yawOf(yaw), Some(withdrawn)))
+    case Action.Position(positionNed, speed, yaw) =>
+      sent(_ => multirotor.moveToPosition(positionNed, speed, timeout = lasts, yaw = yawOf(yaw)))
+    case Action.Turn(ActionYaw.Towards(heading))   => sent(_ => multirotor.rotateToYaw(heading, lasts))
+    case Action.Turn(ActionYaw.Turning(rate))      => sent(_ => multirotor.rotateByYawRate(rate, lasts))
+    case Action.Turn(_)                            => hover()
+    case Action.Attitude(roll, pitch, yaw, thrust) =>
+      sent(_ => multirotor.moveByRollPitchYawThrottle(roll, pitch, yaw, thrust, lasts))
+    case Action.Hover => hover()
+    case Action.Land  => sent(_ => multirotor.land(lasts))
+
+  def hover(): Future[Either[VehicleError, Boolean]] = sent(_ => multirotor.hover())
+
+  override val sensors: Map[String, Sensor] = AirSimSensors.of(multirotor)
+
+  private def sent(
+      call: Future[Unit] => Future[Either[RpcError, Boolean]]
+  ): Future[Either[VehicleError, Boolean]] = moves.send(call).map(_.left.map(errorOf))
+
+object AirSimVehicle:
+  private def yawOf(yaw: ActionYaw): Yaw = yaw match
+    case ActionYaw.Still            => Yaw.Still
+    case ActionYaw.Towards(heading) => Yaw.Towards(heading)
+    case ActionYaw.Turning(rate)    => Yaw.Turning(rate)
+    case ActionYaw.Forward          => Yaw.Forward
+
+/** AirSim's own pause and steps. */
+final class AirSimTime(client: AirSimClient) extends SteppedTime:
+  import VehicleErrors.errorOf
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  def pause(): Future[Either[VehicleError, Unit]]                 = client.pause().map(_.left.map(errorOf))
+  def resume(): Future[Either[VehicleError, Unit]]                = client.resume().map(_.left.map(errorOf))
+  def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
+    client.continueFor(span).map(_.left.map(errorOf))

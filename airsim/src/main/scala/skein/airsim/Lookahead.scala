@@ -1,0 +1,16 @@
+package skein.airsim
+
+import skein.units.Metres
+import upack.{Float32, Msg}
+
+/** How far ahead on its path a vehicle aims. */
+enum Lookahead:
+  /** By the speed, and farther while the vehicle is off the path. AirSim's default. */
+  case Automatic
+
+  /** A fixed distance. */
+  case Fixed(distance: Metres)
+
+  private[skein] def params: Seq[Msg] = this match
+    case Automatic       => Seq(Float32(-1), Float32(1))
+    case Fixed(distance) => Seq(Float32(distance.value.toFloat), Float32(0))

@@ -1,0 +1,17 @@
+package skein.airsim
+
+/** A kind of sensor, with the number that AirSim's settings know it by. */
+enum SensorKind(val number: Int):
+  case Barometer    extends SensorKind(1)
+  case Imu          extends SensorKind(2)
+  case Gps          extends SensorKind(3)
+  case Magnetometer extends SensorKind(4)
+  case Distance     extends SensorKind(5)
+  case Lidar        extends SensorKind(6)
+
+object SensorKind:
+  /** What a multirotor of AirSim has if its settings say nothing. */
+  val Default: Map[String, SensorKind] =
+    Map("imu" -> Imu, "magnetometer" -> Magnetometer, "gps" -> Gps, "barometer" -> Barometer)
+
+  def of(number: Double): Option[SensorKind] = values.find(_.number.toDouble == number)

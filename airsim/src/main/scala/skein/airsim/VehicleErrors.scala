@@ -1,0 +1,16 @@
+package skein.airsim
+
+import skein.port.VehicleError
+import skein.rpc.RpcError
+
+private object VehicleErrors:
+
+  /** An error of the wire as a vehicle's. */
+  def errorOf(error: RpcError): VehicleError = error match
+    case _: RpcError.Timeout                       => VehicleError.TimedOut(error.message)
+    case _: RpcError.Refused                       => VehicleError.Refused(error.message)
+    case RpcError.ConnectionLost(_, mayHaveRun, _) => VehicleError.Lost(error.message, mayHaveRun)
+    case _: RpcError.Malformed                     => VehicleError.Malformed(error.message)
+    case _: RpcError.Overloaded                    => VehicleError.Overloaded(error.message)
+    case _: RpcError.Cancelled                     => VehicleError.Cancelled(error.message)
+    case _: RpcError.Unreachable                   => VehicleError.Unreachable(error.message)

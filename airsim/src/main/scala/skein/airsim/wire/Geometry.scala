@@ -1,0 +1,32 @@
+package skein.airsim.wire
+
+import skein.units.{GeoLocation, Quaternion, Vector3}
+import upickle.default.ReadWriter
+
+/** AirSim's vector: 32-bit components, in the frame and unit of the field that holds it. */
+final private[skein] case class Vector3r(x_val: Float, y_val: Float, z_val: Float) derives ReadWriter:
+  def toVector: Vector3 = Vector3(x_val, y_val, z_val)
+
+private[skein] object Vector3r:
+  val Zero: Vector3r = Vector3r(0, 0, 0)
+
+  def apply(v: Vector3): Vector3r = Vector3r(v.x.toFloat, v.y.toFloat, v.z.toFloat)
+
+/** AirSim's rotation from body FRD to NED. */
+final private[skein] case class Quaternionr(w_val: Float, x_val: Float, y_val: Float, z_val: Float)
+    derives ReadWriter:
+  def toQuaternion: Quaternion = Quaternion(w_val, x_val, y_val, z_val)
+
+private[skein] object Quaternionr:
+  def apply(q: Quaternion): Quaternionr = Quaternionr(q.w.toFloat, q.x.toFloat, q.y.toFloat, q.z.toFloat)
+
+/** Position in m, from the vehicle's own start, NED. */
+final private[skein] case class Pose(position: Vector3r, orientation: Quaternionr) derives ReadWriter
+
+/** Degrees and metres above sea level; latitude and longitude are 64-bit on the wire. */
+final private[skein] case class GeoPoint(latitude: Double, longitude: Double, altitude: Float)
+    derives ReadWriter
+
+private[skein] object GeoPoint:
+  def apply(place: GeoLocation): GeoPoint =
+    GeoPoint(place.latitudeDeg, place.longitudeDeg, place.altitude.value.toFloat)

@@ -1,0 +1,71 @@
+package skein.rpc
+
+import java.util.concurrent.atomic.AtomicLong
+
+/** How much memory peers make us hold, over all connections of one server or client: messages under way, messages
+  * decoded and not yet answered, answers not yet taken.
+  *
+  * Every connection may hold `each` bytes whatever the others do; what it holds beyond comes out of `common`, first
+  * come, first served. So a peer that asks little is never refused because of one that asks much, and the whole is at
+  * most `common` and `each` for every connection. Safe from any thread.
+  *
+  * @param each
+  *   bytes that a connection may always hold
+  * @param common
+  *   bytes that all connections together may hold beyond that
+  */
+private[rpc] final class Holdings(each: Long, common: Long):
+  private val beyond = AtomicLong()
+  private val inAll  = AtomicLong()
+  private val most   = AtomicLong()
+
+  /** Bytes held now. */
+  def bytes: Long = inAll.get
+
+  /** Most bytes held at any time. */
+  def mostBytes: Long = most.get
+
+  /** What one connection holds; one thread at a time. */
+  final class Holding:
+    private var held   = 0L
+    private var forced = 0L // of what is beyond its own part: what was not granted
+
+    /** Holds so many bytes from now on, unless the common part has not that much left: then false, and as before. */
+    def resize(to: Long): Boolean =
+      val change  = beyondOwn(to) - beyondOwn(held)
+      val granted = change <= 0 || takeCommon(change)
+      if granted then
+        if change < 0 then giveBack(-change)
+        account(to)
+      granted
+
+    /** Holds so many bytes, which are there already, granted or not. */
+    def force(to: Long): Unit =
+      if !resize(to) then
+        val change = beyondOwn(to) - beyondOwn(held)
+        val _      = beyond.addAndGet(change)
+        forced += change
+        account(to)
+
+    /** Whether the common part has all that is held, by now. */
+    def isGranted: Boolean =
+      if forced > 0 && beyond.get <= common then forced = 0
+      forced == 0
+
+    private def giveBack(bytes: Long): Unit =
+      val _ = beyond.addAndGet(-bytes)
+      forced = math.max(0, forced - bytes)
+
+    private def beyondOwn(bytes: Long): Long = math.max(0, bytes - each)
+
+    private def account(to: Long): Unit =
+      if to != held then
+        val now = inAll.addAndGet(to - held)
+        held = to
+        if now > most.get then
+          val _ = most.accumulateAndGet(now, math.max(_, _))
+
+  private def takeCommon(change: Long): Boolean =
+    val before = beyond.get
+    if before + change > common then false
+    else beyond.compareAndSet(before, before + change) || takeCommon(change)

@@ -1,0 +1,318 @@
+package skein.rpc
+
+import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicInteger}
+import org.apache.pekko.Done
+import org.apache.pekko.stream.scaladsl.{Keep, Source}
+import org.apache.pekko.stream.stage.*
+import org.apache.pekko.stream.{Attributes, ClosedShape}
+import org.apache.pekko.util.ByteString
+import scala.collection.mutable
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.control.NonFatal
+import scala.util.{Failure, Random, Success, Try}
+import skein.link.{Address, Transport}
+import skein.units.*
+import upack.Msg
+
+/** The way into a running lane; from any thread. */
+private[rpc] trait LaneInput:
+  def submit(call: Call): Unit
+
+  /** Ends a call that was submitted, unless it has ended. */
+  def withdraw(call: Call): Unit
+  def close(): Future[Done]
+
+/** One lane with all its connections in a single stage, hence on one thread at a time: a call costs one hop to that
+  * thread, calls made meanwhile leave in one write, and every decision is [[LaneState]]'s. The connections run fused
+  * inside this stage.
+  *
+  * '''Emits when''' nothing; it has no ports. Requests go to the lane's connections.
+  * '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
+  * '''Completes when''' closed through its [[LaneInput]].
+  * '''Cancels when''' never.
+  */
+private[rpc] final class LaneStage(
+    lane: Lane,
+    transport: Transport,
+    address: Address,
+    clock: Clock,
+    settings: RpcSettings,
+    seed: Long,
+    counters: RpcCounters,
+    holdings: Holdings,
+    observe: RpcEvent => Unit
+) extends GraphStageWithMaterializedValue[ClosedShape, LaneInput]:
+
+  override val shape: ClosedShape = ClosedShape
+
+  override def createLogicAndMaterializedValue(inherited: Attributes): (GraphStageLogic, LaneInput) =
+    val logic = Logic()
+    (logic, logic)
+
+  private final class Logic extends TimerGraphStageLogic(shape) with LaneInput with LaneEffects:
+    private val random      = Random(seed)
+    private val state       = LaneState(lane, address, settings, counters, () => random.nextDouble(), this)
+    private val connections = Array.tabulate(settings.connections(lane))(Connection(_))
+    private var started     = false
+    private var armedFor    = Option.empty[Instant]
+
+    private val inbox             = ConcurrentLinkedQueue[Call]()
+    private val pending           = AtomicInteger()
+    private val scheduled         = AtomicBoolean()
+    @volatile private var stopped = false
+    private val stoppedDone       = Promise[Done]()
+    private val wake              = getAsyncCallback[Unit](_ => drain())
+    private val withdrawing       = getAsyncCallback[Call](withdrawNow)
+    private val closing           = getAsyncCallback[Unit](_ => completeStage())
+
+    // From any thread
+
+    def submit(call: Call): Unit =
+      if pending.incrementAndGet() > settings.windowInAll + settings.queue then
+        reject(
+          call,
+          RpcError.Overloaded(call.method, s"${settings.windowInAll + settings.queue} calls are under way")
+        )
+      else
+        val _ = inbox.add(call)
+        if stopped then cancelInbox()
+        else if scheduled.compareAndSet(false, true) then wake.invoke(())
+
+    def withdraw(call: Call): Unit = withdrawing.invoke(call)
+
+    def close(): Future[Done] =
+      closing.invoke(())
+      stoppedDone.future
+
+    private def cancelInbox(): Unit =
+      var call = inbox.poll()
+      while call != null do
+        reject(call, RpcError.Cancelled(call.method))
+        call = inbox.poll()
+
+    private def reject(call: Call, error: RpcError): Unit =
+      counters.failed(error)
+      observe(RpcEvent.Failed(call.method, lane, error))
+      end(call, Left(error))
+
+    // Effects
+
+    def send(call: Call): Unit = connections(call.connection).toWrite.append(call)
+
+    def end(call: Call, outcome: Either[RpcError, Answer[Msg]]): Unit =
+      val _ = pending.decrementAndGet()
+      call.outcome.success(outcome)
+
+    def reconnect(connection: Int, after: Span): Unit =
+      scheduleOnce(connections(connection), after.toDuration)
+
+    def observe(event: RpcEvent): Unit = LaneStage.this.observe(event)
+
+    // On the stage's thread
+
+    override def preStart(): Unit = setKeepGoing(true)
+
+    override def postStop(): Unit =
+      state.close()
+      stopped = true
+      cancelInbox()
+      val _ = stoppedDone.trySuccess(Done)
+
+    override protected def onTimer(key: Any): Unit = key match
+      case connection: Connection => connection.open()
+      case attempt: Attempt       => attempt.messageDue()
+      case _                      =>
+        armedFor = None
+        state.expire(clock.now())
+        settle()
+
+    private def drain(): Unit =
+      scheduled.set(false)
+      if !started then
+        started = true
+        connections.foreach(_.open())
+      val now  = clock.now()
+      var call = inbox.poll()
+      while call != null do
+        state.submit(call, now)
+        call = inbox.poll()
+      settle()
+
+    private def withdrawNow(call: Call): Unit =
+      state.withdraw(call, clock.now())
+      settle()
+
+    /** After every change: write what may be written, and wake up for the next deadline. */
+    private def settle(): Unit =
+      connections.foreach(_.flush())
+      for next <- state.nextDeadline if armedFor.forall(next < _) do
+        armedFor = Some(next)
+        scheduleOnce(Deadline, next.since(clock.now()).max(Span.Zero).toDuration)
+
+    private final class Connection(index: Int):
+      val toWrite         = mutable.ArrayDeque.empty[Call]
+      private val writer  = MessageWriter()
+      private var attempt = Option.empty[Attempt]
+
+      def open(): Unit =
+        val fresh = Attempt(this)
+        attempt = Some(fresh)
+        fresh.start()
+
+      def opened(): Unit =
+        state.opened(index)
+        settle()
+
+      def openFailed(reason: String): Unit =
+        attempt = None
+        state.openFailed(index, reason)
+        settle()
+
+      def lost(reason: String, malformed: Boolean): Unit =
+        attempt = None
+        toWrite.clear()
+        state.lost(index, reason, malformed)
+        settle()
+
+      /** Whether a call of ours has waited for it. */
+      def received(reply: Message.Reply, now: Instant): Boolean = state.replied(index, reply, now)
+
+      def ignored(what: String): Unit = state.ignored(index, what)
+
+      /** Writes the calls assigned since the last write, together. */
+      def flush(): Unit =
+        for target <- attempt if toWrite.nonEmpty && target.accepts do
+          val now = clock.now()
+          while toWrite.nonEmpty && writer.length < LaneStage.LargestWrite do
+            val call = toWrite.removeHead()
+            if !call.ended then
+              writer.request(call.id, call.method, call.params)
+              call.written = true
+              call.sends += 1
+              call.sentAt = now
+              counters.sent.increment()
+          if writer.length > 0 then target.write(writer.take())
+
+    /** One attempt to open a connection, and the connection if it succeeds. */
+    private final class Attempt(connection: Connection):
+      private val requests = SubSourceOutlet[ByteString](s"$lane-requests")
+      private val replies  = SubSinkInlet[ByteString](s"$lane-replies")
+      private val framer   = Framer(settings.limits)
+      private val holding  = holdings.Holding()
+      private var up       = false
+      private var over     = false
+      private var strays   = 0
+      private var begun    = Option.empty[Instant] // when the message under way did
+      private var watched  = false
+      private var early = Option.empty[String] // why the stream ended before the connection was reported open
+
+      def accepts: Boolean = up && !over && requests.isAvailable
+
+      def write(bytes: ByteString): Unit = requests.push(bytes)
+
+      def start(): Unit =
+        requests.setHandler(new OutHandler:
+          override def onPull(): Unit                             = connection.flush()
+          override def onDownstreamFinish(cause: Throwable): Unit = ended("the peer closed it"))
+        replies.setHandler(new InHandler:
+          override def onPush(): Unit                              = read(replies.grab())
+          override def onUpstreamFinish(): Unit                    = ended("the peer closed it")
+          override def onUpstreamFailure(failure: Throwable): Unit = ended(reasonOf(failure)))
+        val connected = getAsyncCallback[Try[Done]](onConnected)
+        try
+          Source
+            .fromGraph(requests.source)
+            .viaMat(transport.connect(address))(Keep.right)
+            .to(replies.sink)
+            .run()(using subFusingMaterializer)
+            .onComplete(connected.invoke)(using ExecutionContext.parasitic)
+          if !over then replies.pull()
+        catch case NonFatal(failure) => onConnected(Failure(failure))
+
+      private def onConnected(result: Try[Done]): Unit = result match
+        case Success(_) if !over =>
+          up = true
+          connection.opened()
+          early.foreach(ended(_))
+        case Failure(failure) if !up && !over =>
+          over = true
+          shut()
+          connection.openFailed(reasonOf(failure))
+        case _ => ()
+
+      /** The stream has ended. Until the connection is reported open or failed, that report is waited for. */
+      private def ended(reason: String, malformed: Boolean = false): Unit =
+        if !up then early = early.orElse(Some(reason))
+        else if !over then
+          over = true
+          shut()
+          connection.lost(reason, malformed)
+
+      private def shut(): Unit =
+        holding.force(0)
+        if !requests.isClosed then requests.complete()
+        if !replies.isClosed then replies.cancel()
+
+      private def read(segment: ByteString): Unit =
+        val now = clock.now()
+        framer.offer(segment)
+        var more = !over
+        while more do
+          framer.next() match
+            case Framed.Complete(frame) =>
+              begun = None
+              Message.fromServer(frame) match
+                case reply: Message.Reply =>
+                  if connection.received(reply, now) then strays = 0 else strays += 1
+                case Message.Ignored(what)     => stray(what)
+                case Message.Malformed(reason) => ended(reason, malformed = true)
+                case other                     => stray(other.productPrefix)
+              if strays > settings.strays then
+                ended(s"more than ${settings.strays} values in a row that answer no call", malformed = true)
+              more = !over
+            case Framed.NeedsMore =>
+              more = false
+              keep(now)
+            case Framed.Malformed(reason) =>
+              more = false
+              ended(reason, malformed = true)
+        if !over then replies.pull()
+        settle()
+
+      private def stray(what: String): Unit =
+        strays += 1
+        connection.ignored(what)
+
+      /** A message is under way: for how long, and with how much of it held? */
+      private def keep(now: Instant): Unit =
+        if !framer.midway then begun = None
+        else if begun.isEmpty then
+          begun = Some(now)
+          if !watched then watch(settings.messageTime)
+        if !holding.resize(framer.heldBytes) then
+          ended(
+            s"${framer.heldBytes} bytes of an unfinished message are held, and no more than ${settings.openBytes} in all",
+            malformed = true
+          )
+
+      private def watch(after: Span): Unit =
+        watched = true
+        scheduleOnce(this, after.toDuration)
+
+      def messageDue(): Unit =
+        watched = false
+        for since <- begun if !over do
+          val left = settings.messageTime - clock.now().since(since)
+          if left > Span.Zero then watch(left)
+          else
+            ended(s"a message under way for more than ${math.round(settings.messageTime.toSeconds)} s", malformed = true)
+            settle()
+
+  private def reasonOf(failure: Throwable): String = Option(failure.getMessage).getOrElse(failure.toString)
+
+  private case object Deadline
+
+private object LaneStage:
+  /** Bytes after which a write stops taking further calls along. */
+  private val LargestWrite = 128 << 10

@@ -1,0 +1,116 @@
+package skein.rpc
+
+import scala.util.control.NonFatal
+import upack.{Arr, Binary, Int32, Int64, Msg, Null, Obj, Str, UInt64}
+
+/** One MessagePack-RPC message, decoded.
+  *
+  * Requests are `[0, id, method, params]`, replies `[1, id, error, result]`, notifications `[2, method, params]`.
+  * Which an array is follows from its length and the role of the reader; the type field is not checked, as AirSim's
+  * server does not check it either.
+  */
+enum Message:
+  case Request(id: Long, method: String, params: IndexedSeq[Msg])
+  case Notification(method: String, params: IndexedSeq[Msg])
+  case Reply(id: Long, error: Msg, result: Msg)
+
+  /** A value that is no message but does no harm: an array of another length, a map, a number. */
+  case Ignored(what: String)
+
+  /** Something that must not be answered or guessed at; its connection is to be closed. */
+  case Malformed(reason: String)
+
+object Message:
+  /** Ids are unsigned 32-bit. */
+  val MaxId: Long = 0xffffffffL
+
+  /** What a server makes of one encoded value. */
+  def fromClient(frame: Array[Byte]): Message = decode(frame):
+    case Arr(fields) =>
+      fields.length match
+        case 4 =>
+          for
+            id     <- idOf(fields(1))
+            method <- methodOf(fields(2))
+            params <- paramsOf(fields(3))
+          yield Request(id, method, params)
+        case 3 =>
+          for
+            method <- methodOf(fields(1))
+            params <- paramsOf(fields(2))
+          yield Notification(method, params)
+        case length => Right(Ignored(s"an array of $length"))
+    case other => Right(Ignored(kindOf(other)))
+
+  /** The id of an encoded request, read without the rest of it; None if it is none. */
+  private[rpc] def requestId(frame: Array[Byte]): Option[Long] =
+    def at(i: Int): Int = frame(i) & 0xff
+    // An array of four, short or long; a type, which may be any number; an id.
+    val start = at(0) match
+      case 0x94                                                          => 1
+      case 0xdc if at(1) == 0 && at(2) == 4                              => 3
+      case 0xdd if at(1) == 0 && at(2) == 0 && at(3) == 0 && at(4) == 4  => 5
+      case _                                                             => 0
+    Option.when(start > 0 && at(start) < 0x80)(start + 1).flatMap: id =>
+      val bytes = at(id) match
+        case 0xcc => 1
+        case 0xcd => 2
+        case 0xce => 4
+        case _    => 0
+      if at(id) < 0x80 then Some(at(id).toLong)
+      else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
+
+  /** What a client makes of one encoded value. */
+  def fromServer(frame: Array[Byte]): Message = decode(frame):
+    case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
+    case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))
+    case other                             => Right(Ignored(kindOf(other)))
+
+  /** The text of a reply's error slot, cut where a person would have stopped reading. */
+  def errorText(error: Msg): String = error match
+    case Str(text)   => short(text)
+    case Binary(raw) => short(utf8(raw))
+    case other       => s"an error that is no text but ${kindOf(other)}"
+
+  private def short(text: String): String =
+    if text.length <= LongestError then text
+    else s"${text.take(LongestError)}… (${text.length} characters)"
+
+  private val LongestError = 4000
+
+  private def decode(frame: Array[Byte])(meaning: Msg => Either[String, Message]): Message =
+    try meaning(upack.read(frame, trace = false)).fold(Malformed(_), identity)
+    catch case NonFatal(e) => Malformed(s"not readable as MessagePack: $e")
+
+  private def idOf(field: Msg): Either[String, Long] = field match
+    case Int32(id) if id >= 0                 => Right(id.toLong)
+    case Int64(id) if id >= 0 && id <= MaxId  => Right(id)
+    case UInt64(id) if id >= 0 && id <= MaxId => Right(id)
+    case Int32(id)                            => Left(s"a negative id: $id")
+    case Int64(id)                            => Left(s"an id outside 0 to 2^32 - 1: $id")
+    case UInt64(id) => Left(s"an id outside 0 to 2^32 - 1: ${java.lang.Long.toUnsignedString(id)}")
+    case other      => Left(s"an id that is ${kindOf(other)}")
+
+  private def methodOf(field: Msg): Either[String, String] = field match
+    case Str(name)   => Right(name)
+    case Binary(raw) => Right(utf8(raw))
+    case other       => Left(s"a method name that is ${kindOf(other)}")
+
+  private def paramsOf(field: Msg): Either[String, IndexedSeq[Msg]] = field match
+    case Arr(params)                     => Right(params.toIndexedSeq)
+    case Null                            => Right(IndexedSeq.empty)
+    case Obj(entries) if entries.isEmpty => Right(IndexedSeq.empty)
+    case other                           => Left(s"params that are ${kindOf(other)}")
+
+  private def utf8(raw: Array[Byte]): String = String(raw, java.nio.charset.StandardCharsets.UTF_8)
+
+  private[rpc] def kindOf(value: Msg): String = value match
+    case _: Arr                             => "an array"
+    case _: Obj                             => "a map"
+    case _: Str                             => "a string"
+    case _: Binary                          => "binary"
+    case Null                               => "nil"
+    case _: (Int32 | Int64 | UInt64)        => "an integer"
+    case _: (upack.Float32 | upack.Float64) => "a float"
+    case _: upack.Bool                      => "a boolean"
+    case _: upack.Ext                       => "an extension"

@@ -1,0 +1,47 @@
+package skein.rpc
+
+import skein.units.*
+
+/** How long one connection has kept its server waiting, told once every [[ServerLimits.Watch]]. Knows no clock. */
+private[rpc] final class Patience(limits: ServerLimits):
+  private var midway           = 0
+  private var untaken          = 0
+  @volatile private var silent = 0
+
+  /** For how long nothing has come and nothing been under way. From any thread. */
+  def silentFor: Span = ServerLimits.Watch * silent.toLong
+
+  /** Bytes have come. */
+  def came(): Unit = silent = 0
+
+  /** The message under way is complete. */
+  def completed(): Unit = midway = 0
+
+  /** The peer has taken replies. */
+  def taken(): Unit = untaken = 0
+
+  /** One watch has passed; the answer is why the connection is to be closed, if it is.
+    *
+    * @param forMessage
+    *   the server waits for the rest of a message
+    * @param forTaking
+    *   replies wait to be taken
+    * @param forNothing
+    *   neither of these, and no request is being handled
+    */
+  def watch(forMessage: Boolean, forTaking: Boolean, forNothing: Boolean): Option[(ServerLimit, String)] =
+    midway = if forMessage then midway + 1 else 0
+    untaken = if forTaking then untaken + 1 else 0
+    silent = if forNothing then silent + 1 else 0
+    if lasts(midway, limits.messageTime) then
+      Some(ServerLimit.Time -> s"a message under way for more than ${seconds(limits.messageTime)}")
+    else if lasts(untaken, limits.replyTime) then
+      Some(ServerLimit.Time -> s"replies not taken for more than ${seconds(limits.replyTime)}")
+    else if lasts(silent, limits.idle) then
+      Some(ServerLimit.Idle -> s"silent for more than ${seconds(limits.idle)}")
+    else None
+
+  /** The first watch may have come at once. */
+  private def lasts(watches: Int, longest: Span): Boolean = ServerLimits.Watch * (watches - 1).toLong >= longest
+
+  private def seconds(span: Span): String = s"${math.round(span.toSeconds)} s"

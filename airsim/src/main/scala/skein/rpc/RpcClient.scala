@@ -1,0 +1,133 @@
+package skein.rpc
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.RunnableGraph
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.control.NonFatal
+import skein.link.{Address, Transport}
+import skein.units.Clock
+import upack.{Arr, Msg, Null, Obj, Str}
+import upickle.default.Reader
+
+/** Calls a MessagePack-RPC server over a pool of connections and never blocks: every call is a future that ends
+  * exactly once, with a result or an [[RpcError]], at the latest when its timeout is over. Safe from any thread.
+  *
+  * Timeouts and pauses are as exact as the actor system's scheduler: about 0.1 ms with
+  * [[skein.link.PreciseScheduler]], 10 ms and more with Pekko's own. Messages leave fastest with
+  * `pekko.stream.materializer.io.tcp.coalesce-writes = 0`, because they are gathered here already.
+  *
+  * @param transport
+  *   where connections come from; it bounds the time that connecting may take
+  * @param seed
+  *   of the jitter in the pauses between attempts to connect
+  * @param observer
+  *   told of every event; called on the lanes' threads, so it must be quick, safe to call from both at once, and
+  *   throw nothing
+  */
+final class RpcClient(
+    transport: Transport,
+    val address: Address,
+    clock: Clock,
+    settings: RpcSettings = RpcSettings(),
+    seed: Long = 0L,
+    observer: RpcEvent => Unit = _ => ()
+)(using system: ActorSystem):
+
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  private val counters = RpcCounters()
+  private val holdings = settings.newHoldings()
+  private val control  = start(Lane.Control)
+  private val bulk     = start(Lane.Bulk)
+
+  /** Calls `method` and gives its result as it came. */
+  def call(
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions = CallOptions()
+  ): Future[Either[RpcError, Msg]] =
+    callStamped(method, params, options).map(_.map(_.value))
+
+  /** Calls `method` and reads its result as an `A`; [[RpcError.Malformed]] if it is none. */
+  def callAs[A: Reader](
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions = CallOptions()
+  ): Future[Either[RpcError, A]] =
+    callStamped(method, params, options).map(_.flatMap(answer => read[A](method, answer.value)))
+
+  /** Calls `method` and gives its result with the times of sending and receiving. */
+  def callStamped(
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions = CallOptions()
+  ): Future[Either[RpcError, Answer[Msg]]] =
+    val call = Call(method, params, options, clock.now())
+    counters.called.increment()
+    val lane = options.lane match
+      case Lane.Control => control
+      case Lane.Bulk    => bulk
+    lane.submit(call)
+    options.withdrawn.foreach(_.onComplete(_ => lane.withdraw(call)))
+    call.outcome.future
+
+  /** Like [[callStamped]], with the result read as an `A`. */
+  def callStampedAs[A: Reader](
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions = CallOptions()
+  ): Future[Either[RpcError, Answer[A]]] =
+    callStamped(method, params, options).map(
+      _.flatMap(answer => read[A](method, answer.value).map(value => answer.map(_ => value)))
+    )
+
+  /** What has been counted so far. */
+  def stats: RpcStats = counters.snapshot
+
+  /** Ends calls under way with [[RpcError.Cancelled]], later ones too, and closes all connections. */
+  def close(): Future[Done] = control.close().zipWith(bulk.close())((_, _) => Done)
+
+  /** A flow has passed over an element whose call failed. */
+  private[rpc] def skipped(method: String, error: RpcError): Unit =
+    counters.skipped.increment()
+    observer(RpcEvent.Skipped(method, error))
+
+  private def read[A: Reader](method: String, value: Msg): Either[RpcError, A] =
+    def readAs(trace: Boolean): A =
+      val read = upickle.default.readBinary[A](value, trace)
+      for where <- RpcClient.nilIn(value, read) do
+        throw IllegalArgumentException(s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil")
+      read
+    // Keeping note of where it is makes reading several times slower: only what cannot be read is read again with it.
+    try Right(readAs(trace = false))
+    catch
+      case NonFatal(_) =>
+        try Right(readAs(trace = true))
+        catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
+
+  private def start(lane: Lane): LaneInput =
+    val stage =
+      LaneStage(lane, transport, address, clock, settings, seed + lane.ordinal, counters, holdings, observer)
+    RunnableGraph.fromGraph(stage).run()
+
+object RpcClient:
+  /** Where nil stands in an answer in the place of a part of what was read from it, as names with dots between; absent
+    * where it does not. A number's nil reads as 0, and so only the answer itself tells it.
+    */
+  private def nilIn(answer: Msg, read: Any): Option[String] =
+    def within(parts: Iterator[(String, Msg, Any)]) = parts
+      .flatMap((name, part, as) => nilIn(part, as).map(inner => if inner.isEmpty then name else s"$name.$inner"))
+      .nextOption()
+    (answer, read) match
+      case (_, _: Msg | None)                  => None
+      case (Null, _)                           => Some("")
+      case (Arr(parts), all: Iterable[?])      =>
+        within(all.iterator.zip(parts).zipWithIndex.map { case ((as, part), index) => (s"$index", part, as) })
+      case (Obj(parts), structure: Product) =>
+        within(
+          structure.productElementNames
+            .zip(structure.productIterator)
+            .flatMap((name, as) => parts.get(Str(name)).map((name, _, as)))
+        )
+      case _ => None

@@ -1,0 +1,106 @@
+package skein.rpc
+
+import scala.concurrent.Future
+import skein.units.*
+
+/** Which connections a call uses. Each lane has its own, so a large reply never delays a small one. */
+enum Lane:
+  /** Small and urgent: readings and commands. */
+  case Control
+
+  /** Large and patient: images, point clouds. */
+  case Bulk
+
+/** What happens to a call that finds no free place in the window. */
+enum WhenFull:
+  /** It fails at once with [[RpcError.Overloaded]]. */
+  case Refuse
+
+  /** It waits in the lane's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]]. */
+  case Wait
+
+/** How one call is made.
+  *
+  * @param timeout
+  *   from the call to its answer, waiting included; then [[RpcError.Timeout]]
+  * @param idempotent
+  *   may run twice without harm: sent again, a bounded number of times, when its connection is lost
+  * @param key
+  *   calls with the same key use the same connection and are sent in the order of the calls
+  * @param withdrawn
+  *   when it completes, the answer is waited for no longer: [[RpcError.Timeout]] before the timeout is over
+  */
+final case class CallOptions(
+    timeout: Span = Span.ofSeconds(5),
+    lane: Lane = Lane.Control,
+    idempotent: Boolean = false,
+    key: Option[Int] = None,
+    whenFull: WhenFull = WhenFull.Refuse,
+    withdrawn: Option[Future[?]] = None
+)
+
+/** The bounds of a client. Windows and queue hold for each lane by itself.
+  *
+  * @param controlConnections
+  *   connections of [[Lane.Control]], opened with its first call; the paper's pool has 5
+  * @param bulkConnections
+  *   connections of [[Lane.Bulk]], opened with its first call
+  * @param windowPerConnection
+  *   most calls sent and not yet ended on one connection
+  * @param windowInAll
+  *   most calls sent and not yet ended on all connections of a lane
+  * @param queue
+  *   most calls of a lane that wait, for a place or for a connection being opened
+  * @param resends
+  *   how often one idempotent call is sent again at most
+  * @param rememberedIds
+  *   how many timed-out calls a connection remembers, to recognise their late replies
+  * @param strays
+  *   most values on a connection, since the last reply that was waited for, that answer no call of ours; then it is
+  *   closed as malformed
+  * @param messageTime
+  *   longest time from a message's first byte to its last; then its connection is closed as malformed
+  * @param openBytes
+  *   most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a connection whose message
+  *   finds no room is closed as malformed
+  */
+final case class RpcSettings(
+    controlConnections: Int = 5,
+    bulkConnections: Int = 1,
+    windowPerConnection: Int = 64,
+    windowInAll: Int = 256,
+    queue: Int = 256,
+    resends: Int = 2,
+    rememberedIds: Int = 4096,
+    strays: Int = 1000,
+    messageTime: Span = Span.ofSeconds(60),
+    openBytes: Long = 128 << 20,
+    backOff: BackOff = BackOff(),
+    limits: FrameLimits = FrameLimits()
+):
+  require(
+    controlConnections > 0 && bulkConnections > 0 && windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
+      resends >= 0 && rememberedIds >= 0 && strays >= 0 && messageTime > Span.Zero && openBytes >= 0,
+    s"connections and windows must be positive, the other bounds not negative: $this"
+  )
+
+  private[rpc] def newHoldings(): Holdings = Holdings(each = 1 << 20, common = openBytes)
+
+  def connections(lane: Lane): Int = lane match
+    case Lane.Control => controlConnections
+    case Lane.Bulk    => bulkConnections
+
+/** Pauses between attempts to connect: doubling from `first` to at most `longest`, each shortened at random by up to
+  * the fraction `jitter`, so that clients do not return in step.
+  */
+final case class BackOff(
+    first: Span = Span.ofMillis(50),
+    longest: Span = Span.ofSeconds(2),
+    jitter: Double = 0.5
+):
+  require(first > Span.Zero && longest >= first && jitter >= 0 && jitter <= 1, s"not a back-off: $this")
+
+  /** The pause after the given number of failures in a row (at least 1); `uniform` in [0, 1). */
+  def pause(failures: Int, uniform: Double): Span =
+    val doubled = first.toNanos * StrictMath.pow(2, math.min(failures - 1, 40))
+    Span.ofNanos((math.min(doubled, longest.toNanos.toDouble) * (1 - jitter * uniform)).toLong)

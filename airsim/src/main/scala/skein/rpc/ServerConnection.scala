@@ -1,0 +1,264 @@
+package skein.rpc
+
+import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.atomic.AtomicBoolean
+import org.apache.pekko.stream.stage.*
+import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.control.NonFatal
+import scala.util.{Failure, Success, Try}
+import skein.units.*
+import upack.Msg
+
+/** Serves one connection: requests' bytes in, replies' bytes out, replies in the order of completion.
+  *
+  * '''Emits when''' replies are ready; those ready together leave together.
+  * '''Backpressures when''' its limit of requests being handled, of reply bytes not yet taken, or of memory held is
+  * reached.
+  * A request too large for the memory left waits for those of its connection that are under way; then, or after the
+  * longest time for a message, it is answered with an error, and so is one whose reply is too large.
+  * '''Completes when''' upstream has completed and every request is answered, or at once on malformed input or a
+  * limit that cannot be waited for.
+  * '''Cancels when''' downstream cancels, or on malformed input or such a limit.
+  */
+private[rpc] final class ServerConnection(
+    connection: Long,
+    limits: ServerLimits,
+    handler: RpcHandler,
+    failureText: (RpcRequest, Throwable) => String,
+    counters: ServerCounters,
+    holdings: Holdings,
+    places: Places,
+    observe: ServerEvent => Unit
+) extends GraphStage[FlowShape[ByteString, ByteString]]:
+  import ServerConnection.*
+
+  private val in  = Inlet[ByteString]("requests")
+  private val out = Outlet[ByteString]("replies")
+
+  override val shape: FlowShape[ByteString, ByteString] = FlowShape(in, out)
+
+  override def createLogic(inherited: Attributes): GraphStageLogic =
+    new TimerGraphStageLogic(shape) with InHandler with OutHandler with Places.Guest:
+      private val framer    = Framer(limits.frame)
+      private val writer    = MessageWriter()
+      private val patience  = Patience(limits)
+      private val done      = ConcurrentLinkedQueue[Outcome]()
+      private val scheduled = AtomicBoolean()
+      private val wake      = getAsyncCallback[Unit](_ => collect())
+      private val leaving   = getAsyncCallback[Unit](_ => close(ServerLimit.Idle, "its place was needed"))
+      private var inFlight  = 0
+      private var consumed  = true // every value of the last segment is taken
+      private var heldBack  = Option.empty[Array[Byte]] // the next message, while it is too large for what is left
+      private var backFor   = 0 // watches since it is
+      private var strays    = 0    // values since the last request that were no messages
+      private var reason    = Option.empty[String]
+
+      // What it holds, bytes.
+      private val holding = holdings.Holding()
+      private var segment = 0  // of the last segment, while it is not consumed
+      private var inHand  = 0L // of requests being handled
+      private var sending = 0  // of replies handed downstream, until it asks for more
+
+      setHandlers(in, out, this)
+
+      override def preStart(): Unit =
+        places.entered(connection, this)
+        scheduleOnce(Watch, ServerLimits.Watch.toDuration)
+        pull(in)
+
+      override def onPush(): Unit =
+        val bytes = grab(in)
+        framer.offer(bytes)
+        segment = bytes.length
+        consumed = false
+        patience.came()
+        proceed()
+
+      override def onPull(): Unit =
+        sending = 0
+        patience.taken()
+        proceed()
+
+      override def onUpstreamFinish(): Unit = proceed()
+
+      override def onUpstreamFailure(failure: Throwable): Unit =
+        reason = Some(Option(failure.getMessage).getOrElse(failure.toString))
+        failStage(failure)
+
+      override def postStop(): Unit =
+        holding.force(0)
+        places.left(connection)
+        observe(ServerEvent.Closed(connection, reason))
+
+      def silentFor: Span = patience.silentFor
+
+      def leave(): Unit = leaving.invoke(())
+
+      override protected def onTimer(key: Any): Unit =
+        val nothing = inFlight == 0 && sending == 0 && !framer.midway
+        patience.watch(consumed && framer.midway, sending > 0, nothing) match
+          case Some((limit, why)) => close(limit, why)
+          case None               =>
+            scheduleOnce(Watch, ServerLimits.Watch.toDuration)
+            if heldBack.nonEmpty then backFor += 1
+            proceed()
+
+      private def close(limit: ServerLimit, why: String): Unit =
+        refuse(limit, why)
+        completeStage()
+
+      private def refuse(limit: ServerLimit, why: String): Unit =
+        counters.limited(limit)
+        reason = Some(why)
+
+      /** Takes requests as far as the limits allow, and sends what is ready. */
+      private def proceed(): Unit =
+        try
+          takeRequests()
+          if isAvailable(out) && writer.length > 0 then
+            sending = writer.length
+            push(out, writer.take())
+            takeRequests()
+          if reason.nonEmpty then completeStage()
+          else if consumed then
+            if !isClosed(in) then
+              if !hasBeenPulled(in) && mayRead then pull(in)
+            else if inFlight == 0 && writer.length == 0 then
+              if framer.midway then reason = Some("the peer stopped in the middle of a message")
+              completeStage()
+        catch
+          case NonFatal(failure) =>
+            reason = Some(s"serving it failed: $failure")
+            failStage(failure)
+
+      private def takeRequests(): Unit =
+        for frame <- heldBack do
+          heldBack = None
+          take(frame)
+        while !consumed && heldBack.isEmpty && reason.isEmpty && inFlight < limits.inFlightPerConnection &&
+          writer.length < limits.unsentBytesPerConnection && hasRoom
+        do
+          framer.next() match
+            case Framed.Complete(frame) =>
+              patience.completed()
+              take(frame)
+            case Framed.NeedsMore =>
+              consumed = true
+              segment = 0
+            case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
+        // The rest of it may never come: only requests of its own are worth waiting for.
+        if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
+        holding.force(held)
+
+      private def held: Long =
+        segment.toLong + framer.heldBytes + heldBack.fold(0)(_.length) + inHand + writer.length + sending
+
+      private def isGranted: Boolean = holding.resize(held) && holding.isGranted
+
+      private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
+
+      /** Whether it may hold what it holds: if not, it waits until some of its requests are answered and taken. */
+      private def hasRoom: Boolean = isGranted || !underWay
+
+      /** Whether it may have the rest of the message that is under way. */
+      private def mayRead: Boolean = isGranted || framer.heldBytes <= limits.heldBytesPerConnection
+
+      private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")
+
+      private def noMore: String =
+        s"no more than ${limits.heldBytesInCommon} in all beyond ${limits.heldBytesPerConnection} for each connection"
+
+      private def take(frame: Array[Byte]): Unit =
+        val bytes = framer.decodedBytes + BytesPerRequest
+        if holding.resize(held + bytes) || bytes <= limits.heldBytesPerConnection then
+          backFor = 0
+          handle(frame, bytes)
+        else if underWay && ServerLimits.Watch * backFor.toLong < limits.messageTime then heldBack = Some(frame)
+        else
+          backFor = 0
+          counters.lacking.increment()
+          // Unread: to read it takes what is lacking.
+          Message.requestId(frame) match
+            case Some(id) =>
+              counters.requests.increment()
+              counters.refused.increment()
+              writer.reply(id, Left(s"this request takes $bytes bytes of the server's memory, and $noMore"))
+            case None => ignore(s"a message that asks for no answer and takes $bytes bytes, and $noMore")
+
+      private def handle(frame: Array[Byte], bytes: Long): Unit =
+        Message.fromClient(frame) match
+          case Message.Request(id, method, params) =>
+            counters.requests.increment()
+            run(id, RpcRequest(connection, method, params, notification = false), bytes)
+          case Message.Notification(method, params) =>
+            counters.notifications.increment()
+            run(NoReply, RpcRequest(connection, method, params, notification = true), bytes)
+          case Message.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
+          case Message.Ignored(what)      => ignore(what)
+          case other: Message.Reply       => ignore(other.productPrefix)
+
+      private def ignore(what: String): Unit =
+        strays += 1
+        observe(ServerEvent.Ignored(connection, what))
+        if strays > limits.strays then
+          refuse(ServerLimit.Malformed, s"more than ${limits.strays} values in a row that are no messages")
+
+      private def run(id: Long, request: RpcRequest, bytes: Long): Unit =
+        val answer =
+          try handler(request)
+          catch case NonFatal(failure) => Future.failed(failure)
+        strays = 0
+        inFlight += 1
+        inHand += bytes
+        answer.value match
+          case Some(result) => finish(Outcome(id, request, bytes, result))
+          case None         =>
+            answer.onComplete(result => completed(Outcome(id, request, bytes, result)))(using
+              ExecutionContext.parasitic
+            )
+
+      /** From any thread. */
+      private def completed(outcome: Outcome): Unit =
+        val _ = done.add(outcome)
+        if scheduled.compareAndSet(false, true) then wake.invoke(())
+
+      private def collect(): Unit =
+        scheduled.set(false)
+        var outcome = done.poll()
+        while outcome != null do
+          finish(outcome)
+          outcome = done.poll()
+        proceed()
+
+      private def finish(outcome: Outcome): Unit =
+        inFlight -= 1
+        inHand -= outcome.bytes
+        if outcome.id != NoReply then
+          val reply = outcome.result match
+            case Success(answer)  => answer
+            case Failure(failure) => Left(failureText(outcome.request, failure))
+          val before = writer.length
+          writer.reply(outcome.id, reply)
+          val size    = writer.length - before
+          val lacking = !holding.resize(held) && held > 2 * limits.heldBytesPerConnection
+          if lacking then
+            counters.lacking.increment()
+            writer.backTo(before)
+            writer.reply(outcome.id, Left(s"the reply takes $size bytes of the server's memory, and $noMore"))
+          (if reply.isRight && !lacking then counters.answered else counters.refused).increment()
+
+private object ServerConnection:
+  private val NoReply = -1L
+
+  /** Memory that a request takes beside its message: the objects that lead it to its answer. */
+  private val BytesPerRequest = 512
+
+  private case object Watch
+  private final case class Outcome(
+      id: Long,
+      request: RpcRequest,
+      bytes: Long,
+      result: Try[Either[String, Msg]]
+  )

@@ -1,0 +1,106 @@
+package skein.rpc
+
+import java.util.concurrent.atomic.{AtomicLong, LongAdder}
+
+/** What a server has counted since it was bound.
+  *
+  * @param connections
+  *   open now
+  * @param accepted
+  *   connections served, closed ones included
+  * @param turnedAway
+  *   connections beyond the limit
+  * @param closedWithReason
+  *   connections that ended because of malformed input, a cut message, a limit or a failure
+  * @param malformed
+  *   of those: for what was no message, or one beyond [[FrameLimits]]
+  * @param overHeld
+  *   of those: for memory that no longer could be held for them
+  * @param tooSlow
+  *   of those: for a message, or the taking of replies, that took too long
+  * @param idle
+  *   of those: for silence, when their place was needed or far too long
+  * @param answered
+  *   replies with a result
+  * @param refused
+  *   replies with an error
+  * @param lacking
+  *   of those: requests, and replies, too large for the memory left; and notifications, which are dropped then
+  * @param ignored
+  *   values that were no messages
+  * @param dropped
+  *   requests taken and not run, because their connection had closed before their turn
+  * @param heldBytes
+  *   memory held for peers now; see [[ServerLimits.heldBytes]]
+  * @param mostHeldBytes
+  *   the most there was
+  */
+final case class ServerStats(
+    connections: Long,
+    accepted: Long,
+    turnedAway: Long,
+    closedWithReason: Long,
+    malformed: Long,
+    overHeld: Long,
+    tooSlow: Long,
+    idle: Long,
+    requests: Long,
+    notifications: Long,
+    answered: Long,
+    refused: Long,
+    lacking: Long,
+    ignored: Long,
+    dropped: Long,
+    heldBytes: Long,
+    mostHeldBytes: Long
+)
+
+/** Why a server closes a connection. */
+private[rpc] enum ServerLimit:
+  case Malformed, Held, Time, Idle
+
+private[rpc] final class ServerCounters(holdings: Holdings):
+  val requests, notifications, answered, refused, lacking         = LongAdder()
+  private val malformed, overHeld, tooSlow, idle                  = LongAdder()
+  private val closed, closedWithReason, turnedAway, ignoredValues = LongAdder()
+  private val accepted                                            = AtomicLong()
+
+  /** The number of the connection now accepted. */
+  def nextConnection(): Long = accepted.incrementAndGet()
+
+  def open: Long = accepted.get - closed.sum
+
+  def limited(limit: ServerLimit): Unit = (limit match
+    case ServerLimit.Malformed => malformed
+    case ServerLimit.Held      => overHeld
+    case ServerLimit.Time      => tooSlow
+    case ServerLimit.Idle      => idle
+  ).increment()
+
+  def count(event: ServerEvent): Unit = event match
+    case ServerEvent.Opened(_, _)      => ()
+    case ServerEvent.Closed(_, reason) =>
+      closed.increment()
+      if reason.nonEmpty then closedWithReason.increment()
+    case ServerEvent.TurnedAway(_) => turnedAway.increment()
+    case ServerEvent.Ignored(_, _) => ignoredValues.increment()
+
+  def snapshot: ServerStats = ServerStats(
+    open,
+    accepted.get,
+    turnedAway.sum,
+    closedWithReason.sum,
+    malformed.sum,
+    overHeld.sum,
+    tooSlow.sum,
+    idle.sum,
+    requests.sum,
+    notifications.sum,
+    answered.sum,
+    refused.sum,
+    lacking.sum,
+    ignoredValues.sum,
+    dropped = 0,
+    holdings.bytes,
+    holdings.mostBytes
+  )

@@ -1,0 +1,79 @@
+package skein.airsim
+
+import skein.units.*
+
+class WorldSettingsSuite extends munit.FunSuite:
+
+  private def problem(text: String): String =
+    WorldSettings.parse(text).left.map(_.message).left.getOrElse("none")
+
+  test("settings without vehicles have AirSim's default one"):
+    assertEquals(WorldSettings.parse("{}").map(_.vehicles), Right(Vector(VehicleSettings("SimpleFlight"))))
+
+  test("vehicles, origin, wind and clock speed are read, the rest is passed over"):
+    val text = """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "ClockSpeed": 2,
+      "Wind": {"X": 1, "Y": -2}, "OriginGeopoint": {"Latitude": 47, "Longitude": 8, "Altitude": 400},
+      "Vehicles": {
+        "Evader": {"VehicleType": "SimpleFlight", "X": 0, "Y": 0, "Z": 0},
+        "Pursuer": {"VehicleType": "SimpleFlight", "X": -21, "Yaw": 90, "Cameras": {}}}}"""
+    assertEquals(
+      WorldSettings.parse(text),
+      Right(
+        WorldSettings(
+          Vector(
+            VehicleSettings("Evader"),
+            VehicleSettings("Pursuer", Vector3(-21, 0, 0), Radians(math.Pi / 2))
+          ),
+          GeoLocation(47, 8, Metres(400)),
+          Vector3(1, -2, 0),
+          2.0,
+          text
+        )
+      )
+    )
+
+  test("what is rendered is read back"):
+    val vehicles = Vector(VehicleSettings("A", Vector3(1, 2, -3)), VehicleSettings("B"))
+    assertEquals(WorldSettings.parse(WorldSettings.render(vehicles)).map(_.vehicles), Right(vehicles))
+
+  test("a value that does not fit is named with its path, what was expected and what was found"):
+    assertEquals(
+      problem("""{"Vehicles": {"A": {"X": "1"}}}"""),
+      "Vehicles.A.X: expected a number, found a string"
+    )
+    assertEquals(problem("""{"Vehicles": [1]}"""), "Vehicles: expected an object, found an array")
+    assertEquals(problem("""{"ClockSpeed": 0}"""), "ClockSpeed: expected a number above 0, found 0.0")
+    assertEquals(problem("[]"), "the whole: expected an object, found an array")
+    assert(problem("{").startsWith("not JSON: "))
+
+  private def only(fields: String, more: String = ""): VehicleSettings =
+    WorldSettings.parse(s"""{"Vehicles": {"A": {$fields}} $more}""").fold(
+      e => fail(e.message),
+      _.vehicles.head
+    )
+
+  test("who is meant by no name: the vehicle with IsFpvVehicle, else the first by the alphabet"):
+    def default(text: String) = WorldSettings.parse(text).map(_.defaultVehicle.name)
+    assertEquals(default("""{"Vehicles": {"B": {}, "A": {}}}"""), Right("A"))
+    assertEquals(default("""{"Vehicles": {"B": {"IsFpvVehicle": true}, "A": {}}}"""), Right("B"))
+
+  test("DefaultVehicleState says whether a vehicle is armed from the start"):
+    assert(only("").armed)
+    assert(only(""" "DefaultVehicleState": "Armed" """).armed)
+    assert(!only(""" "DefaultVehicleState": "Inactive" """).armed)
+    assertEquals(
+      problem("""{"Vehicles": {"A": {"DefaultVehicleState": "flying"}}}"""),
+      "Vehicles.A.DefaultVehicleState: expected Armed, Inactive or Disarmed, found 'flying'"
+    )
+
+  test(
+    "sensors that are listed take the place of the default ones of their kind; those not enabled are none"
+  ):
+    assertEquals(only("").sensors, SensorKind.Default)
+    val own =
+      only(""" "Sensors": {"Imu1": {"SensorType": 2, "Enabled": true}, "Off": {"SensorType": 3}} """).sensors
+    assertEquals(own, SensorKind.Default - "imu" - "gps" + ("Imu1" -> SensorKind.Imu))
+    val fork = only(""" "Sensors": {"Echo": {"SensorType": 9, "Enabled": true}} """).sensors
+    assertEquals(fork, SensorKind.Default)
+    val shared = only("", """, "DefaultSensors": {"G": {"SensorType": 3, "Enabled": true}}""").sensors
+    assertEquals(shared, SensorKind.Default - "gps" + ("G" -> SensorKind.Gps))

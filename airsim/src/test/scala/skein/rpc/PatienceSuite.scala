@@ -1,0 +1,57 @@
+package skein.rpc
+
+import skein.units.*
+
+class PatienceSuite extends munit.FunSuite:
+  private val limits = ServerLimits(
+    messageTime = Span.ofSeconds(10),
+    replyTime = Span.ofSeconds(30),
+    silence = Span.ofSeconds(5),
+    idle = Span.ofSeconds(100)
+  )
+
+  /** After how many watches it ends, and why. */
+  private def lasts(watch: Int => Option[(ServerLimit, String)]): (Int, ServerLimit, String) =
+    Iterator
+      .from(1)
+      .map(i => watch(i).map((limit, why) => (i, limit, why)))
+      .collectFirst { case Some(end) => end }
+      .get
+
+  test("a message may be under way for its time, whether bytes trickle in or not"):
+    for trickles <- Seq(true, false) do
+      val patience = Patience(limits)
+      val end      = lasts: _ =>
+        if trickles then patience.came()
+        patience.watch(forMessage = true, forTaking = false, forNothing = false)
+      assertEquals(end, (11, ServerLimit.Time, "a message under way for more than 10 s"))
+
+  test("many messages one after another may take as long as they like"):
+    val patience = Patience(limits)
+    for i <- 1 to 1000 do
+      if i % 9 == 0 then patience.completed()
+      assertEquals(patience.watch(forMessage = true, forTaking = false, forNothing = false), None)
+
+  test("while the server itself is not reading, no message is late"):
+    val patience = Patience(limits)
+    for i <- 1 to 1000 do
+      assertEquals(patience.watch(forMessage = i % 9 != 0, forTaking = false, forNothing = false), None)
+
+  test("replies may wait for their time, and anew whenever some are taken"):
+    val patience = Patience(limits)
+    for _ <- 1 to 25 do patience.watch(forMessage = false, forTaking = true, forNothing = false)
+    patience.taken()
+    val end = lasts(_ => patience.watch(forMessage = false, forTaking = true, forNothing = false))
+    assertEquals(end, (31, ServerLimit.Time, "replies not taken for more than 30 s"))
+
+  test("silence is counted while nothing is under way, until something comes"):
+    val patience = Patience(limits)
+    def quiet()  = patience.watch(forMessage = false, forTaking = false, forNothing = true)
+    for _ <- 1 to 7 do quiet()
+    assertEquals(patience.silentFor, Span.ofSeconds(7))
+    patience.came()
+    assertEquals(patience.silentFor, Span.Zero)
+    quiet()
+    patience.watch(forMessage = false, forTaking = false, forNothing = false)
+    assertEquals(patience.silentFor, Span.Zero)
+    assertEquals(lasts(_ => quiet()), (101, ServerLimit.Idle, "silent for more than 100 s"))

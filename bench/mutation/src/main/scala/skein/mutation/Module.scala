@@ -1,0 +1,10 @@
+package skein.mutation
+
+/** Which tests are to notice a change in which sources.
+  *
+  * @param sources
+  *   folder, below the repository
+  * @param suites
+  *   tried in this order until one fails
+  */
+final case class Module(name: String, sources: String, suites: Vector[String])

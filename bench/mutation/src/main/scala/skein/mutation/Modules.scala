@@ -1,0 +1,52 @@
+package skein.mutation
+
+import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+
+/** What is changed, and by which tests it should be noticed. */
+private object Modules:
+
+  val all: Vector[Module] = Vector(
+    Module("signal", "core/src/main/scala/skein/signal", Vector("skein.signal.*")),
+    Module("flow", "flow/src/main/scala/skein/flow", Vector("skein.flow.*")),
+    Module(
+      "loop",
+      "flight/src/main/scala/skein/loop",
+      Vector("skein.loop.*Suite", "skein.flight.ReplaySimulation", "skein.loop.PredictiveLoopSimulation")
+    ),
+    Module("record", "record/src/main/scala/skein/record", Vector("skein.record.*")),
+    Module("report", "cli/src/main/scala/skein/report", Vector("skein.report.*")),
+    Module("measure", "flight/src/main/scala/skein/measure", Vector("skein.measure.*", "skein.report.*")),
+    Module("torture", "flight/src/main/scala/skein/torture", Vector("skein.torture.*Suite"))
+  )
+
+  def mutants(root: Path, module: Module): Vector[Mutant] =
+    val files = Using.resource(Files.walk(root.resolve(module.sources)))(
+      _.iterator.asScala.filter(_.toString.endsWith(".scala")).toVector.sorted
+    )
+    files.flatMap(file => Mutant.of(module.name, file, Files.readString(file)))
+
+  /** The classes that a pattern such as `skein.flow.*` names: suites and laws, without those that need sockets or the
+    * real clock.
+    */
+  def suites(folders: Vector[String], pattern: String): Vector[String] =
+    val prefix = pattern.takeWhile(_ != '*')
+    val ending = pattern.drop(prefix.length + 1)
+    for
+      folder <- folders.map(Path.of(_)) if folder.toString.contains("test-classes")
+      file   <- classesIn(folder.resolve(prefix.take(prefix.lastIndexOf('.')).replace('.', '/')))
+      name = folder.relativize(file).toString.stripSuffix(".class").replace('/', '.')
+      if name.startsWith(prefix) && name.endsWith(ending) && (pattern.contains('*') || name == pattern)
+      if Ending.exists(name.endsWith) && !name.endsWith("LiveSuite")
+      if ending.nonEmpty || !pattern.contains('*') || !name.endsWith("Simulation")
+    yield name
+
+  private val Ending = Vector("Suite", "Laws", "Golden", "Simulation")
+
+  private def classesIn(folder: Path): Vector[Path] =
+    if !Files.isDirectory(folder) then Vector.empty
+    else
+      Using.resource(
+        Files.list(folder)
+      )(_.iterator.asScala.filter(_.toString.endsWith(".class")).toVector.sorted)

@@ -1,0 +1,134 @@
+package skein.budget
+
+import java.util.Locale
+import skein.optimise.LatencyBudget.Bound
+import skein.optimise.{LatencyBudget, Tally}
+import skein.signal.LatencyDistribution
+import upickle.default.{ReadWriter, macroRW, write}
+
+/** A map of one loop at one period, with what is said of it.
+  *
+  * @param tolerance
+  *   a share of the truth
+  * @param marks
+  *   named links with what was flown over them as they were measured
+  */
+final case class BudgetMap(
+    loop: String,
+    periodMs: Double,
+    objective: String,
+    unit: String,
+    vehicles: String,
+    policy: String,
+    tolerance: Double,
+    episodes: Int,
+    budget: LatencyBudget,
+    marks: Vector[BudgetMark],
+    legs: Legs
+):
+
+  /** One sentence on how much latency the policy bears, at the row of cells nearest to a jitter. */
+  def sentence(atJitterMs: Double): String =
+    val row    = budget.jittersMs.indices.minBy(i => (budget.jittersMs(i) - atJitterMs).abs)
+    val jitter = s"${ms(budget.jittersMs(row))} ms jitter"
+    val truth  = s"the truth, ${number(budget.truth)}${if unit.isEmpty then "" else s" $unit"},"
+    val within = s"within ${number(tolerance * 100)} % of $truth"
+    val end    = s"(${legs.text}; $loop every ${number(periodMs)} ms)"
+    budget.holdsUpTo(row, tolerance) match
+      case Bound.At(mean)     => s"holds $within up to ${ms(mean)} ms mean at $jitter $end"
+      case Bound.Beyond(mean) => s"holds $within as far as the map goes, ${ms(mean)} ms mean, at $jitter $end"
+      case Bound.Below(mean)  => s"does not hold $within even at ${ms(mean)} ms mean and $jitter $end"
+      case Bound.Unknown      => s"no link of the map has $jitter $end"
+
+  /** A line per marked link. */
+  def markLines: Vector[String] = marks.map: mark =>
+    val off = 100 * (mark.tally.mean - budget.truth) / budget.truth.abs
+    f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
+      s"$objective = ${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)} $unit, ${signed(off)} % off the truth"
+
+  /** One row per cell. */
+  def csvRows: Vector[String] =
+    for
+      (jitter, i) <- budget.jittersMs.zipWithIndex
+      (mean, j)   <- budget.meansMs.zipWithIndex
+      tally       <- budget.cells(i)(j).toVector
+    yield Vector(
+      periodMs,
+      mean / legs.perRoundTrip,
+      jitter / legs.perRoundTrip,
+      tally.mean,
+      tally.sd,
+      tally.count,
+      budget.deviation(i, j).get
+    ).mkString(",")
+
+  private def ms(roundTripMs: Double): String =
+    String.format(Locale.ROOT, "%.0f", roundTripMs / legs.perRoundTrip)
+  private def number(value: Double): String = skein.settings.PolicyFile.brief(value)
+  private def signed(value: Double): String = String.format(Locale.ROOT, "%+.1f", value)
+
+/** A link by name, and what the policy came to over it. */
+final case class BudgetMark(name: String, roundTrip: LatencyDistribution, tally: Tally)
+
+/** In what latencies are told: of the whole way there and back, or of one direction. */
+enum Legs(val text: String, val perRoundTrip: Double):
+  case RoundTrip extends Legs("round trips", 1)
+  case OneWay    extends Legs("one way", 2)
+
+object BudgetMap:
+  val CsvHeader = "periodMs,meanMs,jitterMs,objective,sd,episodes,deviation"
+
+  /** All maps as JSON: what was asked, and per map the truth and the cells. */
+  def json(maps: Vector[BudgetMap]): String = write(maps.map(Shown.of), indent = 1)
+
+  private final case class Cell(
+      meanMs: Double,
+      jitterMs: Double,
+      objective: Double,
+      sd: Double,
+      deviation: Double
+  )
+
+  private final case class Shown(
+      policy: String,
+      loop: String,
+      periodMs: Double,
+      vehicles: String,
+      objective: String,
+      unit: String,
+      latencies: String,
+      jitter: String,
+      tolerance: Double,
+      truth: Double,
+      episodesPerCell: Int,
+      cells: Vector[Cell]
+  )
+
+  private object Shown:
+    given ReadWriter[Cell]  = macroRW
+    given ReadWriter[Shown] = macroRW
+
+    def of(map: BudgetMap): Shown = Shown(
+      map.policy,
+      map.loop,
+      map.periodMs,
+      map.vehicles,
+      map.objective,
+      map.unit,
+      map.legs.text,
+      "p99 - p50",
+      map.tolerance,
+      map.budget.truth,
+      map.episodes,
+      for
+        (jitter, i) <- map.budget.jittersMs.zipWithIndex
+        (mean, j)   <- map.budget.meansMs.zipWithIndex
+        tally       <- map.budget.cells(i)(j).toVector
+      yield Cell(
+        mean / map.legs.perRoundTrip,
+        jitter / map.legs.perRoundTrip,
+        tally.mean,
+        tally.sd,
+        map.budget.deviation(i, j).get
+      )
+    )

@@ -1,0 +1,90 @@
+package skein.cli
+
+import mainargs.{ParserForClass, Result, Util}
+
+/** A command of `./skein`: one file each.
+  *
+  * @param name
+  *   the word after `./skein`
+  * @param summary
+  *   one line for `./skein --help`
+  */
+trait Command(val name: String, val summary: String):
+
+  /** Runs with the words after the command's name.
+    *
+    * @return
+    *   the exit status: 0 done, 1 failed, 2 wrong arguments
+    */
+  def run(arguments: Seq[String]): Int
+
+  /** What `--help` prints. */
+  def help: String
+
+/** A command whose options are the fields of a case class.
+  *
+  * @tparam A
+  *   the options; mainargs derives flags from the fields' names and help from their `@arg(doc = …)`
+  */
+abstract class OptionsCommand[A](name: String, summary: String, parser: ParserForClass[A])
+    extends Command(name, summary):
+
+  /** Does what the options say.
+    *
+    * @return
+    *   or why it could not, in a line or more for a person
+    */
+  protected def execute(options: A): Either[String, Unit]
+
+  final def help: String = help(100)
+
+  /** @param width
+    *   in columns
+    */
+  private[cli] def help(width: Int): String =
+    parser.helpText(
+      totalWidth = width,
+      customName = s"./skein $name [OPTION…]",
+      customDoc = summary,
+      sorted = false
+    )
+
+  final def run(arguments: Seq[String]): Int =
+    if arguments.exists(word => word == "--help" || word == "-h") then
+      Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
+      0
+    else
+      parser.constructRaw(optionsFirst(arguments)) match
+        case failure: Result.Failure =>
+          Misuse.text(failure, names).linesIterator.foreach(mistake =>
+            Console.err.println(s"skein $name: $mistake")
+          )
+          Console.err.println(s"skein $name: --help tells the options")
+          2
+        case Result.Success(options) =>
+          execute(options) match
+            case Right(())    => 0
+            case Left(reason) =>
+              Console.err.println(s"skein $name: $reason")
+              1
+
+  /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the first word
+    * without a dash for such words.
+    */
+  private def optionsFirst(arguments: Seq[String]): Seq[String] =
+    val (options, files) = Iterator
+      .unfold(arguments.toList):
+        case word :: value :: rest if takesValue(word) => Some((List(word, value), rest))
+        case word :: rest                              => Some((List(word), rest))
+        case Nil                                       => None
+      .toSeq
+      .partition(_.head.startsWith("-"))
+    options.flatten ++ files.flatten
+
+  private def names: Seq[String] =
+    parser.main.flattenedArgSigs.flatMap((argument, _) => argument.longName(Util.kebabCaseNameMapper)).map(
+      "--" + _
+    )
+
+  private def takesValue(word: String): Boolean = parser.main.flattenedArgSigs.exists: (argument, reader) =>
+    reader.isSimple && argument.longName(Util.kebabCaseNameMapper).exists(name => word == s"--$name")

@@ -1,0 +1,18 @@
+package skein.cli
+
+/** All commands with their options as a page of the documentation. */
+object CommandReference:
+
+  /** What `--help` tells of every command. */
+  def markdown: String =
+    val commands = Main.commands.map: command =>
+      s"## ${command.name}\n\n${command.summary.capitalize}.\n\n```\n${command.help.stripTrailing}\n```\n"
+    s"$introduction\n${commands.mkString("\n")}"
+
+  private val introduction =
+    """# Commands
+      |
+      |`./skein COMMAND --help` tells the same.
+      |
+      |Exit status: 0 done, 1 failed, 2 wrong arguments. Progress and errors go to standard error, results to standard output.
+      |""".stripMargin

@@ -1,0 +1,119 @@
+package skein.cli
+
+import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
+import mainargs.{Flag, ParserForClass, arg}
+import scala.jdk.CollectionConverters.*
+import skein.loop.LoopKind
+import skein.planning.Planner
+import skein.policy.TeamScenario
+import skein.settings.{ConfigKeys, FlySettings, HoconFile}
+
+/** What to fly; what is not given stands in the configuration `skein.fly`. */
+final case class FlightOptions(
+    @arg(doc = "paused, sequential, futures, stream, predictive or plan; may be given several times")
+    loop: Seq[String],
+    @arg(doc =
+      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; may be given several times"
+    )
+    link: Seq[String],
+    @arg(doc = "of each flight, for example 60s")
+    duration: Option[String],
+    @arg(doc = "between decisions for one vehicle, for example 100ms")
+    period: Option[String],
+    @arg(doc = "of every random choice")
+    seed: Option[Long],
+    @arg(doc = "duel, surround, formation or crossing")
+    scenario: Option[String],
+    @arg(doc = "of a surround, formation or crossing")
+    vehicles: Option[Int],
+    @arg(doc =
+      "a policy file of ./skein search: flies the duel with it too, beside the paper's; may be given several times"
+    )
+    policy: Seq[String],
+    @arg(doc = "duels side by side, two vehicles each")
+    pairs: Option[Int],
+    @arg(name = "as-paper", doc = "the paper's four loops alone, without predictive")
+    asPaper: Flag,
+    @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
+    asPublished: Flag,
+    @arg(doc = "at which all fly, above where they start, in metres (default: 20 for the duel, 5 for teams)")
+    altitude: Option[Double],
+    @arg(doc =
+      "what `predictive` predicts by: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
+    )
+    predictor: Option[String],
+    @arg(
+      name = "moves-in-flight",
+      doc =
+        "of one vehicle; 2 unless given. More let a link of a long round trip carry more commands, but several that " +
+          "a stall delivers at once can freeze AirSim"
+    )
+    movesInFlight: Option[Int],
+    @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
+    deadline: Option[String],
+    @arg(doc =
+      "where the deadline is missed: hold, repeat (the last decision), or a policy such as pure-pursuit"
+    )
+    fallback: Option[String],
+    @arg(doc = "a HOCON file with settings of skein.fly")
+    config: Option[String]
+):
+
+  /** Flags before file before defaults. */
+  def settings: Either[String, FlySettings] =
+    for
+      file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
+      merged   <- FlightOptions.resolved(flags.withFallback(file).withFallback(ConfigFactory.load()))
+      settings <- FlySettings.read(merged)
+      _        <- Either.cond(
+        vehicles.isEmpty || settings.scenario != FlySettings.Duel,
+        (),
+        s"--vehicles: expected with --scenario ${TeamScenario.names.mkString(" or ")}; a duel's number is told by --pairs"
+      )
+    yield
+      if settings.loops.contains(LoopKind.Plan) && !Planner.isFast then
+        Console.err.println(FlightOptions.slow)
+      settings
+
+  private def flags: Config =
+    def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
+    (Seq(
+      "loops"           -> strings(if asPaper.value && loop.isEmpty then FlightOptions.paperLoops else loop),
+      "links"           -> strings(link),
+      "duration"        -> duration,
+      "period"          -> period,
+      "seed"            -> seed,
+      "scenario"        -> scenario,
+      "policies"        -> strings(policy),
+      "pairs"           -> pairs,
+      "altitude-m"      -> altitude,
+      "predictor"       -> predictor,
+      "moves-in-flight" -> movesInFlight,
+      "deadline"        -> deadline,
+      "fallback"        -> fallback,
+      "as-published"    -> Option.when(asPublished.value)(true)
+    ) ++ TeamScenario.names.flatMap(name =>
+      Seq(s"$name.vehicles" -> vehicles, s"$name.altitude-m" -> altitude)
+    )).foldLeft(ConfigFactory.empty):
+      case (config, (key, Some(value))) =>
+        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
+      case (config, _) => config
+
+object FlightOptions:
+  given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
+
+  private val paperLoops =
+    Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)
+
+  private val slow =
+    "plan: this JVM runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
+
+  private def resolved(config: Config): Either[String, Config] =
+    try Right(config.resolve())
+    catch case mistake: ConfigException => Left(mistake.getMessage)
+
+  private def read(path: String): Either[String, Config] =
+    for
+      file <- HoconFile.read(path).left.map("--config: " + _)
+      _    <- ConfigKeys.unknownInFile(file, "skein.fly").toLeft(())
+    yield file

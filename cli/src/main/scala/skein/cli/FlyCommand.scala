@@ -1,0 +1,205 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import java.time.LocalDateTime
+import java.time.format.DateTimeFormatter
+import mainargs.{Flag, ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.*
+import scala.concurrent.{Future, Promise}
+import skein.flight.{FlightRigs, Landed, LiveFlights, ProgressBoard, VirtualFlights, WarmUp}
+import skein.link.{Address, TcpTransport}
+import skein.loop.Outcome
+import skein.measure.FlightSet
+import skein.record.{ClockKind, RecordError}
+import skein.report.{Report, ReportSections}
+import skein.settings.{FlightPlan, FlySettings}
+import skein.units.Clock
+
+/** Options of `./skein fly`. */
+final case class FlyOptions(
+    flights: FlightOptions,
+    @arg(doc =
+      "HOST:PORT of a simulator that runs already, AirSim for example; without it, each flight has a built-in one"
+    )
+    simulator: Option[String],
+    @arg(doc =
+      "real, or virtual: the same flights in virtual time, many times faster, the same for the same seed"
+    )
+    clock: String = "real",
+    @arg(doc =
+      "how often each live flight is flown again in virtual time, for the report's comparison; 0 for not at all"
+    )
+    twins: Int = 1,
+    @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
+    out: Option[String],
+    @arg(doc = Shown.Doc)
+    json: Flag
+)
+
+object FlyCommand
+    extends OptionsCommand[FlyOptions](
+      "fly",
+      "flies the paper's experiment and writes a report",
+      ParserForClass[FlyOptions]
+    ):
+
+  protected def execute(options: FlyOptions): Either[String, Unit] =
+    for
+      settings  <- options.flights.settings
+      simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
+      _         <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
+      out       <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
+      clock     <- ClockKind.parse(options.clock).left.map("--clock: " + _)
+      flown     <- clock match
+        case ClockKind.Real =>
+          for
+            _     <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
+            _     <- OpenFiles.enoughFor(settings.plans.size)
+            _     <- warmUp(settings)
+            flown <- flyLive(settings, simulator, out)
+          yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
+        case ClockKind.Virtual if simulator.isEmpty =>
+          nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
+        case ClockKind.Virtual =>
+          Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
+      _ <- all(report(flown.landed, out, Shown(options.json.value)), flown.grounded.toLeft(()))
+    yield ()
+
+  /** @param grounded
+    *   why the flights that are not among those that landed were not flown, if any was not
+    */
+  private case class Flown(landed: Vector[Landed], grounded: Option[String]):
+    def and(more: Either[String, Vector[Landed]]): Flown =
+      more.fold(
+        reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
+        twins => copy(landed ++ twins)
+      )
+
+  private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
+    plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
+
+  private def defaultFolder: String =
+    s"flights/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
+
+  private def warmUp(settings: FlySettings): Either[String, Unit] =
+    given system: ActorSystem = ActorSystem("skein-warm-up")
+    try
+      for
+        flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
+        decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), Clock.system))
+      yield Console.err.println(
+        s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
+      )
+    finally
+      val _ = Edge.await(system.terminate())
+
+  private def flyLive(
+      settings: FlySettings,
+      simulator: Option[Address],
+      out: Path
+  ): Either[String, Flown] =
+    given system: ActorSystem = ActorSystem("skein")
+    val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator, tell = tell)
+    try
+      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out).map(Flown(_, None))
+      else flyInTurn(rigs, settings, out)
+    finally
+      val _ = Edge.await(system.terminate())
+
+  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
+  private def flyInTurn(rigs: FlightRigs, settings: FlySettings, out: Path)(using
+      system: ActorSystem
+  ): Either[String, Flown] =
+    val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
+      if before.grounded.isDefined then before
+      else if Edge.isInterrupted then
+        before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
+      else
+        Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
+        flyTogether(rigs, Vector(plan), settings, out) match
+          case Left(reason)  => before.copy(grounded = Some(reason))
+          case Right(landed) => before.copy(landed = before.landed ++ landed)
+    flown.grounded match
+      case Some(reason) if flown.landed.isEmpty => Left(reason)
+      case _                                    => Right(flown)
+
+  private def flyTogether(rigs: FlightRigs, plans: Vector[FlightPlan], settings: FlySettings, out: Path)(using
+      system: ActorSystem
+  ): Either[String, Vector[Landed]] =
+    import system.dispatcher
+    val abandoned = Promise[Either[String, LiveFlights]]()
+    def abandon() = abandoned.trySuccess(Left(s"${plans.head.id}: ended from outside before it began")): Unit
+    Edge
+      .untilInterrupted(() => abandon()):
+        Edge.await(Future.firstCompletedOf(Seq(LiveFlights.start(rigs, plans, out), abandoned.future)))
+      .map: flights =>
+        val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
+        val timer =
+          system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
+        try Edge.untilInterrupted(() => flights.stop())(Edge.await(flights.landed))
+        finally
+          val _ = timer.cancel()
+          board.close()
+
+  /** Virtual twins of the flights that were flown to their end. */
+  private def flyTwins(
+      landed: Vector[Landed],
+      settings: FlySettings,
+      count: Int,
+      out: Path
+  ): Either[String, Vector[Landed]] =
+    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
+    if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
+    else
+      val seeds = twins.map(_.seed)
+      Console.err.println(
+        s"virtual twins of the live flights: ${twins.size}, seeds ${seeds.min} to ${seeds.max}"
+      )
+      VirtualFlights.fly(settings, twins, out)((_, _) => ())
+
+  private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[Landed]] =
+    VirtualFlights.fly(settings, settings.plans, out)((landed, contents) =>
+      Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
+    )
+
+  /** What goes wrong in flight, above the line of progress. */
+  private def tell(line: String): Unit =
+    val isTerminal = System.console() != null && System.console().isTerminal
+    Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)
+
+  /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot be shown or
+    * written, all that went wrong is told.
+    */
+  private def report(landed: Vector[Landed], out: Path, shown: Shown): Either[String, Unit] =
+    val told =
+      Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n")).flatMap: flights =>
+        shown.tables(ReportSections.of(flights), ReportSections.text(flights))
+        val written =
+          Report.write(flights, out).map(output => shown.say(s"Report: ${output.page}"))
+        all(written, undecided(flights))
+    all(allWell(landed), told)
+
+  /** Both mistakes, where there are two. */
+  private def all(one: Either[String, Unit], other: Either[String, Unit]): Either[String, Unit] =
+    val mistakes = one.left.toSeq ++ other.left.toSeq
+    Either.cond(mistakes.isEmpty, (), mistakes.mkString("\n"))
+
+  /** A flight in which no vehicle was ever read for a decision is none, however it ended. */
+  private def undecided(flights: FlightSet): Either[String, Unit] =
+    val idle = flights.all.filter(_.decisions == 0).map(_.flight.id)
+    Either.cond(
+      idle.isEmpty,
+      (),
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightRigs.askTimeout.toMillis.round} ms?"
+    )
+
+  private def allWell(landed: Vector[Landed]): Either[String, Unit] =
+    val failures = landed.flatMap: flight =>
+      val ended = flight.outcome match
+        case Outcome.Failed(reason)              => Some(reason)
+        case Outcome.Completed | Outcome.Stopped => None
+      ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
+        s"${flight.plan.id} failed: $reason"
+      )
+    Either.cond(failures.isEmpty, (), failures.mkString("\n"))

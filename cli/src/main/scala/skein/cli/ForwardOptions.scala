@@ -1,0 +1,74 @@
+package skein.cli
+
+import mainargs.{ParserForClass, arg}
+import skein.policy.{PolicyFamily, Role, Scenario}
+import skein.search.{Conditions, SearchQuestion}
+import skein.settings.PolicyFile
+import skein.units.Span
+
+/** How forward simulation flies, for the commands that do nothing else. */
+final case class ForwardOptions(
+    @arg(doc =
+      "what is judged: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
+        "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' or 'maximise' may stand before it (default: last10s)"
+    )
+    objective: Option[String],
+    @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
+    loop: Option[String],
+    @arg(doc =
+      "what flies: reduced, drag, quadrotor, ideal, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"
+    )
+    plant: Option[String],
+    @arg(doc =
+      "at which all fly, in metres (default: 20); a model holds at the altitude of the flights it was fitted to"
+    )
+    altitude: Option[Double],
+    @arg(doc = "a policy file or the name of a family: whom the policy plays against (default: the paper's)")
+    opponent: Option[String],
+    @arg(doc = "of an episode (default: 60s)")
+    duration: Option[String],
+    @arg(doc = "of every random choice (default: 1)")
+    seed: Option[Long],
+    @arg(doc = "that fly at once; does not change the result (default: one per core)")
+    threads: Option[Int]
+):
+  def isEmpty: Boolean = Seq(objective, loop, plant, altitude, opponent, duration, seed).forall(_.isEmpty)
+
+  def conditions(period: Span): Either[String, Conditions] =
+    for duration <- Span.parse(duration.getOrElse("60s")).left.map("--duration: " + _)
+    yield Conditions(
+      loop.getOrElse("stream"),
+      plant.getOrElse("reduced"),
+      period.toMillis,
+      duration.toNanos / 1e9,
+      altitude.getOrElse(Scenario.DuelAltitudeM)
+    )
+
+  def threadCount: Either[String, Int] =
+    val count = threads.getOrElse(Runtime.getRuntime.availableProcessors)
+    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, came $count")
+
+  /** @param role
+    *   of the policy that is judged
+    */
+  def opponentOf(role: Role): Either[String, PolicyFile] =
+    val wanted = if role == Role.Pursuer then Role.Evader else Role.Pursuer
+    opponent.fold(Right(SearchQuestion.paperOpponent(role)))(ForwardOptions.policy("--opponent", _, wanted))
+
+object ForwardOptions:
+  given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
+
+  /** A policy file, or a family with its defaults. */
+  def policy(option: String, text: String, role: Role): Either[String, PolicyFile] =
+    val read = PolicyFamily.parse(text).toOption match
+      case Some(family) => PolicyFile.roleOf(
+          family,
+          Some(PolicyFile.name(role))
+        ).map(PolicyFile.ofDefaults(_, family))
+      case None => PolicyFile.read(text)
+    read.left
+      .map(mistake => s"$option: $mistake")
+      .filterOrElse(
+        _.role == role,
+        s"$option: expected a policy for the ${PolicyFile.name(role)}, came one for the other role: $text"
+      )

@@ -1,0 +1,205 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import mainargs.{Flag, Leftover, ParserForClass, arg}
+import skein.figures.ResponseFigure
+import skein.identify.*
+import skein.measure.FlownVehicles
+import skein.plot.{Png, Svg}
+import skein.policy.Scenario
+import skein.record.{Recording, RecordingReader}
+import skein.report.{Section, TextTable}
+import skein.settings.{Fit, ModelFile}
+import skein.units.Span
+
+/** Options of `./skein identify`. */
+final case class IdentifyOptions(
+    @arg(doc = "recordings, for example flights/*.duckdb")
+    files: Leftover[String],
+    @arg(doc = "a vehicle to fit to; may be given several times; without it, all")
+    vehicle: Seq[String],
+    @arg(doc = "what the file says to fly by: lag, turn, drag or drag-and-turn; all are fitted")
+    structure: String = Structure.Drag.label,
+    @arg(doc = "how far each reading is predicted for the fit")
+    horizon: String = "2s",
+    @arg(doc =
+      "folder for model.conf, model.svg and model.png; without it, that of the first recording"
+    )
+    out: Option[String],
+    @arg(doc = Shown.Doc)
+    json: Flag
+)
+
+object IdentifyCommand
+    extends OptionsCommand[IdentifyOptions](
+      "identify",
+      "fits a reduced model of the vehicles to recordings, for forward simulation and prediction",
+      ParserForClass[IdentifyOptions]
+    ):
+
+  /** More panels than this make no picture. */
+  private val MostPanels = 16
+
+  protected def execute(options: IdentifyOptions): Either[String, Unit] =
+    for
+      files <- Either.cond(
+        options.files.value.nonEmpty,
+        options.files.value.toVector,
+        "expected recordings, came none: ./skein identify FILE…"
+      )
+      out <-
+        OutFolder.made("--out", options.out.getOrElse(Path.of(files.head).toAbsolutePath.getParent.toString))
+      use     <- Structure.parse(options.structure).left.map("--structure: " + _)
+      horizon <- Span.parse(options.horizon).left.map("--horizon: " + _)
+      _       <- Either.cond(
+        horizon.toSeconds >= 0.2,
+        (),
+        s"--horizon: expected 200ms or more, came ${options.horizon}"
+      )
+      recordings <- read(files)
+      flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
+      fits       <- fit(flights, horizon.toSeconds)
+      shown    = Shown(options.json.value)
+      sections = tables(fits, flights)
+      _        = shown.say(clocks(recordings))
+      _        = shown.tables(sections, Section.text(sections))
+      from     = ModelFile.Provenance(
+        files.zip(recordings).map(described),
+        flights.map(_.name),
+        horizon.toSeconds,
+        version(recordings),
+        altitude(flights)
+      )
+      paths <- write(
+        out,
+        ModelFile.render(use, fits, from),
+        fits.find(_.identification.structure == use).get,
+        flights
+      )
+    yield shown.say(
+      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --predictor ${out.resolve("model.conf")}${elsewhere(flights)}"
+    )
+
+  private def read(files: Vector[String]): Either[String, Vector[Recording]] =
+    files.foldLeft[Either[String, Vector[Recording]]](Right(Vector.empty)): (soFar, file) =>
+      for
+        before    <- soFar
+        recording <- RecordingReader.read(Path.of(file)).left.map(_.message)
+      yield before :+ recording
+
+  private def chosen(flights: Vector[Flown], vehicles: Seq[String]): Either[String, Vector[Flown]] =
+    val wanted = if vehicles.isEmpty then flights
+    else flights.filter(flown => vehicles.exists(name => flown.name.endsWith(s", $name")))
+    Either.cond(
+      wanted.nonEmpty,
+      wanted,
+      if flights.isEmpty then "expected recordings with commands to vehicles, came none"
+      else
+        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, came ${vehicles.mkString(", ")}"
+    )
+
+  private def fit(flights: Vector[Flown], horizonS: Double): Either[String, Vector[Fit]] =
+    val reflown = flights.map(HorizonErrors.reflown(_))
+    Structure.values.toVector.foldLeft[Either[String, Vector[Fit]]](Right(Vector.empty)):
+      (soFar, structure) =>
+        for
+          before <- soFar
+          found  <- Identification.of(flights, structure, horizonS)
+        yield
+          Console.err.println(s"fitted ${structure.label}: ${before.size + 1} of ${Structure.values.length}")
+          before :+ Fit(found, HorizonErrors.of(found.model, reflown), HorizonErrors.of(found.model, flights))
+
+  private def described(file: String, recording: Recording): String =
+    val flight = recording.flight
+    s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator}"
+
+  /** Flights in virtual time fly the built-in simulator only: not what a fit to another one should be mixed with. */
+  private def clocks(recordings: Vector[Recording]): String =
+    val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)
+    byClock.map((clock, flown) => s"${flown.size} on the $clock clock").mkString("recordings: ", ", ", "")
+
+  private def altitude(flights: Vector[Flown]): Option[Double] =
+    val all = flights.map(-_.downM)
+    Option.when(all.max - all.min < 0.5)(all.sum / all.size)
+
+  /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
+  private def elsewhere(flights: Vector[Flown]): String =
+    altitude(flights).filter(_ != Scenario.DuelAltitudeM).fold("")(metres =>
+      s" --altitude ${(metres * 10).round / 10.0}"
+    )
+
+  private def version(recordings: Vector[Recording]): String =
+    recordings.map(_.flight.version).distinct.mkString(", ")
+
+  private def tables(fits: Vector[Fit], flights: Vector[Flown]): Vector[Section] =
+    val names      = Structure.DragAndTurn.parameters
+    val parameters = fits.map: fit =>
+      val found = fit.identification
+      found.structure.label +: names.map(name => found.parameters.find(_.name == name).fold("")(interval)) ++:
+        Vector(f"${found.velocityRmsMps}%.4f", f"${found.positionRmsM}%.4f")
+    val seconds = flights.map(flown => flown.sights.last.atS - flown.sights.head.atS).sum
+    val first   = fits.head.identification
+    Vector(
+      Section(
+        f"${flights.size} flights of one vehicle, $seconds%.0f s, ${first.predictions} predicted readings; ± is the 95 %% interval over ${first.blocks} blocks",
+        table = Some(TextTable(("<structure" +: names) ++ Vector("rms m/s", "rms m"), parameters))
+      ),
+      Section(
+        "Off the full quadrotor under the same commands, half and 95 % of the predictions at most",
+        table = Some(horizons(fits, _.againstQuadrotor))
+      ),
+      Section("Off the readings", table = Some(horizons(fits, _.againstReadings)))
+    )
+
+  private def interval(fitted: Fitted): String =
+    val half = f"${fitted.value}%.4f ± ${(fitted.most - fitted.least) / 2}%.4f"
+    if fitted.atBound then s"$half (bound)" else half
+
+  private def horizons(fits: Vector[Fit], errors: Fit => Vector[HorizonError]): TextTable =
+    val cells = Vector(
+      "<structure",
+      "horizon s",
+      "predictions",
+      "position p50 m",
+      "p95 m",
+      "velocity p50 m/s",
+      "p95 m/s"
+    )
+    val rows =
+      for
+        fit   <- fits
+        error <- errors(fit)
+      yield Vector(
+        fit.identification.structure.label,
+        f"${error.horizonS}%.0f",
+        error.predictions.toString,
+        f"${error.positionP50M}%.3f",
+        f"${error.positionP95M}%.3f",
+        f"${error.velocityP50Mps}%.3f",
+        f"${error.velocityP95Mps}%.3f"
+      )
+    TextTable(cells, rows)
+
+  /** The files written. */
+  private def write(
+      out: Path,
+      model: String,
+      fit: Fit,
+      flights: Vector[Flown]
+  ): Either[String, Vector[Path]] =
+    val drawing                   = ResponseFigure(fit.identification.model, flights.take(MostPanels))
+    val description               = "Measured and modelled velocity over time, and residuals"
+    def beside(extension: String) = out.resolve(s"model.$extension")
+    try
+      Files.writeString(beside("conf"), model): Unit
+      Files.writeString(beside("svg"), Svg.file(drawing, description)): Unit
+      val image = Png.bytes(drawing, scale = 2) match
+        case Left(reason) =>
+          Console.err.println(s"skein identify: no PNG: $reason")
+          Vector.empty
+        case Right(bytes) =>
+          Files.write(beside("png"), bytes): Unit
+          Vector(beside("png"))
+      Right(Vector(beside("conf"), beside("svg")) ++ image)
+    catch case error: IOException => Left(s"cannot write into $out: ${error.getMessage}")

@@ -1,0 +1,135 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import mainargs.{Flag, ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.Sink
+import scala.concurrent.Future
+import scala.util.{Failure, Success, Try}
+import skein.airsim.AirSimClient
+import skein.figures.LatencyFigure
+import skein.link.*
+import skein.measure.{Distribution, Numbers}
+import skein.plot.{Drawing, Png, Svg}
+import skein.report.{Section, TextHistogram, TextTable}
+import skein.rpc.RpcClient
+import skein.signal.LatencyProfile
+import skein.units.{Clock, Span}
+
+/** Options of `./skein latency`. */
+final case class LatencyOptions(
+    @arg(doc = "HOST:PORT of the simulator")
+    simulator: String = "127.0.0.1:41451",
+    @arg(doc = "an emulated link to put between: direct, vpn, constant:200ms, …; without it, none")
+    link: String = "none",
+    @arg(doc = "pings to send")
+    samples: Int = 200,
+    @arg(doc = "from one ping to the next, whether or not it was answered")
+    period: String = "100ms",
+    @arg(doc = "of the emulated link's random choices")
+    seed: Long = 1,
+    @arg(doc = "folder for latency.svg and latency.png")
+    out: String = "latency",
+    @arg(doc = Shown.Doc)
+    json: Flag
+)
+
+object LatencyCommand
+    extends OptionsCommand[LatencyOptions](
+      "latency",
+      "measures round trips to a simulator and draws their histogram, the paper's Figure 3",
+      ParserForClass[LatencyOptions]
+    ):
+  private val probabilities = Vector(0, 1, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99, 100)
+
+  protected def execute(options: LatencyOptions): Either[String, Unit] =
+    for
+      simulator <- Arguments.address(options.simulator).left.map("--simulator: " + _)
+      profile   <- Arguments.latency(options.link).left.map("--link: " + _)
+      period    <- Span.parse(options.period).left.map("--period: " + _)
+      _ <- Either.cond(period > Span.Zero, (), s"--period: expected more than 0, came ${options.period}")
+      _ <- Either.cond(options.samples > 0, (), s"--samples: expected more than 0, came ${options.samples}")
+      folder <- OutFolder.made("--out", options.out)
+      link = EmulatedLink(LinkProfile.symmetric(profile), options.seed, Clock.system)
+      answers <- measure(simulator, link, period, options.samples)
+      failures   = answers.collect { case Failure(reason) => reason.getMessage }
+      roundTrips = answers.collect { case Success(roundTrip) => roundTrip.toMillis }
+      samples <- Distribution.of(roundTrips).toRight(s"no ping was answered: ${failures.mkString("; ")}")
+      drawing <- LatencyFigure(Seq(profile.name -> samples)).toRight("nothing to draw")
+      files   <- write(drawing, s"Round trips to $simulator", folder)
+    yield
+      val shown = Shown(options.json.value)
+      val table = quantileTable(profile, samples)
+      shown.tables(Seq(Section("Round trips", table = Some(table))), text(table, samples, failures))
+      shown.say(s"\npictures: ${files.mkString(", ")}")
+
+  private def measure(
+      simulator: Address,
+      link: EmulatedLink,
+      period: Span,
+      samples: Int
+  ): Either[String, Seq[Try[Span]]] =
+    given system: ActorSystem = ActorSystem("skein")
+    import system.dispatcher
+    val transport           = TcpTransport()
+    def client(at: Address) = AirSimClient(RpcClient(transport, at, Clock.system))
+    def pings(at: Address)  =
+      val pinged = client(at)
+      def ping() = pinged.ping().map(_.fold(error => throw NoAnswer(error.message), identity))
+      def measured(every: Span, count: Int) =
+        LatencyProbe.roundTrips(() => ping(), every, count, Clock.system).runWith(Sink.seq)
+      for
+        // Connects, and lets the just-in-time compiler do its work: these do not count.
+        _ <- measured(Span.ofMillis(5), count = 200)
+        _ = Console.err.println(f"$samples pings, one each ${period.toMillis}%.0f ms")
+        answers <- measured(period, samples)
+      yield Right(answers)
+    val answers = client(simulator).ping().flatMap:
+      case Left(error)                                  => Future.successful(Left(error.message))
+      case Right(_) if link.profile == LinkProfile.none => pings(simulator)
+      case Right(_)                                     =>
+        LinkProxy.start(Address("127.0.0.1", 0), simulator, link, transport).flatMap(proxy =>
+          pings(proxy.address)
+        )
+    try Edge.await(answers)
+    finally Edge.await(system.terminate()): Unit
+
+  private final class NoAnswer(reason: String) extends RuntimeException(reason)
+
+  /** Measured, and beside it what the link's profile gives. */
+  private def quantileTable(profile: LatencyProfile, samples: Distribution): TextTable =
+    val measured = "measured, ms" +: quantiles(samples.quantile)
+    val expected = Option(profile).collect:
+      case LatencyProfile.Steady(name, roundTrip) if name != LatencyProfile.none.name =>
+        s"$name, ms" +: quantiles(roundTrip.quantile(_).toMillis)
+    TextTable("<quantile, %" +: probabilities.map(_.toString), measured +: expected.toVector)
+
+  private def text(table: TextTable, samples: Distribution, failures: Seq[String]): String =
+    val lines = Vector(
+      s"${samples.count} round trips: mean ${fixed(samples.mean)} ms, standard deviation ${fixed(samples.sd)} ms",
+      "",
+      table.render
+    ) ++ Option.when(table.rows.size > 1)(
+      "Each direction takes half of a round trip of the profile, drawn independently: the sums spread less than it does."
+    ) ++ Vector("", TextHistogram(samples, "ms")) ++
+      failures.headOption.map(first => s"\n${failures.size} pings failed, the first: $first")
+    lines.mkString("\n")
+
+  private def quantiles(at: Double => Double): Vector[String] = probabilities.map(p => fixed(at(p / 100.0)))
+
+  private def fixed(ms: Double): String = Numbers.fixed(ms, if ms < 10 then 2 else 1)
+
+  /** The files written. */
+  private def write(drawing: Drawing, description: String, folder: Path): Either[String, Seq[Path]] =
+    val (svg, png) = (folder.resolve("latency.svg"), folder.resolve("latency.png"))
+    try
+      Files.writeString(svg, Svg.file(drawing, description)): Unit
+      Png.bytes(drawing) match
+        case Left(reason) =>
+          Console.err.println(s"skein latency: no PNG: $reason")
+          Right(Seq(svg))
+        case Right(bytes) =>
+          Files.write(png, bytes): Unit
+          Right(Seq(svg, png))
+    catch case error: IOException => Left(s"cannot write the pictures: $error")

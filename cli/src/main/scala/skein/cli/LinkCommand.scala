@@ -1,0 +1,92 @@
+package skein.cli
+
+import java.util.concurrent.CountDownLatch
+import mainargs.{ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import skein.link.*
+import skein.units.{Clock, Span}
+
+/** Options of `./skein link`. */
+final case class LinkOptions(
+    @arg(doc = "HOST:PORT that clients connect to; 0.0.0.0 opens it to other machines")
+    listen: String,
+    @arg(doc = "HOST:PORT of the server behind the link")
+    to: String,
+    @arg(doc =
+      "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
+        "lognormal:36ms,0.3 or file:PATH; times are round trips"
+    )
+    profile: String = "direct",
+    @arg(name = "to-server", doc = "latency towards the server, where it differs")
+    toServer: Option[String],
+    @arg(name = "to-client", doc = "latency towards the client, where it differs")
+    toClient: Option[String],
+    @arg(name = "stall-every", doc = "mean time between stalls, in which nothing arrives, for example 30s")
+    stallEvery: Option[String],
+    @arg(name = "stall-lasts", doc = "mean length of a stall")
+    stallLasts: String = "1s",
+    @arg(name = "reset-every", doc = "mean time between resets of all connections, for example 5min")
+    resetEvery: Option[String],
+    @arg(doc = "bytes per second in each direction of each connection; without it, unlimited")
+    bandwidth: Option[Double],
+    @arg(doc = "of every random choice")
+    seed: Long = 1
+)
+
+object LinkCommand
+    extends OptionsCommand[LinkOptions](
+      "link",
+      "puts an emulated network between any client and any server",
+      ParserForClass[LinkOptions]
+    ):
+
+  protected def execute(options: LinkOptions): Either[String, Unit] =
+    for
+      listenAt <- Arguments.address(options.listen).left.map("--listen: " + _)
+      to       <- Arguments.address(options.to).left.map("--to: " + _)
+      profile  <- profileOf(options)
+      _        <- serve(listenAt, to, profile, options.seed)
+    yield ()
+
+  private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
+    for
+      toServer   <- Arguments.latency(options.toServer.getOrElse(options.profile))
+      toClient   <- Arguments.latency(options.toClient.getOrElse(options.profile))
+      stallEvery <- every(options.stallEvery).left.map("--stall-every: " + _)
+      stallLasts <- Span.parse(options.stallLasts).left.map("--stall-lasts: " + _)
+      resetEvery <- every(options.resetEvery).left.map("--reset-every: " + _)
+      bandwidth  <- options.bandwidth match
+        case Some(rate) if !(rate > 0) =>
+          Left(s"--bandwidth: expected more than 0 bytes per second, came $rate")
+        case other => Right(other)
+      faults = Faults(stallEvery = stallEvery, stallLasts = stallLasts, resetEvery = resetEvery)
+    yield LinkProfile(toServer, toClient, faults, bandwidth)
+
+  private def every(text: Option[String]): Either[String, Option[Span]] = text match
+    case None       => Right(None)
+    case Some(text) =>
+      Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, came '$text'").map(Some(_))
+
+  private def serve(listenAt: Address, to: Address, profile: LinkProfile, seed: Long): Either[String, Unit] =
+    given system: ActorSystem   = ActorSystem("skein")
+    def warn(reason: Throwable) = Console.err.println(s"skein link: ${reason.getMessage}")
+    try
+      val link  = EmulatedLink(profile, seed, Clock.system)
+      val proxy = Edge.await(LinkProxy.start(listenAt, to, link, TcpTransport(), unreachable = warn))
+      Console.out.println(s"${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it")
+      val stopped = CountDownLatch(1)
+      Edge.untilInterrupted(() => stopped.countDown()):
+        stopped.await()
+        Edge.await(proxy.close()): Unit
+        Console.out.println(summary(proxy.counts))
+      Right(())
+    catch case error: TransportError => Left(error.getMessage)
+    finally Edge.await(system.terminate()): Unit
+
+  private def described(profile: LinkProfile): String =
+    if profile.toServer == profile.toClient then s"${profile.toServer.name} in both directions"
+    else s"${profile.toServer.name} to the server, ${profile.toClient.name} to the client"
+
+  private def summary(counts: LinkCounts): String =
+    s"${counts.connections} connections, ${counts.bytesToServer} bytes to the server, ${counts.bytesToClient} bytes " +
+      s"to the client, ${counts.bytesLost} bytes lost, ${counts.stalls} stalls, ${counts.disconnects} disconnects"

@@ -1,0 +1,49 @@
+package skein.cli
+
+import mainargs.{ArgSig, Result, TokensReader, Util}
+
+/** What is wrong with the words of a command line, a line for each mistake. */
+private object Misuse:
+
+  /** @param options
+    *   of the command, with their dashes
+    */
+  def text(failure: Result.Failure, options: Seq[String]): String = failure match
+    case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>
+      // mainargs takes all that stands behind an unknown word for unknown, too.
+      val all = missing.map(option => s"${name(option)}: expected, but not given") ++
+        unknown.take(1).map(noSuch(_, options)) ++
+        duplicate.map((option, words) =>
+          s"${name(option)}: expected once, came ${words.mkString(" and ")}"
+        ) ++
+        incomplete.map(option => s"${name(option)}: expected a value behind it")
+      all.mkString("\n")
+    case Result.Failure.InvalidArguments(mistakes) => mistakes
+        .map:
+          case Result.ParamError.Failed(option, words, _)       => expected(option, words)
+          case Result.ParamError.Exception(option, words, _)    => expected(option, words)
+          case Result.ParamError.DefaultFailed(option, mistake) => s"${name(option)}: $mistake"
+        .mkString("\n")
+    case other => other.toString
+
+  private def noSuch(word: String, options: Seq[String]): String =
+    val option = word.takeWhile(_ != '=')
+    renamed.get(option).flatMap(_.find(options.contains)) match
+      case Some(now) => s"$option: no such option any more; it is $now now"
+      case None      => s"$word: no such option or argument"
+
+  /** `--model` was what predicts in flights, and what flies in forward simulation. */
+  private val renamed = Map("--model" -> Seq("--predictor", "--plant"))
+
+  private def expected(option: ArgSig, words: Seq[String]): String =
+    val kind = option.reader match
+      case simple: TokensReader.ShortNamed[?] => simple.shortName
+      case _                                  => "value"
+    val wanted = kind match
+      case "int" | "long"     => "a whole number that is not too large"
+      case "float" | "double" => "a number"
+      case other              => s"a $other"
+    s"${name(option)}: expected $wanted, came ${words.mkString("'", "' '", "'")}"
+
+  private def name(option: ArgSig): String =
+    option.longName(Util.kebabCaseNameMapper).fold("the argument")(long => s"--$long")

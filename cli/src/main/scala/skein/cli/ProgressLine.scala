@@ -1,0 +1,53 @@
+package skein.cli
+
+import java.io.PrintStream
+
+/** One line that tells how far long work is, and how long it will take: rewritten on a terminal, else a new one every
+  * 5 s.
+  *
+  * @param total
+  *   of the work
+  * @param from
+  *   what was done before this run
+  */
+private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long = 0):
+  private val isTerminal = System.console() != null && System.console().isTerminal
+  private val startedAt  = System.nanoTime()
+  private val every      = if isTerminal then 200_000_000L else 5_000_000_000L
+  private var shownAt    = startedAt
+  private var width      = 0
+
+  /** @param text
+    *   what else is to be said now
+    */
+  def show(done: Long, text: => String): Unit =
+    val now = System.nanoTime()
+    if now - shownAt >= every then
+      shownAt = now
+      val share = 100.0 * done / total.max(1)
+      val whole = f"$share%3.0f %%  ${left(now, done)}%-12s $text"
+      if isTerminal then
+        val line = ProgressLine.cut(whole, Terminal.width)
+        out.print("\r" + line.padTo(width, ' '))
+        out.flush()
+        width = line.length
+      else out.println(whole)
+
+  /** Leaves the line. */
+  def end(): Unit = if isTerminal && width > 0 then out.print("\r" + " " * width + "\r")
+
+  private def left(now: Long, done: Long): String =
+    // The first part runs while the just-in-time compiler still works and tells nothing.
+    if done - from < total / 200 then ""
+    else
+      val seconds = (now - startedAt) * 1e-9 * (total - done).max(0) / (done - from)
+      if seconds < 100 then f"$seconds%.0f s left"
+      else if seconds < 6000 then f"${seconds / 60}%.0f min left"
+      else f"${seconds / 3600}%.1f h left"
+
+private[cli] object ProgressLine:
+
+  /** What fits into one line of a terminal. The last place stays free: some terminals wrap as soon as it is written. */
+  def cut(line: String, width: Option[Int]): String = width match
+    case Some(columns) if line.length >= columns => (line.take((columns - 2).max(0)) + "…").take(columns - 1)
+    case _                                       => line

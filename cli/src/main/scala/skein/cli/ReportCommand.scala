@@ -1,0 +1,35 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{Flag, Leftover, ParserForClass, arg}
+import skein.report.{Report, ReportSections}
+
+/** Options of `./skein report`. */
+final case class ReportOptions(
+    @arg(doc = "recordings, for example flights/*.duckdb")
+    files: Leftover[String],
+    @arg(doc = "folder for the report; without it, the folder of the first recording")
+    out: Option[String],
+    @arg(doc = Shown.Doc)
+    json: Flag
+)
+
+object ReportCommand
+    extends OptionsCommand[ReportOptions](
+      "report",
+      "rebuilds tables and pictures from recordings alone",
+      ParserForClass[ReportOptions]
+    ):
+
+  protected def execute(options: ReportOptions): Either[String, Unit] =
+    val files = options.files.value.map(Path.of(_))
+    for
+      first  <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
+      out    <- OutFolder.made("--out", options.out.getOrElse(first.toAbsolutePath.getParent.toString))
+      set    <- Report.read(files).left.map(_.map(_.message).mkString("\n"))
+      output <- Report.write(set, out)
+    yield
+      val shown = Shown(options.json.value)
+      shown.tables(ReportSections.of(set), ReportSections.text(set))
+      output.withoutPng.foreach(reason => shown.say(s"\nno PNG files: $reason"))
+      shown.say(s"\nreport in ${output.page}")

@@ -1,0 +1,216 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import java.time.LocalDateTime
+import java.time.format.DateTimeFormatter
+import mainargs.{ParserForClass, arg}
+import skein.lanes.DuelBatch
+import skein.optimise.{CmaEs, SearchState}
+import skein.plot.{Png, Svg}
+import skein.policy.PolicyFamily
+import skein.search.*
+import skein.settings.PolicyFile
+import skein.units.Span
+
+/** Options of `./skein search`. */
+final case class SearchOptions(
+    @arg(doc = "of the policies to choose from (default: paper-pursuer)")
+    family: Option[String],
+    @arg(doc = "pursuer or evader, for families that suit both")
+    role: Option[String],
+    @arg(doc = "grid, random, cross-entropy, cma-es or racing (default: cma-es)")
+    method: Option[String],
+    @arg(doc = "the latency profile: none, direct, vpn, constant:200ms, … (default: vpn)")
+    link: Option[String],
+    @arg(doc = "between decisions for one vehicle (default: 100ms)")
+    period: Option[String],
+    @arg(doc = "to try in all (default: 1000)")
+    candidates: Option[Int],
+    @arg(doc = "that each candidate flies; when racing, in the first round (default: 20)")
+    episodes: Option[Int],
+    @arg(doc = "of a generation of cma-es and cross-entropy (default: 40, or more for many parameters)")
+    population: Option[Int],
+    @arg(doc =
+      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more)"
+    )
+    fresh: Option[Int],
+    forward: ForwardOptions,
+    @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
+    out: Option[String],
+    @arg(doc = "a folder whose search was stopped: goes on with it, and ends as if it had not been stopped")
+    resume: Option[String]
+)
+
+object SearchCommand
+    extends OptionsCommand[SearchOptions](
+      "search",
+      "looks for the best of many policies by forward simulation under a loop's real timing",
+      ParserForClass[SearchOptions]
+    ):
+
+  protected def execute(options: SearchOptions): Either[String, Unit] =
+    for
+      threads <- options.forward.threadCount
+      begun   <- options.resume.fold(begin(options))(resume(options, _))
+      (folder, question, state) = begun
+      setup <- question.setup
+      _     <- run(setup, folder, state.getOrElse(setup.search.start), threads)
+    yield ()
+
+  private type Begun = (Path, SearchQuestion, Option[SearchState])
+
+  private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
+    import options.*
+    val others = Seq(family, role, method, link, period, candidates, episodes, population, fresh, out)
+    for
+      _ <- Either.cond(
+        others.forall(_.isEmpty) && forward.isEmpty,
+        (),
+        "--resume: everything but --threads is taken from the folder; expected no other option"
+      )
+      file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
+    yield (Path.of(folder), file.question, Some(file.state))
+
+  private def begin(options: SearchOptions): Either[String, Begun] =
+    import options.forward
+    val folder = Path.of(options.out.getOrElse(
+      s"searches/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
+    ))
+    for
+      family     <- PolicyFamily.parse(options.family.getOrElse("paper-pursuer")).left.map("--family: " + _)
+      role       <- PolicyFile.roleOf(family, options.role).left.map("--role: " + _)
+      period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
+      conditions <- forward.conditions(period)
+      opponent   <- forward.opponentOf(role)
+      candidates = options.candidates.getOrElse(1000)
+      question   = SearchQuestion(
+        family.name,
+        PolicyFile.name(role),
+        forward.objective.getOrElse("last10s"),
+        options.method.getOrElse("cma-es"),
+        conditions,
+        options.link.getOrElse("vpn"),
+        opponent.text,
+        candidates,
+        options.episodes.getOrElse(20),
+        options.population.getOrElse(
+          CmaEs.defaultPopulation(family.space.dimension).max(40).min(candidates.max(4))
+        ),
+        forward.seed.getOrElse(1),
+        options.fresh
+      )
+      _ <- question.setup
+      _ <- Either.cond(
+        !Files.exists(folder.resolve(SearchFile.Name)),
+        (),
+        s"--out: $folder holds a search already; --resume $folder goes on with it"
+      )
+      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
+    yield (folder, question, None)
+
+  private def run(
+      setup: SearchSetup,
+      folder: Path,
+      from: SearchState,
+      threads: Int
+  ): Either[String, Unit] =
+    val batch = setup.batch(threads)
+    say(introduction(setup, batch))
+    @volatile var stopped = false
+    Edge.untilInterrupted(() => stopped = true):
+      val startedAt = System.nanoTime()
+      val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
+      val searched  = SearchRun(setup, setup.evaluator(batch), folder, () => System.nanoTime())
+        .run(from, () => stopped)(state => line.show(state.flown, progress(setup, state)))
+      line.end()
+      searched.flatMap: state =>
+        val seconds = (System.nanoTime() - startedAt) * 1e-9
+        val flown   = state.flown - from.flown
+        say(
+          f"$flown%,d episodes of ${setup.conditions.duration}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
+        )
+        if state.best.isEmpty then Right(goOn(folder))
+        else conclude(setup, batch, folder, state).map(_ => if !state.isDone then goOn(folder))
+
+  private def goOn(folder: Path): Unit =
+    say(s"stopped; ./skein search --resume $folder goes on")
+
+  private def introduction(setup: SearchSetup, batch: DuelBatch): String =
+    import setup.{family, objective, opponent, question}
+    val axes =
+      family.space.axes.take(4).map(axis => s"${axis.name} ${axis.least} … ${axis.most}").mkString(", ") +
+        (if family.space.dimension > 4 then s" and ${family.space.dimension - 4} more" else "")
+    s"""${objective.text}: ${question.role} ${family.name} ($axes) against ${opponent.label}
+       |loop ${question.conditions.loop} every ${brief(
+        question.conditions.periodMs
+      )} ms over ${question.link}; ${setup.conditions.vehicle.description}
+       |${question.method}, about ${setup.search.expected} episodes; engine: ${setup.engine(
+        batch
+      )}""".stripMargin
+
+  private def progress(setup: SearchSetup, state: SearchState): String =
+    state.best.fold("no candidate measured yet"): best =>
+      s"best ${brief(best.tally.mean)} ${setup.objective.unit} with ${PolicyFile(setup.role, setup.family, best.candidate).label}"
+
+  /** Measures the winner on fresh episodes and writes policy and pictures. */
+  private def conclude(
+      setup: SearchSetup,
+      batch: DuelBatch,
+      folder: Path,
+      state: SearchState
+  ): Either[String, Unit] =
+    val effort = Effort.of(setup, batch)
+    // Somebody who stops a search does not wait for long.
+    val most   = if state.isDone then Int.MaxValue else effort.freshEpisodes
+    val fresh  = setup.question.fresh.getOrElse(effort.freshEpisodes).min(most)
+    val result = SearchResult.measured(setup, batch, state, fresh)
+    for
+      _ <- write(folder.resolve("policy.conf"), result.file.getBytes("UTF-8"))
+      _ = say(result.summary)
+      pictures <-
+        if state.isDone then landscape(setup, batch, folder, result, effort) else Right(Vector.empty)
+    yield say(s"written: ${(folder.resolve("policy.conf") +: pictures).mkString(", ")}")
+
+  private def landscape(
+      setup: SearchSetup,
+      batch: DuelBatch,
+      folder: Path,
+      result: SearchResult,
+      effort: Effort
+  ): Either[String, Vector[Path]] =
+    say("drawing the landscape")
+    val land = Landscape.of(
+      setup.family.space,
+      result.policy.parameters,
+      setup.evaluator(batch),
+      SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
+      onMap = effort.onMap
+    )
+    val title =
+      s"${setup.family.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
+    val unit    = setup.objective.unit
+    val drawing =
+      LandscapeFigure(land, title, setup.objective.formula + (if unit.isEmpty then "" else s", $unit"))
+    val svg = folder.resolve("landscape.svg")
+    val csv = folder.resolve("landscape.csv")
+    val png = folder.resolve("landscape.png")
+    for
+      _ <- write(svg, Svg.file(drawing, title).getBytes("UTF-8"))
+      _ <- write(csv, land.csv.getBytes("UTF-8"))
+      painted = Png.bytes(drawing)
+      _ <- painted.fold(reason => Right(say(s"no PNG: $reason")), bytes => write(png, bytes))
+    yield Vector(svg, csv) ++ painted.toOption.map(_ => png)
+
+  private def write(file: Path, bytes: Array[Byte]): Either[String, Unit] =
+    try
+      val _ = Files.write(file, bytes)
+      Right(())
+    catch case failed: IOException => Left(s"cannot write $file: $failed")
+
+  private def brief(value: Double): String = PolicyFile.brief(value)
+
+  private def say(text: String): Unit =
+    Console.out.println(text.linesIterator.map(_.stripTrailing).mkString("\n"))
+
+  extension (conditions: Conditions.Resolved) private def duration: Double = conditions.duel.durationS

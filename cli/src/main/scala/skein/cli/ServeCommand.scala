@@ -1,0 +1,96 @@
+package skein.cli
+
+import mainargs.{ParserForClass, arg}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.DurationInt
+import scala.concurrent.{ExecutionContext, Promise}
+import skein.airsim.WorldSettings
+import skein.link.{TcpTransport, TransportError}
+import skein.settings.TextFile
+import skein.simulator.{Overload, SimulatorServer, SimulatorSettings}
+import skein.units.Clock
+
+/** Options of `./skein serve`. */
+final case class ServeOptions(
+    @arg(doc = "HOST:PORT to listen on; 0.0.0.0 opens it to other machines")
+    listen: String = "127.0.0.1:41451",
+    @arg(doc = "an AirSim settings.json with the vehicles; without it, one named SimpleFlight")
+    settings: Option[String],
+    @arg(doc =
+      "workers of the server, each held by a move until it ends, as AirSim's are: a number, vehicles+4, or unlimited"
+    )
+    workers: String = "vehicles+4",
+    @arg(doc = "speed of the simulator's clock against the machine's")
+    speed: Double = 1.0
+)
+
+object ServeCommand
+    extends OptionsCommand[ServeOptions](
+      "serve",
+      "runs the built-in simulator, which speaks AirSim's wire",
+      ParserForClass[ServeOptions]
+    ):
+
+  /** No machine flies faster. */
+  private val MostSpeed = 1000.0
+
+  protected def execute(options: ServeOptions): Either[String, Unit] =
+    for
+      address  <- Arguments.address(options.listen)
+      overload <- overloadOf(options.workers)
+      _        <- Either.cond(
+        options.speed > 0 && options.speed <= MostSpeed,
+        (),
+        s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
+      )
+      world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
+      _     <- serve(SimulatorSettings(world, address, overload, options.speed))
+    yield ()
+
+  private def overloadOf(text: String): Either[String, Overload] = text match
+    case "vehicles+4" => Right(Overload.AirSim)
+    case "unlimited"  => Right(Overload.Never)
+    case number       =>
+      number.toIntOption
+        .filter(_ > 0)
+        .map(Overload.Workers(_))
+        .toRight(s"--workers: expected a number, vehicles+4 or unlimited, came '$number'")
+
+  private def worldOf(file: String): Either[String, WorldSettings] =
+    for
+      text      <- TextFile.read(file)
+      world     <- WorldSettings.parse(text).left.map(error => s"$file: ${error.message}")
+      supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
+    yield supported
+
+  private def serve(settings: SimulatorSettings): Either[String, Unit] =
+    given system: ActorSystem = ActorSystem("skein")
+    try
+      val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
+      val vehicles = settings.world.vehicles.map(_.name).mkString(", ")
+      Console.out.println(s"serving $vehicles at ${server.address}; Ctrl-C ends it")
+      val ended = Promise[Either[String, Unit]]()
+      server.failed.foreach(failure =>
+        ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))
+      )(using ExecutionContext.parasitic)
+      val telling =
+        system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
+          system.dispatcher
+        )
+      val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
+      telling.cancel()
+      Edge.await(server.close())
+      outcome
+    catch case error: TransportError => Left(error.getMessage)
+    finally Edge.await(system.terminate()): Unit
+
+  private val NewsEvery = 10.seconds
+
+  /** Says what clients were refused whenever there is more of it. */
+  private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:
+    private var told = Option.empty[String]
+    def run(): Unit  =
+      val news = ServerNews.line(server.stats, settings.limits)
+      if news != told then
+        told = news
+        news.foreach(Console.out.println)

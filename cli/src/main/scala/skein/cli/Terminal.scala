@@ -1,0 +1,80 @@
+package skein.cli
+
+import java.io.{FileDescriptor, FileOutputStream, OutputStream, PrintStream}
+import java.nio.charset.{Charset, StandardCharsets}
+import org.jline.terminal.TerminalBuilder
+import scala.util.{Try, Using}
+
+/** Where commands say what they have to say. */
+private[cli] object Terminal:
+
+  /** What is printed in the place of what a terminal without it cannot show. */
+  private val plain: Map[Char, String] = Map(
+    '─' -> "-",
+    '│' -> "|",
+    '█' -> "#",
+    '▌' -> "#",
+    '…' -> "...",
+    '—' -> "-",
+    '–' -> "-",
+    '−' -> "-",
+    '±' -> "+/-",
+    '×' -> "x",
+    '·' -> ".",
+    '°' -> " deg",
+    'µ' -> "u",
+    '≤' -> "<=",
+    '≥' -> ">=",
+    '²' -> "^2",
+    '“' -> "\"",
+    '”' -> "\"",
+    '’' -> "'"
+  )
+
+  /** Columns of the terminal that is printed to; absent where there is none, or it does not say. */
+  def width: Option[Int] =
+    Option(System.console())
+      .filter(_.isTerminal)
+      .flatMap(_ => Try(Using.resource(TerminalBuilder.builder().dumb(true).build())(_.getWidth)).toOption)
+      .filter(_ > 0)
+
+  /** Makes both outputs readable on terminals that know other letters than ours, ASCII alone for example. To be called
+    * before anything is printed.
+    */
+  def adapt(): Unit =
+    if !knows(System.out.charset) then System.setOut(stream(FileDescriptor.out, System.out.charset))
+    if !knows(System.err.charset) then System.setErr(stream(FileDescriptor.err, System.err.charset))
+
+  private def knows(charset: Charset): Boolean = charset.newEncoder.canEncode(plain.keys.mkString)
+
+  private def stream(to: FileDescriptor, charset: Charset) =
+    PrintStream(Plain(FileOutputStream(to), charset), true, StandardCharsets.UTF_8)
+
+  /** Takes UTF-8 and hands on what the charset can show. */
+  private[cli] final class Plain(to: OutputStream, charset: Charset) extends OutputStream:
+    private val encoder = charset.newEncoder
+    private var waiting = Array.emptyByteArray
+
+    def write(byte: Int): Unit = write(Array(byte.toByte), 0, 1)
+
+    override def write(bytes: Array[Byte], from: Int, count: Int): Unit = synchronized:
+      val all  = waiting ++ bytes.slice(from, from + count)
+      val most = wholeLetters(all)
+      waiting = all.drop(most)
+      val text = String(all, 0, most, StandardCharsets.UTF_8)
+      to.write(
+        text.flatMap(c => if encoder.canEncode(c) then c.toString else plain.getOrElse(c, "?")).getBytes(
+          charset
+        )
+      )
+
+    override def flush(): Unit = to.flush()
+
+    /** Bytes up to the last letter that has come whole. */
+    private def wholeLetters(bytes: Array[Byte]): Int =
+      val start = bytes.lastIndexWhere(byte => (byte & 0xc0) != 0x80)
+      if start < 0 then bytes.length
+      else
+        val lead = bytes(start) & 0xff
+        val size = if lead < 0x80 then 1 else if lead < 0xe0 then 2 else if lead < 0xf0 then 3 else 4
+        if bytes.length - start >= size then bytes.length else start

@@ -1,0 +1,87 @@
+package skein.figures
+
+import skein.measure.{Deviation, Numbers}
+import skein.plot.*
+import skein.record.ClockKind
+
+/** Deviations from the paused truth by link and loop: discs are means, thick lines reach one standard deviation to either
+  * side, thin ones from the least to the most. Live flights have a ring around the disc.
+  */
+object DeviationFigure:
+  val name = "deviation"
+
+  private val slot   = 62.0
+  private val gap    = 26.0
+  private val height = 200.0
+
+  def apply(deviations: Vector[Deviation]): Option[Drawing] = Option.when(deviations.nonEmpty):
+    val links  = deviations.map(_.link).distinct
+    val placed = links.zipWithIndex.flatMap: (link, index) =>
+      deviations.filter(_.link == link).map((_, index))
+    val width = placed.size * slot + links.size * gap
+    val panel = Panel(
+      Axis.exactly("", 0, width, 1),
+      Axis.around(
+        "deviation from the paused truth, %",
+        100 * deviations.map(_.share.least).min.min(0),
+        100 * deviations.map(_.share.most).max.max(0)
+      ),
+      left = 52,
+      top = 14,
+      width,
+      height
+    )
+    val marks = placed.zipWithIndex.flatMap:
+      case ((deviation, link), index) =>
+        mark(panel, deviation, panel.left + (index + 0.5) * slot + (link + 0.5) * gap)
+    val names = links.zipWithIndex.map: (link, index) =>
+      val members = placed.zipWithIndex.collect { case ((_, `index`), place) => place }
+      val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
+      Shape.Text(
+        Point(middle, panel.bottom + 38),
+        Looks.link(link),
+        Ink.labelSize,
+        Ink.labelColour,
+        Anchor.Middle
+      )
+    val truth = Shape.line(
+      Point(panel.left, panel.atY(0)),
+      Point(panel.right, panel.atY(0)),
+      Stroke(Looks.of("paused"), 1.2)
+    )
+    Drawing(
+      width + 70,
+      height + 66,
+      panel.rules(panel.left, panel.right) ++ panel.yAxis ++ (truth +: (marks ++ names))
+    )
+
+  private def mark(panel: Panel, deviation: Deviation, x: Double): Vector[Shape] =
+    val colour                                        = Looks.of(deviation.loop)
+    val share                                         = deviation.share
+    def line(from: Double, to: Double, width: Double) =
+      Shape.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
+    val centre = Point(x, panel.atY(100 * share.mean))
+    val ring   = Option.when(deviation.clock != ClockKind.Virtual.label)(Shape.Disc(
+      centre,
+      6.5,
+      Some(Stroke(colour, 1.2))
+    ))
+    Vector(
+      line(share.least, share.most, 1),
+      line(share.mean - share.sd, share.mean + share.sd, 3.2),
+      Shape.Disc(centre, 4, Some(Stroke(Looks.halo, 0.8)), Some(colour)),
+      Shape.Text(
+        Point(x, panel.bottom + 13),
+        deviation.name,
+        Ink.tickSize - 1,
+        Ink.labelColour,
+        Anchor.Middle
+      ),
+      Shape.Text(
+        Point(x, panel.bottom + 24),
+        s"${Numbers.signed(100 * share.mean)} %",
+        Ink.tickSize - 1,
+        Ink.tickColour,
+        Anchor.Middle
+      )
+    ) ++ ring

@@ -1,0 +1,82 @@
+package skein.figures
+
+import skein.measure.{Distribution, FlightSet, FlightSummary}
+import skein.plot.*
+
+/** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a panel stand
+  * mean and range of the last 10 s for each loop: ours as a coloured disc, the paper's as a black diamond.
+  */
+object DistanceFigure:
+  private val plotWidth  = 830.0
+  private val plotHeight = 220.0
+  private val slotWidth  = 26.0
+
+  def apply(set: FlightSet): Option[Drawing] =
+    val linksOfNote = set.links.filter(link => set.over(link).exists(flight => !set.truth.contains(flight)))
+    val links       = if linksOfNote.nonEmpty then linksOfNote else set.links
+    val panels      = links
+      .map(link => (set.truth.toVector ++ set.over(link)).distinct.filter(_.distance.nonEmpty))
+      .zip(links)
+      .collect { case (flights, link) if flights.nonEmpty => panel(link, flights) }
+    Option.when(panels.nonEmpty)(Drawing.stacked(panels*))
+
+  private def panel(link: String, flights: Vector[FlightSummary]): Drawing =
+    val curves    = flights.flatMap(summary => summary.distance.map(summary -> _))
+    val published =
+      flights.flatMap(summary => summary.published.flatMap(_.distance))
+    val highest = (curves.flatMap(_._2.points.map(_._2)) ++ published.map(_.most)).max
+    val panel   = Panel(
+      Axis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
+      Axis.around("distance, m", 0, highest),
+      left = 52,
+      top = 34,
+      plotWidth,
+      plotHeight
+    )
+    val lines =
+      curves.map((summary, curve) => panel.curve(curve.points, Looks.of(summary)))
+    val stripsLeft  = panel.right + 17
+    val stripsWidth = curves.size.max(5) * slotWidth
+    val strips      = curves.zipWithIndex.flatMap:
+      case ((summary, curve), index) =>
+        curve.lastTenSeconds.toVector.flatMap(strip(
+          panel,
+          stripsLeft + (index + 0.5) * slotWidth,
+          summary,
+          _
+        ))
+    val heading = Shape.Text(
+      Point(stripsLeft, panel.top - 10),
+      "last 10 s: ours ●, paper ◆",
+      Ink.tickSize,
+      Ink.labelColour
+    )
+    val title = panel.title(Looks.link(link))
+    Drawing(
+      stripsLeft + stripsWidth + 50,
+      plotHeight + 84,
+      (title +: heading +: panel.axes) ++ panel.rules(stripsLeft, stripsLeft + stripsWidth) ++
+        lines ++ strips ++ legend(panel, flights)
+    )
+
+  private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Shape] =
+    val colour = Looks.of(summary.flight.loop)
+    val ours   = Vector(
+      Shape.line(Point(x - 5, panel.atY(last.least)), Point(x - 5, panel.atY(last.most)), Stroke(colour, 2)),
+      Shape.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(Looks.halo, 0.8)), Some(colour))
+    )
+    val paper = summary.published.flatMap(_.distance).toVector.flatMap: published =>
+      Vector(
+        Shape.line(
+          Point(x + 5, panel.atY(published.least)),
+          Point(x + 5, panel.atY(published.most)),
+          Stroke(Looks.published, 1.2)
+        ),
+        Looks.diamond(Point(x + 5, panel.atY(published.mean)))
+      )
+    ours ++ paper
+
+  private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Shape] =
+    val names  = flights.distinctBy(_.name)
+    val legend = Legend(0, names.map(one => Legend.line(one.name, Looks.of(one, 2.2)))*)
+    legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))

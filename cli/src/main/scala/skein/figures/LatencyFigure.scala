@@ -1,0 +1,119 @@
+package skein.figures
+
+import skein.measure.{Distribution, FlightSet, Numbers}
+import skein.plot.*
+import skein.signal.{LatencyDistribution, LatencyProfile}
+
+/** The paper's Figure 3: histograms of round trips, one panel per link, with the density and the quantiles of the
+  * link's profile, which for `direct` and `vpn` are the paper's own samples.
+  */
+object LatencyFigure:
+  private val measured     = Colour(0x7aa6c2)
+  private val profileLine  = Stroke(Looks.published, 1.1)
+  private val halvesLine   = Stroke(Colour(0xd55e00), 1.3)
+  private val quantileLine = Stroke(Looks.published.faded(0.6), 0.8, Vector(3, 2))
+
+  /** @param roundTripsMs
+    *   by the name of the link, in the order of the panels
+    */
+  def apply(roundTripsMs: Seq[(String, Distribution)]): Option[Drawing] =
+    Option.when(roundTripsMs.nonEmpty):
+      Drawing.stacked(Drawing.grid(roundTripsMs.map(panel(_, _)), columns = 3.min(roundTripsMs.size)), legend)
+
+  def apply(set: FlightSet): Option[Drawing] =
+    apply:
+      for
+        link    <- set.links
+        samples <- Distribution.of(set.over(link).flatMap(_.roundTripsMs).flatMap(_.sorted))
+      yield (link, samples)
+
+  private def panel(link: String, samples: Distribution): Drawing =
+    val profile = profileOf(link)
+    val most    = (samples.quantile(0.999) +: profile.map(_.quantile(1).toMillis).toVector).max
+    val step    = binWidthMs(most)
+    val width   = BigDecimal(step).bigDecimal.stripTrailingZeros.toPlainString
+    val bins    = samples.sorted.groupMapReduce(ms => math.floor(ms / step).toInt)(_ => 1)(_ + _)
+    val share   = bins.view.mapValues(_ * 100.0 / samples.count).toMap
+    val density = profile.toVector.flatMap(densityOf(_, step))
+    val halves  = profile.toVector.flatMap(densityOfHalves(_, step))
+    val panel   = Panel(
+      Axis.around("round trip, ms", 0, most, 6),
+      Axis.around(s"share per $width ms, %", 0, (share.values ++ (density ++ halves).map(_._2)).max * 1.12),
+      left = 52,
+      top = 48,
+      width = 300,
+      height = 170
+    )
+    val bars = share.toVector.sortBy(_._1).collect:
+      case (bin, percent) if (bin + 1) * step <= panel.x.to + 1e-9 =>
+        Shape.box(
+          panel.atX(bin * step) + 0.5,
+          panel.atY(percent),
+          panel.atX((bin + 1) * step) - 0.5,
+          panel.bottom,
+          measured
+        )
+    val lines = Vector(density -> profileLine, halves -> halvesLine).collect:
+      case (points, stroke) if points.nonEmpty => panel.curve(points, stroke)
+    val marks              = profile.toVector.flatMap(quantileMarks(panel, _))
+    def figure(ms: Double) = Numbers.fixed(ms, if most < 10 then 2 else 1)
+    val facts              = s"n ${samples.count}, mean ${figure(samples.mean)}, sd ${figure(samples.sd)}, " +
+      s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
+    val titles = Vector(
+      panel.title(Looks.link(link)).moved(0, -14),
+      Shape.Text(Point(panel.left, panel.top - 9), facts, Ink.tickSize, Ink.labelColour)
+    )
+    Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
+
+  private def legend: Drawing =
+    Legend(
+      52,
+      Legend.box("measured", measured),
+      Legend.line("the link's profile", profileLine),
+      Legend.line("its quantiles", quantileLine),
+      Legend.line("half of a sample each way, as emulated", halvesLine)
+    )
+
+  /** The profile's 5, 50 and 95 % quantiles. */
+  private def quantileMarks(panel: Panel, profile: LatencyDistribution): Vector[Shape] =
+    Vector(0.05, 0.5, 0.95).flatMap: p =>
+      val x = panel.atX(profile.quantile(p).toMillis)
+      Vector(
+        Shape.line(Point(x, panel.bottom), Point(x, panel.top + 13), quantileLine),
+        Shape.Text(
+          Point(x, panel.top + 9),
+          s"${(p * 100).round} %",
+          Ink.tickSize - 1,
+          Ink.labelColour,
+          Anchor.Middle
+        )
+      )
+
+  /** Per cent per bin along the round trip, as a step line. */
+  private def densityOf(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] = profile match
+    case LatencyDistribution.Quantiles(probabilities, roundTripsMs) =>
+      val pieces = probabilities.zip(roundTripsMs).sliding(2).toVector.collect:
+        case Vector((p0, t0), (p1, t1)) if t1 > t0 =>
+          val percent = (p1 - p0) / (t1 - t0) * step * 100
+          Vector((t0, percent), (t1, percent))
+      ((roundTripsMs.head, 0.0) +: pieces.flatten) :+ (roundTripsMs.last, 0.0)
+    case _ => Vector.empty
+
+  /** The same for what an emulated link does: half of one sample on the way there, half of another one back. */
+  private def densityOfHalves(profile: LatencyDistribution, step: Double): Vector[(Double, Double)] =
+    val count  = 400
+    val halves = Vector.tabulate(count)(index => profile.quantile((index + 0.5) / count).toMillis / 2)
+    val sums   = for there <- halves; back <- halves yield math.floor((there + back) / step).toInt
+    sums
+      .groupMapReduce(identity)(_ => 100.0 / (count * count))(_ + _)
+      .toVector
+      .sortBy(_._1)
+      .map((bin, percent) => ((bin + 0.5) * step, percent))
+
+  private def profileOf(link: String): Option[LatencyDistribution] =
+    LatencyProfile.parse(link, _ => Left("not read for a picture")).toOption.collect:
+      case LatencyProfile.Steady(_, roundTrip) if roundTrip.quantile(1) > roundTrip.quantile(0) => roundTrip
+
+  /** About 40 bins, of a width that reads well. */
+  private def binWidthMs(most: Double): Double =
+    Seq(0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0).find(_ * 45 >= most).getOrElse(100)

@@ -1,0 +1,125 @@
+package skein.figures
+
+import skein.measure.{FlightSet, FlightSummary, Observation, Published, RoleSummary}
+import skein.plot.*
+
+/** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the evader's
+  * decisions and a pale one for the pursuer's, or by a team's roles. Black diamonds are the paper's means; in the charts of ages,
+  * outlines are the true ages.
+  */
+object ObservationFigure:
+  private val barWidth  = 20.0
+  private val loopGap   = 14.0
+  private val linkGap   = 32.0
+  private val barHeight = 150.0
+  private val palePart  = 0.45
+
+  def apply(set: FlightSet): Option[Drawing] =
+    val flights = set.flights.filter(_.roles.nonEmpty)
+    Option.when(flights.nonEmpty):
+      Drawing.stacked(
+        Drawing.grid(Observation.values.toVector.map(panel(_, flights)), columns = 2),
+        legend(flights)
+      )
+
+  private def panel(observation: Observation, flights: Vector[FlightSummary]): Drawing =
+    val bars    = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
+    val highest = bars.flatMap(bar => bar.mean ++ bar.published ++ bar.trueAge).maxOption.getOrElse(1.0)
+    val lefts   = placed(flights)
+    val width   = lefts.last + widthOf(flights.last) + loopGap
+    val panel   = Panel(
+      Axis.exactly("", 0, width, 1),
+      Axis.around("ms", 0, highest * 1.06),
+      left = 46,
+      top = 34,
+      width,
+      barHeight
+    )
+    val groups = flights.zip(lefts).flatMap: (summary, left) =>
+      val drawn = summary.roles.zipWithIndex.flatMap: (role, index) =>
+        draw(panel, bar(observation, summary, role), panel.left + left + index * barWidth, pale = index > 0)
+      val middle = panel.left + left + widthOf(summary) / 2
+      drawn :+ Shape.Text(
+        Point(middle, panel.bottom + 13),
+        summary.flight.loop,
+        Ink.tickSize - 1,
+        Ink.labelColour,
+        Anchor.Middle
+      )
+    val links = flights.zip(lefts).groupBy(_._1.flight.link).toVector.flatMap: (link, members) =>
+      val from = panel.left + members.map(_._2).min
+      val to   = panel.left + members.map((summary, left) => left + widthOf(summary)).max
+      Vector(
+        Shape.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Ink.axisLine),
+        Shape.Text(
+          Point((from + to) / 2, panel.bottom + 30),
+          Looks.link(link),
+          Ink.tickSize,
+          Ink.labelColour,
+          Anchor.Middle
+        )
+      )
+    val title = panel.title(observation.title.capitalize)
+    val rules = panel.rules(panel.left, panel.right)
+    Drawing(width + 76, barHeight + 78, (title +: rules) ++ panel.yAxis ++ groups ++ links)
+
+  private final case class Bar(
+      colour: Colour,
+      mean: Option[Double],
+      published: Option[Double],
+      trueAge: Option[Double]
+  )
+
+  private def bar(observation: Observation, summary: FlightSummary, role: RoleSummary): Bar =
+    val published = summary.published
+    val trueAge   = observation match
+      case Observation.OwnAge      => role.ownTrueAgeMs
+      case Observation.OpponentAge => role.opponentTrueAgeMs
+      case _                       => None
+    Bar(
+      Looks.of(summary.flight.loop),
+      role.observedMs.get(observation).map(_.mean),
+      published.map(flight => Published.ofRole(flight.observedMs(observation), role.role)),
+      trueAge.map(_.mean)
+    )
+
+  private def draw(panel: Panel, bar: Bar, left: Double, pale: Boolean): Vector[Shape] =
+    val right   = left + barWidth - 2
+    val middle  = (left + right) / 2
+    val outline = bar.trueAge.toVector.map: age =>
+      Shape.outline(left, panel.atY(age), right, panel.bottom, trueAgeLine(bar.colour))
+    val filled = bar.mean.toVector.flatMap: mean =>
+      val colour = if pale then bar.colour.tinted(palePart) else bar.colour
+      Vector(Shape.box(left, panel.atY(mean), right, panel.bottom, colour))
+    val mark = bar.published.toVector.map(mean => Looks.diamond(Point(middle, panel.atY(mean)), 3.6))
+    outline ++ filled ++ mark
+
+  private def widthOf(summary: FlightSummary): Double = summary.roles.size * barWidth
+
+  /** Left edges of the flights' groups of bars, wider apart between links. */
+  private def placed(flights: Vector[FlightSummary]): Vector[Double] =
+    flights
+      .sliding(2)
+      .collect { case Vector(one, next) => (one, next) }
+      .scanLeft(loopGap):
+        case (left, (one, next)) =>
+          left + widthOf(one).max(44) + (if one.flight.link == next.flight.link then loopGap else linkGap)
+      .toVector
+
+  private def legend(flights: Vector[FlightSummary]): Drawing =
+    val grey             = Colour(0x666666)
+    def role(place: Int) = flights.flatMap(_.roles.lift(place)).map(_.role).distinct.mkString(", ")
+    val full             = Legend.box(s"deciding for the ${role(0)}", grey)
+    val pale             =
+      Option.when(role(1).nonEmpty)(Legend.box(s"for the ${role(1)}", grey.tinted(palePart)))
+    val items = Seq(full) ++ pale ++ Seq(
+      Legend.Item("paper", 8, at => Vector(Looks.diamond(at.moved(4, 0)))),
+      Legend.Item(
+        "true age, by the simulator's clock",
+        12,
+        at => Vector(Shape.outline(at.x, at.y - 6, at.x + 12, at.y + 6, trueAgeLine(grey)))
+      )
+    )
+    Legend(46, items*)
+
+  private def trueAgeLine(colour: Colour): Stroke = Stroke(colour, 0.9, Vector(2.5, 1.8))

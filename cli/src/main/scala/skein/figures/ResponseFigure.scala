@@ -1,0 +1,85 @@
+package skein.figures
+
+import skein.identify.Flown
+import skein.plot.*
+import skein.vehicle.{ReducedFlight, ReducedModel}
+
+/** How a fitted model follows what was measured: per vehicle the velocity north and east, measured as dots and modelled as
+  * a line, and below what remains. The model flies from the first reading to the last, told nothing but the commands.
+  */
+object ResponseFigure:
+  private val width    = 620.0
+  private val height   = 150.0
+  private val residual = 70.0
+
+  private val north = Colour(0x0072b2)
+  private val east  = Colour(0xd55e00)
+
+  def apply(model: ReducedModel, flights: Vector[Flown]): Drawing =
+    val panels = flights.filter(_.sights.sizeIs > 1).map(panel(model, _))
+    Drawing.stacked(Drawing.grid(panels, columns = 2), legend)
+
+  private def panel(model: ReducedModel, flown: Flown): Drawing =
+    val modelled = flight(model, flown)
+    val sights   = flown.sights
+    val time     = Axis.exactly("time, s", sights.head.atS, sights.last.atS.max(sights.head.atS + 1), 6)
+    val speeds   = sights.flatMap(sight => Vector(sight.vx, sight.vy))
+    val top      =
+      Panel(
+        time.copy(label = ""),
+        Axis.around("velocity, m/s", speeds.min, speeds.max),
+        52,
+        34,
+        width,
+        height
+      )
+    val remains =
+      sights.zip(modelled).flatMap((sight, model) => Vector(sight.vx - model._1, sight.vy - model._2))
+    val most  = remains.map(math.abs).max.max(0.05)
+    val below =
+      Panel(time, Axis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
+    val shapes =
+      for
+        (colour, measured, model) <- Vector(
+          (north, sights.map(_.vx), modelled.map(_._1)),
+          (east, sights.map(_.vy), modelled.map(_._2))
+        )
+        shape <- dots(top, sights.map(_.atS).zip(measured), colour) ++ Vector(
+          top.curve(sights.map(_.atS).zip(model), Stroke(colour, 1.1)),
+          below.curve(
+            sights.map(_.atS).zip(measured.zip(model).map(_ - _)),
+            Stroke(colour.faded(0.8), 0.9)
+          )
+        )
+      yield shape
+    val rms = math.sqrt(remains.map(r => r * r).sum / remains.size)
+    Drawing(
+      width + 72,
+      below.bottom + 44,
+      (top.title(f"${flown.name}: residual $rms%.3f m/s rms") +: top.axes) ++ below.axes ++ shapes
+    )
+
+  private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Shape] =
+    values.map((at, value) => Shape.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
+
+  /** The modelled velocity at every sight. */
+  private def flight(model: ReducedModel, flown: Flown): Vector[(Double, Double)] =
+    val start    = flown.sights.head
+    val modelled = Vector.newBuilder[(Double, Double)]
+    modelled += ((start.vx, start.vy))
+    val flight = ReducedFlight(model)
+    flown.predict(flight, model.deadTimeS, 0, Double.PositiveInfinity)(_ =>
+      modelled += ((flight.vx, flight.vy))
+    )
+    modelled.result()
+
+  private def legend: Drawing =
+    def dot(label: String, colour: Colour) =
+      Legend.Item(label, 8, at => Vector(Shape.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
+    Legend(
+      52,
+      dot("north, measured", north),
+      Legend.line("north, modelled", Stroke(north, 1.6)),
+      dot("east, measured", east),
+      Legend.line("east, modelled", Stroke(east, 1.6))
+    )

@@ -1,0 +1,70 @@
+package skein.figures
+
+import skein.measure.{FlightSet, FlightSummary, Track}
+import skein.plot.*
+import skein.policy.Role
+import skein.units.*
+
+/** The paper's Figures 4 and 5: where the vehicles flew, seen from above (north is up), one panel per flight, with
+  * equal scales on both axes. Starts are rings, ends are discs.
+  */
+object TrajectoryFigure:
+  private val side = 210.0
+
+  def apply(set: FlightSet): Option[Drawing] =
+    val panels = set.flights.filter(_.tracks.nonEmpty).map(panel)
+    Option.when(panels.nonEmpty)(Drawing.stacked(
+      Drawing.grid(panels, columns = 4.min(panels.size)),
+      legend(set)
+    ))
+
+  private def panel(summary: FlightSummary): Drawing =
+    val positions = summary.tracks.flatMap(_.positionsNed)
+    val xs        = positions.map(_.x)
+    val ys        = positions.map(_.y)
+    // Equal scales: both axes span the larger of the two extents, each around its own middle.
+    val span                                        = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
+    def axis(label: String, values: Vector[Double]) =
+      val middle = (values.min + values.max) / 2
+      Axis.exactly(label, middle - span / 2, middle + span / 2)
+    val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
+    val title = panel.title(s"${summary.name}, ${Looks.link(summary.flight.link)}")
+    Drawing(
+      side + 72,
+      side + 82,
+      (title +: panel.axes) ++ summary.tracks.sortBy(_.role).flatMap(path(panel, summary, _))
+    )
+
+  private def path(panel: Panel, summary: FlightSummary, track: Track): Vector[Shape] =
+    val colour         = if track.isA(Role.Pursuer) then Looks.of(summary.flight.loop) else Looks.evader
+    def at(p: Vector3) = panel.at(p.y, p.x)
+    Vector(
+      panel.curve(track.positionsNed.map(p => (p.y, p.x)), Stroke(colour.faded(0.85), 1.1)),
+      start(at(track.positionsNed.head), colour),
+      end(at(track.positionsNed.last), colour)
+    )
+
+  private def legend(set: FlightSet): Drawing =
+    val loops = set.flights.map(_.flight.loop).distinct
+    Legend(
+      52,
+      Legend.Item(
+        "pursuer",
+        loops.size * 9,
+        at =>
+          loops.indices.toVector.map(index =>
+            Shape.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), thick(Looks.of(loops(index))))
+          )
+      ),
+      Legend.line("evader", thick(Looks.evader)),
+      Legend.Item("start", 8, at => Vector(start(at.moved(4, 0), Ink.labelColour))),
+      Legend.Item("end", 8, at => Vector(end(at.moved(4, 0), Ink.labelColour)))
+    )
+
+  private def thick(colour: Colour): Stroke = Looks.line(colour, 2.2)
+
+  private def start(at: Point, colour: Colour): Shape =
+    Shape.Disc(at, 3.4, Some(Stroke(colour, 1.4)), Some(Looks.halo))
+
+  private def end(at: Point, colour: Colour): Shape =
+    Shape.Disc(at, 3.6, Some(Stroke(Looks.halo, 0.8)), Some(colour))

@@ -1,0 +1,73 @@
+package skein.figures
+
+import skein.measure.{Compared, Distribution, FlightSet, Numbers, Twin}
+import skein.plot.*
+
+/** Cumulative distributions in live flights and in their virtual twins, one line of panels per live flight: what the
+  * decisions for evader and pursuer were made on.
+  */
+object TwinFigure:
+  val name = "twins"
+
+  private val panelWidth  = 208.0
+  private val panelHeight = 110.0
+  private val points      = 200
+  private val virtualLine = Stroke(Looks.published, 1, Vector(4, 2.5))
+
+  def apply(set: FlightSet): Option[Drawing] =
+    val lines = set.twins.filter(_.compared.nonEmpty).map(line)
+    Option.when(lines.nonEmpty)(Drawing.stacked((lines :+ legend(set))*))
+
+  private def line(twin: Twin): Drawing =
+    val flight   = twin.live.flight
+    val distance = twin.converged.zip(twin.difference).map: (converged, difference) =>
+      s": last 10 s ${Numbers.fixed(converged._1, 2)} m live, ${Numbers.fixed(converged._2, 2)} m virtual " +
+        s"(${Numbers.signed(100 * difference)} %)"
+    val title = Shape.Text(
+      Point(46, 16),
+      s"${twin.live.name}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
+      Ink.titleSize,
+      Ink.titleColour,
+      bold = true
+    )
+    val panels = Drawing.grid(twin.compared.map(panel(flight.loop, _)), columns = twin.compared.size)
+    Drawing.stacked(Drawing(panels.width, 22, Vector(title)), panels)
+
+  private def panel(loop: String, compared: Compared): Drawing =
+    val most  = compared.live.quantile(0.995).max(compared.virtual.quantile(0.995))
+    val panel = Panel(
+      Axis.around(s"${compared.quantity}, ms", 0, most, 4),
+      Axis.exactly("share of decisions", 0, 1, 4),
+      left = 46,
+      top = 20,
+      panelWidth,
+      panelHeight
+    )
+    val title = Shape.Text(
+      Point(panel.left, panel.top - 6),
+      s"${compared.role}: KS ${Numbers.fixed(compared.distance, 2)}",
+      Ink.labelSize,
+      Ink.labelColour
+    )
+    Drawing(
+      panelWidth + 62,
+      panelHeight + 62,
+      (title +: panel.axes) ++ Vector(
+        curve(panel, compared.live, Looks.line(Looks.of(loop), 2.4)),
+        curve(panel, compared.virtual, virtualLine)
+      )
+    )
+
+  /** From the panel's left edge to its right one; the last half per cent may lie beyond. */
+  private def curve(panel: Panel, samples: Distribution, stroke: Stroke): Shape =
+    val rising = Vector
+      .tabulate(points + 1)(index => index.toDouble / points)
+      .map(share => (samples.quantile(share), share))
+      .takeWhile(_._1 <= panel.x.to)
+    val reached = rising.lastOption.fold(0.0)(_._2)
+    panel.curve(Vector((0.0, 0.0), (samples.least, 0.0)) ++ rising :+ (panel.x.to, reached), stroke)
+
+  private def legend(set: FlightSet): Drawing =
+    val loops = set.twins.map(_.live.flight.loop).distinct
+    val live  = loops.map(loop => Legend.line(s"$loop, live", Looks.line(Looks.of(loop), 2.4)))
+    Legend(46, (live :+ Legend.line("virtual", virtualLine))*)

@@ -1,0 +1,129 @@
+package skein.report
+
+import scalatags.Text.TypedTag
+import scalatags.Text.all.*
+import scalatags.Text.tags2.{section, title as pageTitle}
+import skein.figures.Figure
+import skein.measure.{FlightSet, FlightSummary, Numbers}
+import skein.plot.Svg
+import skein.record.Flight
+
+/** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
+object HtmlReport:
+
+  def render(set: FlightSet, figures: Seq[Figure]): String =
+    val page = html(
+      lang := "en",
+      head(
+        meta(charset := "utf-8"),
+        meta(name    := "viewport", content := "width=device-width, initial-scale=1"),
+        pageTitle(heading(set)),
+        tag("style")(raw(style))
+      ),
+      body(
+        h1(heading(set)),
+        p(cls := "lead", abstractOf(set)),
+        cutShort(set),
+        ReportSections.of(set, figures).map(part),
+        section(h2("Run parameters"), table(parameters(set)))
+      )
+    )
+    s"<!doctype html>\n${page.render}\n"
+
+  private def heading(set: FlightSet): String =
+    set.flights.map(_.flight.scenario).distinct match
+      case Vector(scenario) => s"Skein: ${set.flights.size} flights, scenario $scenario"
+      case _                => s"Skein: ${set.flights.size} flights"
+
+  private def abstractOf(set: FlightSet): String =
+    def named(values: Flight => String) =
+      set.flights.map(summary => values(summary.flight)).distinct.mkString(", ")
+    s"Loops ${named(_.loop)}; links ${named(_.link)}; one decision per vehicle every " +
+      s"${named(flight => Numbers.brief(flight.period.toMillis))} ms; simulator ${named(_.simulator)}; " +
+      s"${named(_.clock)} clock."
+
+  /** What many flights of each loop over each link come to, as a page. */
+  def spread(flights: Seq[FlightSummary], figures: Seq[Figure]): String =
+    val title = s"Skein: spread over ${flights.size} flights"
+    val page  = html(
+      lang := "en",
+      head(meta(charset := "utf-8"), pageTitle(title), tag("style")(raw(style))),
+      body(
+        h1(title),
+        ReportSections.spread(flights, figures).map(part)
+      )
+    )
+    s"<!doctype html>\n${page.render}\n"
+
+  private def part(shown: Section): TypedTag[String] = section(
+    h2(shown.title),
+    shown.table.map(table),
+    Option.when(shown.note.nonEmpty)(p(cls := "note", shown.note)),
+    shown.figures.map(pictureOf)
+  )
+
+  private def pictureOf(shown: Figure): TypedTag[String] =
+    figure(Svg.element(shown.drawing, shown.title), figcaption(shown.caption))
+
+  private def table(text: TextTable): TypedTag[String] =
+    val left              = text.header.map(_.startsWith("<"))
+    def side(column: Int) = Option.when(left(column))(cls := "left")
+    div(
+      cls := "wide",
+      tag("table")(
+        thead(tr(text.header.zipWithIndex.map((name, column) => th(side(column), name.stripPrefix("<"))))),
+        tbody(text.rows.map(row => tr(row.zipWithIndex.map((cell, column) => td(side(column), cell)))))
+      )
+    )
+
+  private def cutShort(set: FlightSet): Seq[TypedTag[String]] =
+    SummaryTables.cutShort(set).map(line => p(cls := "note", strong(line)))
+
+  private def parameters(set: FlightSet): TextTable =
+    TextTable(
+      Vector(
+        "<flight",
+        "<loop",
+        "<link",
+        "seed",
+        "period ms",
+        "duration s",
+        "<clock",
+        "<simulator",
+        "<scenario"
+      ) ++
+        Vector("<version", "<started (UTC)"),
+      (set.flights ++ set.twins.flatMap(_.virtual)).map(_.flight).distinct.map: flight =>
+        Vector(
+          flight.id,
+          flight.loop,
+          flight.link,
+          flight.seed.toString,
+          Numbers.brief(flight.period.toMillis),
+          Numbers.brief(flight.duration.toSeconds),
+          flight.clock,
+          flight.simulator,
+          flight.scenario,
+          flight.version,
+          java.time.Instant.ofEpochSecond(flight.startedAt.toNanos / 1_000_000_000L).toString
+        )
+    )
+
+  private val style =
+    """:root { color-scheme: light }
+      |body { font: 15px/1.5 "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; color: #1a1a1a;
+      |  background: #fff; max-width: 1180px; margin: 2.5rem auto; padding: 0 1.5rem }
+      |h1 { font-size: 1.7rem; margin: 0 0 .4rem } h2 { font-size: 1.15rem; margin: 2.4rem 0 .8rem }
+      |.lead { color: #444; margin: 0 }
+      |.note, figcaption { color: #555; font-size: .85rem; max-width: 52rem; margin: .6rem 0 }
+      |figure { margin: 0 } figure svg { max-width: 100%; height: auto; display: block }
+      |.wide { overflow-x: auto }
+      |table { border-collapse: collapse; font-size: .8rem; font-variant-numeric: tabular-nums }
+      |th, td { padding: .28rem .6rem; text-align: right; white-space: nowrap }
+      |th { font-weight: 600; border-bottom: 1.5px solid #333; vertical-align: bottom }
+      |td { border-bottom: 1px solid #e6e6e6 } .left { text-align: left }
+      |th:first-child, td:first-child { padding-left: 0 }
+      |@media print { body { margin: 0; max-width: none; padding: 0; font-size: 10pt } table { font-size: 7pt }
+      |  th, td { padding: .15rem .3rem } figure, tr { break-inside: avoid } h2 { break-after: avoid } .wide { overflow: visible }
+      |  @page { size: A4 landscape; margin: 12mm } }
+      |""".stripMargin

@@ -1,0 +1,59 @@
+package skein.report
+
+import skein.figures.Figure
+import ujson.{Arr, Null, Num, Obj, Str, Value}
+
+/** A part of a report: rendered as text for the terminal, as part of a page, and as data for scripts.
+  *
+  * @param note
+  *   how to read it; may be empty
+  * @param table
+  *   absent where there are pictures alone
+  * @param figures
+  *   on the page alone
+  */
+final case class Section(
+    title: String,
+    note: String = "",
+    table: Option[TextTable] = None,
+    figures: Vector[Figure] = Vector.empty
+)
+
+object Section:
+
+  /** Those that have a table, one after the other. */
+  def text(sections: Seq[Section]): String =
+    sections.flatMap(section => section.table.map(textOf(section, _))).mkString("\n\n")
+
+  private def textOf(section: Section, table: TextTable): String =
+    (Vector(section.title, table.render) ++ wrapped(section.note)).mkString("\n")
+
+  /** In lines of at most 100 letters. */
+  private def wrapped(note: String): Vector[String] =
+    note
+      .split(' ')
+      .foldLeft(Vector.empty[String]): (lines, word) =>
+        lines.lastOption match
+          case Some(last) if last.length + 1 + word.length <= 100 => lines.init :+ s"$last $word"
+          case _                                                  => lines :+ word
+      .filter(_.nonEmpty)
+
+  /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the columns; a cell is a
+    * number where it is one, null where it is empty, and else text.
+    */
+  def json(sections: Seq[Section]): String =
+    val tables = sections.flatMap(section => section.table.map(jsonOf(section, _)))
+    ujson.write(Obj("tables" -> Arr.from(tables)), indent = 2)
+
+  private def jsonOf(section: Section, table: TextTable): Value = Obj(
+    "title"   -> section.title,
+    "note"    -> section.note,
+    "columns" -> Arr.from(table.header.map(name => Str(name.stripPrefix("<")))),
+    "rows"    -> Arr.from(table.rows.map(row => Arr.from(row.zip(table.header).map(cell))))
+  )
+
+  /** Columns on the left hold names, also where these are numbers. */
+  private def cell(text: String, column: String): Value =
+    if text.isEmpty then Null
+    else if column.startsWith("<") || !text.matches("[-+]?[0-9]+(\\.[0-9]+)?") then Str(text)
+    else Num(text.toDouble)

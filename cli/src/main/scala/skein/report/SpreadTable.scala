@@ -1,0 +1,65 @@
+package skein.report
+
+import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers}
+
+/** How much a loop's result varies from flight to flight. */
+object SpreadTable:
+
+  /** A row per loop and link, in the order of the flights: over its flights, mean and standard deviation of the mean
+    * distance in the last 10 s, the same of the standard deviation within a flight's last 10 s, the closest approach,
+    * in how many flights it was a capture, and the deviation from the paused truth of the same policies where it was
+    * flown too. Where a loop and link gave no distance, since a vehicle was never read, the flights are counted alone.
+    */
+  def of(flights: Seq[FlightSummary]): TextTable =
+    val groups = flights.groupBy(summary => (summary.name, summary.flight.link))
+    val order  = flights.map(summary => (summary.name, summary.flight.link)).distinct
+    val truths =
+      for
+        (policy, paused) <- flights.filter(_.flight.isPaused).groupBy(_.policy)
+        distance         <- meanDistance(paused)
+      yield policy -> distance.mean
+    TextTable(
+      Vector(
+        "<loop",
+        "<link",
+        "flights",
+        "last 10 s m",
+        "sd",
+        "least",
+        "most",
+        "sd within",
+        "closest m",
+        "captured",
+        "vs paused"
+      ),
+      order.toVector.map: group =>
+        val mean    = meanDistance(groups(group))
+        val within  = distribution(groups(group), _.lastTenSeconds.map(_.sd))
+        val closest = distribution(groups(group), curve => Some(curve.closest._2))
+
+        def metres(of: Option[Distribution], value: Distribution => Double) =
+          of.fold("")(distances => Numbers.fixed(value(distances), 2))
+        Vector(
+          group._1,
+          group._2,
+          mean.fold(groups(group).size)(_.count).toString,
+          metres(mean, _.mean),
+          metres(mean, _.sd),
+          metres(mean, _.least),
+          metres(mean, _.most),
+          metres(within, _.mean),
+          metres(closest, _.mean),
+          closest.fold("")(_.sorted.count(_ < PlanTable.CaptureM).toString),
+          (mean zip truths.get(groups(group).head.policy)).fold("")((distance, truth) =>
+            String.format(java.util.Locale.ROOT, "%+.1f %%", 100 * (distance.mean / truth - 1))
+          )
+        )
+    )
+
+  private def meanDistance(flights: Seq[FlightSummary]) = distribution(flights, _.lastTenSeconds.map(_.mean))
+
+  private def distribution(
+      flights: Seq[FlightSummary],
+      of: DistanceCurve => Option[Double]
+  ): Option[Distribution] =
+    Distribution.of(flights.flatMap(_.distance).flatMap(of))

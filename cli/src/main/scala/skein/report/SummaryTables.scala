@@ -1,0 +1,115 @@
+package skein.report
+
+import java.util.Locale
+import skein.measure.{FlightSet, Observation, Published, Twin}
+import skein.measure.Numbers.*
+import skein.record.EventKind
+
+/** The tables of a report, for the terminal and for the page alike. */
+object SummaryTables:
+
+  /** Distances, ours beside the paper's. */
+  def distances(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "flown s", "closest m", "at s") ++
+        Vector("last 10 s m", "sd", "<min … max", "vs paused") ++
+        Vector("paper m", "<min … max", "closest m"),
+      set.flights.map: summary =>
+        val ours = summary.distance match
+          case Some(curve) =>
+            val last = curve.lastTenSeconds.fold(Vector("< 10 s", "", "")): last =>
+              Vector(
+                fixed(last.mean, 2),
+                fixed(last.sd, 2),
+                s"${fixed(last.least, 1)} … ${fixed(last.most, 1)}"
+              )
+            Vector(
+              fixed(summary.flownS, 1),
+              fixed(curve.closest._2, 2),
+              fixed(curve.closest._1, 1)
+            ) ++ last :+
+              set.deviation(summary).fold("")(share => s"${signed(share * 100)} %")
+          case None => Vector("0", "", "", "", "", "", "")
+        val hasTenSeconds = summary.distance.exists(_.lastTenSeconds.isDefined)
+        val paper         = summary.published.filter(_ => hasTenSeconds).flatMap(_.distance) match
+          case Some(published) =>
+            Vector(
+              fixed(published.mean, 2),
+              s"${fixed(published.least, 1)} … ${fixed(published.most, 1)}",
+              fixed(published.closest, 2)
+            )
+          case None => Vector("", "", "")
+        Vector(summary.name, summary.flight.link) ++ ours ++ paper
+    )
+
+  /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true ages; by the
+    * role that was decided for.
+    */
+  def observations(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "<for") ++
+        Vector("own age", "paper", "opp.'s age", "paper", "own move", "paper", "opp.'s move", "paper") ++
+        Vector("true own", "opp.'s"),
+      for
+        summary <- set.flights
+        role    <- summary.roles
+      yield
+        val published = summary.published.map(_.observedMs)
+        val observed  = Observation.values.toVector.flatMap: observation =>
+          Vector(
+            role.observedMs.get(observation).fold(""): ms =>
+              s"${brief(ms.mean)}/${brief(ms.median)}/${brief(ms.p99)}",
+            published.fold("")(means => brief(Published.ofRole(means(observation), role.role)))
+          )
+        Vector(summary.name, summary.flight.link, role.role) ++ observed ++
+          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => brief(age.mean)))
+    )
+
+  /** How much was done, and what did not go as wished; of the rarer kinds of events those that occurred. */
+  def counts(set: FlightSet): TextTable =
+    val always = Set(EventKind.Dropped, EventKind.Skipped, EventKind.TimedOut)
+    val kinds  =
+      EventKind.values.toVector.filter(kind => always(kind) || set.flights.exists(_.count(kind) > 0))
+    TextTable(
+      Vector("<loop", "<link", "readings", "decisions", "commands") ++ kinds.map(label),
+      set.flights.map: summary =>
+        Vector(summary.name, summary.flight.link) ++
+          Vector(summary.readings, summary.decisions, summary.commands).map(_.toString) ++
+          kinds.map(summary.count(_).toString)
+    )
+
+  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
+    * role, and how far apart they converged.
+    */
+  def twins(set: FlightSet): TextTable =
+    val columns = Twin.columns(set.twins)
+    TextTable(
+      Vector("<loop", "<link", "seed", "<virtual") ++ columns.map(_._3) ++
+        Vector("live m", "virtual m", "difference", "<flown otherwise"),
+      set.twins.map: twin =>
+        val flight = twin.live.flight
+        Vector(twin.live.name, flight.link, flight.seed.toString, twin.seeds) ++
+          columns.map((role, quantity, _) =>
+            twin.find(role, quantity).fold("")(one => fixed(one.distance, 2))
+          ) ++
+          twin.converged.fold(Vector("", ""))((live, virtual) => Vector(fixed(live, 2), fixed(virtual, 2))) ++
+          Vector(twin.difference.fold("")(share => s"${signed(share * 100)} %"), twin.unlike.mkString("; "))
+    )
+
+  /** A line for each flight that ended before its time. */
+  def cutShort(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      reason  <- summary.cutShort
+    yield
+      val flown = s"${fixed(summary.flownS, 1)} of ${brief(summary.flight.duration.toSeconds)} s"
+      s"${summary.flight.id} was cut short, after $flown: $reason"
+
+  /** How to read [[twins]]. */
+  val twinsNote: String =
+    "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data and " +
+      "of the time since the own last move; mean distance of the last 10 s, or a team's first measure"
+
+  /** `TimedOut` as `timed out`. */
+  def label(kind: EventKind): String =
+    kind.toString.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)

@@ -1,0 +1,23 @@
+package skein.report
+
+import skein.measure.{Deviation, Numbers}
+import skein.record.ClockKind
+
+/** What the flights come to, in a sentence for each link: how far each loop was off the paused truth. */
+object Verdict:
+
+  /** One sentence per link and clock over which several loops flew with the paper's policies, live flights last, and
+    * the link with the largest deviation last among them; empty without a paused flight.
+    */
+  def sentences(deviations: Seq[Deviation]): Vector[String] =
+    val groups = deviations.toVector.groupBy(one => (one.link, one.clock)).toVector.filter(_._2.sizeIs > 1)
+    def isVirtual(clock: String) = clock == ClockKind.Virtual.label
+    groups
+      .sortBy((key, group) => (!isVirtual(key._2), group.map(_.share.mean.abs).max))
+      .map: (key, group) =>
+        val (link, clock) = key
+        val shares        = group
+          .sortBy(-_.share.mean.abs)
+          .map(one => s"${one.name} ${Numbers.fixed(100 * one.share.mean.abs, 1)} %")
+        val flown = if isVirtual(clock) then " in virtual time" else ""
+        s"Over $link$flown, off the truth by: ${shares.mkString(", ")}."

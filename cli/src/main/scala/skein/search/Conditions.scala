@@ -1,0 +1,87 @@
+package skein.search
+
+import skein.flight.FlightRigs
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
+import skein.lanes.DuelBatch
+import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.Scenario
+import skein.settings.{FlySettings, TextFile, VehicleChoice}
+import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.units.Span
+import upickle.default.ReadWriter
+import upickle.implicits.key
+
+/** Under what candidates are judged by forward simulation, as users name it.
+  *
+  * @param plant
+  *   see [[VehicleChoice.parse]]
+  */
+final case class Conditions(
+    loop: String,
+    @key("model") plant: String,
+    periodMs: Double,
+    durationS: Double,
+    altitudeM: Double = Scenario.DuelAltitudeM
+) derives ReadWriter:
+
+  /** @return or what was expected and came */
+  def resolved: Either[String, Conditions.Resolved] =
+    for
+      kind <- LoopKind.parse(loop).left.map("--loop: " + _)
+      _    <- Either.cond(
+        altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM,
+        (),
+        s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, came $altitudeM"
+      )
+      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
+      _       <- Either.cond(
+        periodMs >= 1 && periodMs <= 10_000,
+        (),
+        s"--period: expected 1 ms to 10 s, came $periodMs ms"
+      )
+      _ <- Either.cond(
+        durationS >= 10 && durationS <= 3600,
+        (),
+        s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
+      )
+      timing <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
+    yield Conditions.Resolved(timing, vehicle, Duel.paperAt(altitudeM, durationS))
+
+object Conditions:
+
+  final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
+    def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
+
+    /** The ground truth with the same vehicles: the same period, and a world that waits. */
+    def paused: Resolved = copy(timing = LoopTiming.Paused(timing.periodS))
+
+  /** As `./skein fly` flies the loop, by the best model of the vehicles where it predicts. */
+  private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =
+    val settings = LoopSettings.every(period).copy(model = _ => vehicles.predictor)
+    LoopTimings
+      .of(loop, settings, FlightRigs.askTimeout)
+      .toRight(
+        s"a search has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
+      )
+
+  /** The round trips of a link, which forward simulation takes to be independent of one another. */
+  def roundTrips(link: String): Either[String, LatencyDistribution] =
+    profile(link).flatMap:
+      case LatencyProfile.Steady(_, roundTrip) =>
+        Either.cond(
+          roundTrip.quantile(1).toSeconds <= LongestRoundTripS,
+          roundTrip,
+          s"expected round trips of at most $LongestRoundTripS s, came $link with up to ${roundTrip.quantile(1).toSeconds} s"
+        )
+      case alternating: LatencyProfile.Alternating =>
+        Left(s"expected a link whose latency does not come in stretches, came ${alternating.name}")
+
+  /** Forward simulation keeps so much under way. */
+  val LongestRoundTripS = 2.0
+
+  def delays(link: String): Either[String, Delays] = profile(link).flatMap:
+    case steady: LatencyProfile.Steady           => roundTrips(link).map(_ => LinkDelays.of(steady))
+    case alternating: LatencyProfile.Alternating => Right(LinkDelays.of(alternating))
+
+  private def profile(link: String): Either[String, LatencyProfile] =
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message)

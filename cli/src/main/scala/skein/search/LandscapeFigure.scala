@@ -1,0 +1,90 @@
+package skein.search
+
+import skein.plot.*
+
+/** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found candidate
+  * marked, and the defaults.
+  */
+object LandscapeFigure:
+  private val width  = 560.0
+  private val height = 340.0
+  private val line   = Colour(0x0072b2)
+  private val found  = Colour(0xd55e00)
+  private val plain  = Colour(0x111111)
+
+  /** @param value
+    *   what the objective is, with its unit, for the axis or the scale
+    */
+  def apply(landscape: Landscape, title: String, value: String): Drawing =
+    if landscape.y.isEmpty then curve(landscape, title, value) else map(landscape, title, value)
+
+  private def curve(landscape: Landscape, title: String, value: String): Drawing =
+    val axis   = landscape.space.axes(landscape.x)
+    val points = landscape.xs.zip(landscape.cells.head)
+    val low    = points.map((_, tally) => tally.mean - tally.sd).min
+    val high   = points.map((_, tally) => tally.mean + tally.sd).max
+    val panel  = Panel(
+      Axis.exactly(axis.name, axis.least, axis.most),
+      Axis.around(value, low, high),
+      left = 62,
+      top = 52,
+      width,
+      height
+    )
+    val band = points.map((x, tally) => panel.at(x, tally.mean + tally.sd)) ++
+      points.reverse.map((x, tally) => panel.at(x, tally.mean - tally.sd))
+    def marked(x: Double, colour: Colour) =
+      Shape.line(
+        Point(panel.atX(x), panel.top),
+        Point(panel.atX(x), panel.bottom),
+        Stroke(colour, 1.6, Vector(5, 3))
+      )
+    val legend = Legend(
+      panel.left,
+      Legend.line("mean", Stroke(line, 2)),
+      Legend.box("± one standard deviation of the episodes", line.tinted(0.25)),
+      Legend.line(s"found, ${short(landscape.best.head)}", Stroke(found, 1.6, Vector(5, 3))),
+      Legend.line(s"default, ${short(axis.default)}", Stroke(plain, 1.6, Vector(5, 3)))
+    )
+    Drawing(
+      panel.right + 40,
+      panel.bottom + 44,
+      (panel.title(title).moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ Vector(
+        Shape.Path(band, None, Some(line.faded(0.25)), closed = true),
+        panel.curve(points.map((x, tally) => (x, tally.mean)), Stroke(line, 2)),
+        marked(axis.default, plain),
+        marked(landscape.best.head, found)
+      )
+    )
+
+  private def map(landscape: Landscape, title: String, value: String): Drawing =
+    val (xAxis, yAxis) = (landscape.space.axes(landscape.x), landscape.space.axes(landscape.y.get))
+    val panel          = Panel(
+      Axis.exactly(xAxis.name, xAxis.least, xAxis.most),
+      Axis.exactly(yAxis.name, yAxis.least, yAxis.most),
+      left = 62,
+      top = 52,
+      height * 1.2,
+      height
+    )
+    val heat  = HeatMap(landscape.xs, landscape.ys, landscape.cells.map(_.map(tally => Some(tally.mean))))
+    val scale = heat.range
+    def mark(x: Double, y: Double, colour: Colour) =
+      Shape.Disc(panel.at(x, y), 5, Some(Stroke(Colour(0xffffff), 1.5)), Some(colour))
+    val best   = mark(landscape.best(landscape.x), landscape.best(landscape.y.get), found)
+    val paper  = mark(xAxis.default, yAxis.default, plain)
+    val legend = Legend(
+      panel.left,
+      Legend.box("found", found),
+      Legend.box("default" + (if landscape.space.dimension > 2 then ", the others as found" else ""), plain)
+    )
+    Drawing(
+      panel.right + 120,
+      panel.bottom + 44,
+      Vector(panel.title(title).moved(0, -22)) ++ legend.shapes.map(_.moved(0, 22)) ++
+        heat.cells(panel, ColourScale.viridis(scale._1, scale._2)) ++
+        ColourScale.viridis(scale._1, scale._2).bar(panel.right + 24, panel.top, panel.bottom, value) ++
+        panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
+    )
+
+  private def short(value: Double): String = skein.settings.PolicyFile.brief(value)

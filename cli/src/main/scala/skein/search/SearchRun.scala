@@ -1,0 +1,44 @@
+package skein.search
+
+import java.nio.file.Path
+import skein.optimise.{Evaluator, SearchState}
+
+/** Steps a search to its end, or until it is stopped, and keeps its state on disk: a kill loses a few seconds. */
+final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, nanoTime: () => Long):
+  import SearchRun.*
+
+  /** @param isStopped
+    *   asked now and then, from any thread; the step under way is given up then
+    * @param onStep
+    *   told of every state
+    * @return
+    *   the last state, or why it could not be kept
+    */
+  def run(
+      from: SearchState,
+      isStopped: () => Boolean
+  )(onStep: SearchState => Unit): Either[String, SearchState] =
+    var state                       = from
+    var savedAt                     = nanoTime()
+    var atMost                      = FirstStep
+    var saved: Either[String, Unit] = save(state)
+    while saved.isRight && !state.isDone && !isStopped() do
+      val (before, flown) = (nanoTime(), state.flown)
+      state = setup.search.step(state, evaluator, atMost, isStopped)
+      val now     = nanoTime()
+      val perNano = (state.flown - flown).toDouble / (now - before).max(1)
+      atMost = (perNano * StepNanos).toLong.max(1).min(MostAStep).toInt
+      onStep(state)
+      if now - savedAt > SaveNanos then
+        saved = save(state)
+        savedAt = nanoTime()
+    saved.flatMap(_ => save(state)).map(_ => state)
+
+  private def save(state: SearchState) =
+    SearchFile.write(folder, SearchFile(SearchFile.Version, setup.question, state))
+
+object SearchRun:
+  private val FirstStep = 256
+  private val MostAStep = 1_000_000L
+  private val StepNanos = 500_000_000L
+  private val SaveNanos = 2_000_000_000L

@@ -1,0 +1,87 @@
+package skein.budget
+
+import skein.optimise.{Direction, LatencyBudget, Measure, Objective}
+import skein.policy.{PolicyFamily, Role}
+import skein.optimise.LatencyBudget.Bound
+import skein.search.{Conditions, SearchQuestion}
+import skein.settings.PolicyFile
+
+class BudgetSuite extends munit.FunSuite:
+  private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
+
+  private def sweep(loop: String, episodes: Int, threads: Int = 2, durationS: Double = 60) = BudgetSweep(
+    Conditions(loop, "reduced", 100, durationS).resolved.fold(mistake => fail(mistake), identity),
+    paper,
+    SearchQuestion.paperOpponent(Role.Pursuer),
+    Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
+    BudgetAxes.of(200, 5, 60, 3),
+    Some(episodes),
+    seed = 1,
+    threads
+  )
+
+  private def map(of: BudgetSweep): LatencyBudget = of.map(_ => (), () => false).get
+
+  test("without latency the map shows the paused truth, and more latency is worse for the paper's pursuer"):
+    val budget = map(sweep("stream", 16))
+    assertEqualsDouble(budget.deviation(0, 0).get, 0, 2e-3)
+    val off = budget.meansMs.indices.map(budget.deviation(0, _).get)
+    assertEquals(off.sorted, off)
+    assert(off.last > 0.1, off)
+    assertEquals(budget.cells.map(_.map(_.isDefined)).map(_.head), Vector(true, false, false))
+
+  test("the map does not depend on the threads"):
+    assertEquals(map(sweep("stream", 5, threads = 1)), map(sweep("stream", 5, threads = 3)))
+
+  test("a loop without a kernel has a map too, and progress counts its episodes"):
+    var done   = 0L
+    val flying = sweep("sequential", 2, durationS = 12)
+    assert(flying.map(count => done = count, () => false).isDefined)
+    assertEquals(done, flying.expected)
+
+  test("a cancelled map is none"):
+    assertEquals(sweep("stream", 5).map(_ => (), () => true), None)
+
+  private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
+    "stream",
+    100,
+    "last10s",
+    "m",
+    "ideal",
+    "paper-pursuer",
+    0.05,
+    1,
+    LatencyBudget(
+      Vector(0.0, 50.0, 100.0),
+      Vector(0.0, 20.0),
+      Vector.fill(2)(bound.map(value => Some(skein.optimise.Tally(1, value, 0)))),
+      truth = 8
+    ),
+    Vector.empty,
+    legs
+  )
+
+  test("one sentence says up to which latency it holds"):
+    val leaves = shown(Vector(8, 8.2, 8.6))
+    leaves.budget.holdsUpTo(1, 0.05) match
+      case Bound.At(meanMs) => assertEqualsDouble(meanMs, 75, 1e-9)
+      case other            => fail(s"$other")
+    assertEquals(
+      leaves.sentence(18),
+      "holds within 5 % of the truth, 8 m, up to 75 ms mean at 20 ms jitter (round trips; stream every 100 ms)"
+    )
+    assertEquals(
+      leaves.copy(legs = Legs.OneWay).sentence(18),
+      "holds within 5 % of the truth, 8 m, up to 38 ms mean at 10 ms jitter (one way; stream every 100 ms)"
+    )
+    assert(shown(Vector(8, 8, 8)).sentence(0).contains("as far as the map goes, 100 ms mean"))
+    assert(shown(Vector(9, 9, 9)).sentence(0).contains("does not hold"))
+
+  test("cells are written as CSV and JSON in the user's terms"):
+    val map = shown(Vector(8, 8.2, 8.6), Legs.OneWay)
+    assertEquals(map.csvRows.size, 6)
+    assert(map.csvRows(1).startsWith("100.0,25.0,0.0,8.2,0.0,1,0.0249999"), map.csvRows(1))
+    val json = ujson.read(BudgetMap.json(Vector(map)))(0)
+    assertEquals(json("cells")(1)("meanMs").num, 25.0)
+    assertEquals(json("truth").num, 8.0)
+    assert(BudgetFigure(Vector(map)).shapes.nonEmpty)

@@ -1,0 +1,132 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import java.util.concurrent.TimeUnit
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.*
+import scala.jdk.CollectionConverters.*
+import skein.docs.Documentation
+import skein.link.{Address, TcpTransport}
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.Clock
+
+/** Runs every command that README and guides show, as it is written there, for a shorter time. Real sockets on loopback. */
+class DocumentedCommandsLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 5.minutes
+
+  private given system: ActorSystem = ActorSystem("documented-commands")
+  private lazy val folder           = Files.createTempDirectory("documented")
+  private lazy val server           = Edge.await(
+    SimulatorServer.start(SimulatorSettings(address = Address("127.0.0.1", 0)), TcpTransport(), Clock.system)
+  )
+
+  /** A short flight to look at, and a policy that a short search found; each made once. */
+  private lazy val recording: Path = made("fly", "--clock", "virtual", "--loop", "stream", "--link", "vpn")(
+    "--duration",
+    "12s"
+  ).resolve("stream-vpn.duckdb")
+  private lazy val policy: Path = files(made("search")(forward*)).find(_.toString.endsWith("policy.conf")).get
+
+  override def afterAll(): Unit =
+    val _ = Edge.await(system.terminate())
+    files(folder).reverse.foreach(Files.delete)
+
+  private def files(under: Path): Vector[Path] =
+    val found = Files.walk(under)
+    try found.iterator.asScala.toVector
+    finally found.close()
+
+  private val forward = Seq("--candidates", "48", "--episodes", "2", "--fresh", "64")
+
+  /** What makes a command short, and where its results go. */
+  private def shortened(words: Seq[String], out: Path): Seq[String] =
+    val more = words.head match
+      case "fly" if words.contains("virtual") => Seq("--duration", "4s")
+      case "fly"                              => Seq("--duration", "2s", "--twins", "0")
+      case "spread"                           => Seq("--seeds", "2", "--duration", "4s")
+      case "search"                           => forward
+      case "budget"                           => Seq("--means", "3", "--jitters", "2", "--episodes", "20")
+      case "latency"                          => Seq("--period", "5ms")
+      case _                                  => Seq.empty
+    words ++ more ++
+      Option.when(Set("fly", "search", "budget", "latency")(words.head))(Seq(
+        "--out",
+        out.toString
+      )).toSeq.flatten
+
+  private def made(words: String*)(more: String*): Path =
+    val out            = Files.createTempDirectory(folder, "made")
+    val (status, told) = run(words ++ more ++ Seq("--out", out.toString))
+    assertEquals(status, 0, told)
+    out
+
+  /** Exit status, and everything that was said. */
+  private def run(words: Seq[String]): (Int, String) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
+    (status, said.toString(UTF_8))
+
+  /** In a process of its own, until it says that it listens; then it is told to end, as by Ctrl-C. */
+  private def runUntilItListens(words: Seq[String]): (Int, String) =
+    val jvm     = ProcessHandle.current.info.command.get
+    val agents  = java.lang.management.ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
+    val process = ProcessBuilder(
+      (Seq(jvm) ++ agents ++ Seq("-cp", sys.props("java.class.path"), "skein.cli.Main") ++ words)*
+    ).redirectErrorStream(true).start()
+    val reader = process.inputReader(UTF_8)
+    val said   = StringBuilder()
+    var line   = reader.readLine
+    while line != null && !line.contains("127.0.0.1:") do
+      said.append(line).append('\n')
+      line = reader.readLine
+    said.append(line)
+    process.toHandle.destroy(): Unit
+    if !process.waitFor(30, TimeUnit.SECONDS) then process.destroyForcibly(): Unit
+    (process.exitValue, said.toString)
+
+  private val documented: Vector[String] =
+    val pages = Vector("README.md") ++
+      files(Documentation.root.resolve("docs/guides")).map(Documentation.root.relativize(_).toString)
+    pages
+      .filter(_.endsWith(".md"))
+      .flatMap(page =>
+        """\./skein [^`\n#]+""".r.findAllIn(Files.readString(Documentation.root.resolve(page)))
+      )
+      .map(_.stripPrefix("./skein ").trim)
+      .distinct
+
+  test("README and guides show commands"):
+    assert(documented.sizeIs > 10, documented.mkString("\n"))
+
+  for command <- documented do
+    test(s"./skein $command"):
+      val settings = Files.writeString(
+        folder.resolve("settings.json"),
+        """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {"Evader": {"VehicleType": "SimpleFlight"}}}"""
+      )
+      val words = command.split(" +").toVector.map:
+        case "HOST:PORT"              => server.address.toString
+        case "FILE" | "FILE…"         => recording.toString
+        case "settings.json"          => settings.toString
+        case "searches/…/policy.conf" => policy.toString
+        case word                     => word
+      val (status, told) = words.head match
+        case "--help" => run(words)
+        case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+        case "link"   =>
+          // The ports of the guide may be taken here.
+          val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
+          runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
+        case _ if words.contains(server.address.toString) && words.head == "fly" =>
+          // The vehicles of the experiment are not on this simulator: that is told in a line.
+          val (status, told) =
+            run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
+          (if told.contains("the simulator has no vehicle") then 0 else status, told)
+        case _ => run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
+      val stopped = Set(0, 130, 143)
+      assert(
+        if Set("serve", "link")(words.head) then stopped(status) else status == 0,
+        s"exit $status:\n$told"
+      )

@@ -1,0 +1,92 @@
+package skein.cli
+
+import java.lang.management.ManagementFactory
+import java.nio.charset.StandardCharsets.{ISO_8859_1, US_ASCII, UTF_8}
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+
+/** Commands as users start them, each in a process of its own, in environments that are not ours. */
+class EnvironmentLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("environment"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private case class Ended(status: Int, out: String, err: String)
+
+  /** @param before
+    *   what the shell does first, for example a limit
+    */
+  private def skein(in: Path, before: String, jvm: Seq[String], arguments: String*): Ended =
+    val agent =
+      ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.filter(_.startsWith("-javaagent"))
+    val java =
+      Seq(s"${sys.props("java.home")}/bin/java", "-XX:TieredStopAtLevel=1", "-Xshare:auto") ++ agent ++ jvm
+    val words      = java ++ Seq("-cp", sys.props("java.class.path"), "skein.cli.Main") ++ arguments
+    val (out, err) = (in.resolve("out.txt"), in.resolve("err.txt"))
+    val shell      = ProcessBuilder((Seq("bash", "-c", s"$before exec \"$$@\"", "skein") ++ words)*)
+    val process    = shell.directory(in.toFile).redirectOutput(out.toFile).redirectError(err.toFile).start()
+    val status     = process.waitFor()
+    Ended(status, Files.readString(out, ISO_8859_1), Files.readString(err, ISO_8859_1))
+
+  private def assertOneLine(ended: Ended, expected: String): Unit =
+    val lines = ended.err.linesIterator.filterNot(_.startsWith("WARNING")).toVector
+    assert(ended.status != 0, clue(ended))
+    assert(lines.size == 1 && lines.head.contains(expected), clue(ended))
+
+  folder.test(
+    "a flight in Turkish is the flight in English, and is said in ASCII where there is nothing else"
+  ): path =>
+    def fly(name: String, before: String, language: String) = skein(
+      path,
+      before,
+      Seq(s"-Duser.language=$language"),
+      Seq(
+        "fly",
+        "--clock",
+        "virtual",
+        "--loop",
+        "stream",
+        "--link",
+        "vpn",
+        "--duration",
+        "12s",
+        "--out",
+        name
+      )*
+    )
+    val english = fly("en", "export LC_ALL=C.UTF-8;", "en")
+    val turkish = fly("tr", "export LC_ALL=C;", "tr")
+    assertEquals((english.status, turkish.status), (0, 0), turkish.err)
+    def digest(ended: Ended) = ended.err.linesIterator.find(_.contains("SHA-256"))
+    assertEquals(digest(turkish), digest(english))
+    assert(turkish.out.getBytes(ISO_8859_1).forall(_ > 0), "not ASCII")
+    assert(clue(turkish.out).contains("----") && turkish.out.contains(" ... "))
+
+  folder.test("a name that the locale cannot tell is told in a line"): path =>
+    assertOneLine(skein(path, "export LC_ALL=C;", Nil, "report", "flüge.duckdb"), "LC_ALL=C.UTF-8")
+
+  folder.test("where files must stay small, a line says what could not be written"): path =>
+    val ended = skein(
+      path,
+      "ulimit -f 20;",
+      Seq(s"-Djava.io.tmpdir=$path"),
+      Seq("fly", "--clock", "virtual", "--loop", "paused", "--duration", "12s", "--out", "flights")*
+    )
+    assert(ended.status != 0 && !ended.err.contains("\tat "), clue(ended))
+    assert(clue(ended.err).contains("too large"))
+
+  test("few open files are told before a flight, not as a simulator that does not answer"):
+    assertEquals(OpenFiles.enoughFor(7, Some(1024)), Right(()))
+    assert(clue(OpenFiles.enoughFor(1, Some(64))).left.exists(_.contains("ulimit -n 126")))
+
+  test("what a terminal cannot show is printed by letters that it can, whole letters however the bytes come"):
+    val shown = java.io.ByteArrayOutputStream()
+    val plain = Terminal.Plain(shown, US_ASCII)
+    for byte <- "8.2 … 8.3 ± 1 │ █ ö".getBytes(UTF_8) do plain.write(byte)
+    assertEquals(shown.toString(US_ASCII), "8.2 ... 8.3 +/- 1 | # ?")

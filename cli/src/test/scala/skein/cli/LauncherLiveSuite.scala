@@ -1,0 +1,73 @@
+package skein.cli
+
+import java.io.File
+import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+
+/** `./skein` itself, in a checkout whose build is a script, so that each start takes a moment. */
+class LauncherLiveSuite extends munit.FunSuite:
+  private val checkout =
+    Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
+
+  private val copy = FunFixture[Path](
+    _ =>
+      val folder = Files.createTempDirectory("checkout").toRealPath()
+      Files.createDirectories(folder.resolve("project"))
+      for name <- Seq("skein", "project/find-jdk") do
+        Files.copy(checkout.toPath.resolve(name), folder.resolve(name))
+        folder.resolve(name).toFile.setExecutable(true): Unit
+      script(
+        folder.resolve("sbtw"),
+        """mkdir -p cli/target/universal/stage/bin
+          |printf '#!/usr/bin/env bash\necho "flown from $0: $*"\n' >cli/target/universal/stage/bin/skein
+          |chmod +x cli/target/universal/stage/bin/skein""".stripMargin
+      )
+      Files.writeString(folder.resolve("build.sbt"), "")
+      folder
+    ,
+    folder =>
+      run(folder.getParent, Map.empty, "chmod", "-R", "u+w", folder.toString): Unit
+      Using.resource(
+        Files.walk(folder)
+      )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def script(file: Path, body: String): Unit =
+    Files.writeString(file, s"#!/usr/bin/env bash\n$body\n")
+    file.toFile.setExecutable(true): Unit
+
+  /** Exit status, and both outputs together. */
+  private def run(in: Path, environment: Map[String, String], command: String*): (Int, String) =
+    val builder = ProcessBuilder(command*).directory(in.toFile).redirectErrorStream(true)
+    builder.environment.keySet.asScala.toSeq
+      .filter(name => environment.get(name).contains(""))
+      .foreach(builder.environment.remove(_))
+    environment.filter(_._2.nonEmpty).foreach((name, value) => builder.environment.put(name, value))
+    builder.environment.put("JAVA_HOME", sys.props("java.home"))
+    val process = builder.start()
+    val said    = String(process.getInputStream.readAllBytes())
+    (process.waitFor(), said)
+
+  copy.test("it is started through links to links, relative ones too"): folder =>
+    val links = Files.createDirectories(folder.resolve("links"))
+    Files.createSymbolicLink(links.resolve("one"), Path.of("../skein"))
+    Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
+    val (status, said) = run(links, Map.empty, "./two", "fly", "--seed 1")
+    assertEquals(status, 0, said)
+    assert(clue(said).contains(s"$folder/cli/target/universal/stage/bin/skein: fly --seed 1"))
+
+  copy.test("it is started without HOME"): folder =>
+    val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")
+    assertEquals(status, 0, said)
+
+  copy.test("a checkout that cannot be written to is built in the cache, once"): folder =>
+    val cache = Files.createDirectories(folder.resolve("cache"))
+    run(folder, Map.empty, "chmod", "a-w", folder.toString): Unit
+    assume(!Files.isWritable(folder), "whoever may write everywhere has no such checkout")
+    val (status, said) = run(cache, Map("XDG_CACHE_HOME" -> cache.toString), s"$folder/skein", "fly")
+    assertEquals(status, 0, said)
+    assert(clue(said).contains(s"cannot be written to"))
+    assert(said.contains(s"flown from $cache"))
+    val (_, again) = run(cache, Map("XDG_CACHE_HOME" -> cache.toString), s"$folder/skein", "fly")
+    assert(!clue(again).contains("building"))

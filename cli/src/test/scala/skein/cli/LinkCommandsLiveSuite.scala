@@ -1,0 +1,75 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import org.apache.pekko.actor.ActorSystem
+import skein.link.{Address, TcpTransport}
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.Clock
+
+/** Real sockets on loopback and the real clock. */
+class LinkCommandsLiveSuite extends munit.FunSuite:
+  private given system: ActorSystem = ActorSystem("latency-command")
+  private lazy val server           = Edge.await(
+    SimulatorServer.start(SimulatorSettings(address = Address("127.0.0.1", 0)), TcpTransport(), Clock.system)
+  )
+
+  override def afterAll(): Unit = system.terminate(): Unit
+
+  /** Exit status, standard output, standard error. */
+  private def run(command: Command, arguments: String*): (Int, String, String) =
+    val (out, err) = (ByteArrayOutputStream(), ByteArrayOutputStream())
+    val status     = Console.withOut(out)(Console.withErr(err)(command.run(arguments)))
+    (status, out.toString(UTF_8), err.toString(UTF_8))
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("latency"),
+    directory =>
+      directory.toFile.listFiles.foreach(_.delete(): Unit)
+      Files.delete(directory)
+  )
+
+  folder.test("round trips over an emulated link are printed and drawn"): directory =>
+    val (status, printed, told) = run(
+      LatencyCommand,
+      Seq("--simulator", s"${server.address}", "--link", "constant:60ms") ++
+        Seq("--samples", "20", "--period", "20ms", "--out", s"$directory")*
+    )
+    assertEquals(status, 0, told)
+    val mean = "mean ([0-9.]+) ms".r.findFirstMatchIn(printed).map(_.group(1).toDouble)
+    // A cold or busy machine may add to single round trips; none is shorter.
+    assert(mean.exists(ms => ms >= 60 && ms < 400), printed)
+    assert(printed.contains("20 round trips"), printed)
+    assert(printed.linesIterator.exists(_.matches(".*ms  █+ \\d+")), printed)
+    assert(Files.readString(directory.resolve("latency.svg")).contains("</svg>"))
+    assert(Files.size(directory.resolve("latency.png")) > 1000)
+
+  test("where there is no simulator the error says what to look at"):
+    val (status, _, told) = run(LatencyCommand, "--simulator", "127.0.0.1:1", "--samples", "1")
+    assertEquals(status, 1)
+    assert(told.contains("127.0.0.1:1"), told)
+
+  test("mistakes in options name the option and what was expected"):
+    assertEquals(
+      run(LatencyCommand, "--period", "soon")._3.trim,
+      "skein latency: --period: expected a duration with unit, such as 100ms, came 'soon'"
+    )
+    assertEquals(
+      run(LinkCommand, "--listen", "here", "--to", "127.0.0.1:41451")._3.trim,
+      "skein link: --listen: expected HOST:PORT, for example 127.0.0.1:41451, came 'here'"
+    )
+    assert(run(
+      LinkCommand,
+      "--listen",
+      "127.0.0.1:0",
+      "--to",
+      "127.0.0.1:1",
+      "--profile",
+      "dsl"
+    )._3.contains("vpn-mixed"))
+
+  test("a port that is taken is called that"):
+    val (status, _, told) = run(LinkCommand, "--listen", s"${server.address}", "--to", "127.0.0.1:1")
+    assertEquals(status, 1)
+    assert(told.contains(s"port ${server.address.port} of 127.0.0.1 is taken"), told)

@@ -1,0 +1,93 @@
+package skein.cli
+
+import com.typesafe.config.ConfigFactory
+import java.io.{ByteArrayOutputStream, PrintStream}
+import java.lang.classfile.ClassFile
+import java.lang.classfile.instruction.InvokeInstruction
+import java.nio.file.{Files, Path}
+import java.util.Locale
+import scala.jdk.CollectionConverters.*
+import skein.settings.FlySettings
+import skein.policy.{Role, TeamScenario}
+import skein.optimise.Objective
+
+/** Skein does the same where i has no dot, where digits are Arabic, and where the point is a comma. */
+class LocaleSuite extends munit.FunSuite:
+  private val locales = Seq("tr-TR", "az-AZ", "lt-LT", "de-DE", "ar-EG-u-nu-arab", "hi-IN-u-nu-deva")
+
+  for tag <- locales do
+    test(s"settings, scenarios and objectives are read and told in $tag as anywhere"):
+      val before = Locale.getDefault
+      Locale.setDefault(Locale.forLanguageTag(tag))
+      try
+        val settings = FlySettings.read(
+          ConfigFactory
+            .parseString("skein.fly { moves-in-flight = 3, scenario = crossing, crossing.minimum-m = 1.5 }")
+            .withFallback(ConfigFactory.load())
+        )
+        assertEquals(settings.map(read => (read.movesInFlight, read.crossing.minimumM)), Right((3, 1.5)))
+        assertEquals(TeamScenario.Crossing().name, "crossing")
+        assertEquals(Objective.parse("min", Role.Pursuer).map(_.text), Right("minimise min"))
+      finally Locale.setDefault(before)
+
+  test("a wrong option is told in Turkish as anywhere"):
+    val before = Locale.getDefault
+    Locale.setDefault(Locale.forLanguageTag("tr-TR"))
+    try
+      val said   = ByteArrayOutputStream()
+      val status = Console.withErr(PrintStream(said))(SpreadCommand.run(Seq("--moves-in-flight", "x")))
+      assertEquals(status, 2)
+      assert(clue(said.toString).contains("--moves-in-flight: expected a whole number"))
+    finally Locale.setDefault(before)
+
+  private val always    = Set("toLowerCase()Ljava/lang/String;", "toUpperCase()Ljava/lang/String;")
+  private val libraries = Seq(
+    "format(Ljava/lang/String;[Ljava/lang/Object;)Ljava/lang/String;",
+    "formatted([Ljava/lang/Object;)Ljava/lang/String;",
+    "printf(Ljava/lang/String;[Ljava/lang/Object;)Ljava/io/PrintStream;",
+    "format$extension(Ljava/lang/String;Lscala/collection/immutable/Seq;)Ljava/lang/String;"
+  )
+
+  test("no class turns letters by the machine's locale; none of the libraries formats by it"):
+    // The commands set the locale before anything else, so what is the program's alone may format by it.
+    val (program, library) = folders.partition(_.startsWith(folderOf(Main.getClass).getParent))
+    val files              = library.flatMap(classFiles)
+    assert(clue(library).sizeIs > 5 && files.sizeIs > 500)
+    val found = program.flatMap(classFiles).flatMap(calls).filter((_, called) => always(called)) ++
+      files.flatMap(calls).filter((_, called) => always(called) || libraries.contains(called))
+    assertEquals(found.map((where, called) => s"$where calls $called"), Nil)
+
+  test("such calls are found"):
+    val own = classFiles(folderOf(getClass)).filter(_.getFileName.toString.startsWith("LocaleSuite$Offender"))
+    assertEquals(own.flatMap(calls).count((_, called) => always(called) || libraries.contains(called)), 3)
+
+  object Offender:
+    def lower(text: String): String     = text.toLowerCase
+    def interpolated(x: Double): String = f"$x%.1f"
+    def formatted(x: Double): String    = String.format("%.1f", x)
+
+  private def folderOf(some: Class[?]): Path =
+    Path.of(some.getProtectionDomain.getCodeSource.getLocation.toURI)
+
+  /** Of our modules' classes; what others wrote stands in jars. */
+  private def folders: Seq[Path] =
+    sys.props(
+      "java.class.path"
+    ).split(java.io.File.pathSeparator).toSeq.map(Path.of(_)).filter(Files.isDirectory(_))
+      .filterNot(_.getFileName.toString == "test-classes")
+
+  private def classFiles(folder: Path): Seq[Path] =
+    val found = Files.walk(folder)
+    try found.iterator.asScala.filter(_.toString.endsWith(".class")).toVector
+    finally found.close()
+
+  /** Every call: where, and the method's name with its type. */
+  private def calls(file: Path): Seq[(String, String)] =
+    for
+      method <- ClassFile.of().parse(file).methods.asScala.toSeq
+      code   <- Option(method.code.orElse(null)).toSeq
+      call   <- code.elementList.asScala.collect { case call: InvokeInstruction => call }
+    yield (
+      s"${file.getFileName}: ${method.methodName.stringValue}",
+      call.name.stringValue + call.`type`.stringValue
+    )

@@ -1,0 +1,31 @@
+package skein.cli
+
+import java.io.{ByteArrayOutputStream, PrintStream}
+
+class MisuseSuite extends munit.FunSuite:
+
+  /** Exit status and what was said before the hint at `--help`. */
+  private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withErr(PrintStream(said))(command.run(arguments))
+    (status, said.toString.linesIterator.toSeq.dropRight(1))
+
+  test("a mistake is told in a line: which option, what was expected, what came"):
+    for
+      (command, arguments, line) <- Seq(
+        (
+          SearchCommand,
+          Seq("--candidates", "x"),
+          "--candidates: expected a whole number that is not too large, came 'x'"
+        ),
+        (BudgetCommand, Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
+        (FlyCommand, Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
+        (SpreadCommand, Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
+        (BudgetCommand, Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
+        (SearchCommand, Seq("--seed"), "--seed: expected a value behind it"),
+        (SearchCommand, Seq("--seed", "1", "--seed", "2"), "--seed: expected once, came 1 and 2"),
+        (SearchCommand, Seq("--sed", "1", "--period", "1s"), "--sed: no such option or argument")
+      )
+    do
+      val (status, lines) = misused(command, arguments*)
+      assertEquals((status, lines.head), (2, s"skein ${command.name}: $line"))

@@ -1,0 +1,18 @@
+package skein.cli
+
+class NarrowTerminalSuite extends munit.FunSuite:
+
+  test("a progress line leaves the last place of a terminal free, and says that it goes on"):
+    val line = " 42 %  3 min left   best 8.31 m with pure-pursuit"
+    for columns <- 1 to 80 do
+      val shown = ProgressLine.cut(line, Some(columns))
+      assert(shown.length < columns, s"$columns columns: '$shown'")
+      assert(shown == line || shown.isEmpty || shown.endsWith("…"), s"$columns columns: '$shown'")
+    assertEquals(ProgressLine.cut(line, Some(line.length + 1)), line)
+    assertEquals(ProgressLine.cut(line, None), line)
+
+  for columns <- Seq(60, 80, 100) do
+    test(s"no help wraps on $columns columns"):
+      for case command: OptionsCommand[?] <- Main.commands do
+        val widest = command.help(columns).linesIterator.maxBy(_.length)
+        assert(widest.length <= columns, s"${command.name}: ${widest.length} columns: '$widest'")

@@ -1,0 +1,144 @@
+package skein.cli
+
+import com.typesafe.config.ConfigFactory
+import java.io.{ByteArrayOutputStream, PrintStream}
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import scala.util.Using
+import skein.flight.VirtualFlights
+import skein.forward.Reduced
+import skein.identify.Structure
+import skein.loop.LoopKind
+import skein.record.{MemoryRecorder, Recording}
+import skein.report.SyntheticFlight
+import skein.settings.{FlySettings, ModelFile, PredictionModel}
+import skein.signal.LatencyProfile
+import skein.units.Span
+import skein.vehicle.ReducedModel
+
+class RecordingCommandsSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 2.minutes
+
+  private val recordings = FunFixture[Path](
+    _ =>
+      val folder = Files.createTempDirectory("flights")
+      for (loop, link) <- Seq("paused" -> "none", "stream" -> "vpn") do
+        write(SyntheticFlight(loop, link, seed = 1, seconds = 12), folder.resolve(s"$loop-$link.duckdb"))
+      folder
+    ,
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def write(recording: Recording, file: Path): Unit =
+    val recorder = MemoryRecorder(recording.heading)
+    (recording.readings ++ recording.decisions ++ recording.commands).foreach(recorder.offer)
+    assert(recorder.writeTo(file).isRight)
+
+  /** Exit status, standard output and error output. */
+  private def run(command: Command, arguments: String*): (Int, String, String) =
+    val out    = ByteArrayOutputStream()
+    val err    = ByteArrayOutputStream()
+    val status = Console.withOut(PrintStream(out))(Console.withErr(PrintStream(err))(command.run(arguments)))
+    (status, out.toString, err.toString)
+
+  recordings.test("report rebuilds page and tables from the files alone"): folder =>
+    val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
+    val (status, text, err) = run(ReportCommand, files :+ "--out" :+ folder.resolve("report").toString*)
+    assertEquals((status, err), (0, ""))
+    assert(text.linesIterator.exists(line => line.startsWith("stream") && line.contains("vpn")), text)
+    assert(Files.exists(folder.resolve("report/report.html")))
+
+  recordings.test("report --json gives the tables alone on standard output"): folder =>
+    val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
+    val (status, text, err) = run(ReportCommand, files :+ "--json" :+ "--out" :+ folder.resolve("report").toString*)
+    assertEquals(status, 0, err)
+    val tables = ujson.read(text)("tables").arr
+    val first  = tables.head
+    val row    = first("rows").arr.find(row => row(0).str == "stream").getOrElse(fail(text))
+    assertEquals(row.arr.size, first("columns").arr.size)
+    assert(row(2).num > 10, row.toString)
+    assert(err.contains("report in"), err)
+
+  private val flown = FunFixture[Path](
+    _ =>
+      val folder   = Files.createTempDirectory("flown")
+      val settings = FlySettings(
+        List(LoopKind.Stream),
+        List(LatencyProfile.vpn),
+        Span.ofSeconds(32),
+        Span.ofMillis(100),
+        seed = 5,
+        pairs = 1,
+        asPublished = false
+      )
+      assert(VirtualFlights.fly(settings, settings.plans, folder)((_, _) => ()).isRight)
+      folder
+    ,
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
+    folder =>
+      val (status, text, err) = run(IdentifyCommand, folder.resolve("stream-vpn.duckdb").toString)
+      assertEquals(status, 0, err)
+      assert(text.contains("position p50 m") && text.contains("drag-and-turn"), text)
+      assert(Files.size(folder.resolve("model.svg")) > 10000)
+      val file  = ModelFile.read(folder.resolve("model.conf").toString).fold(fail(_), identity)
+      val named = ReducedModel.AirSim
+      assertEquals(file.use, Structure.Drag)
+      assertEqualsDouble(file.model.gain, named.gain, 0.1, file.toString)
+      assertEqualsDouble(file.model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
+      assertEqualsDouble(file.model.deadTimeS, named.deadTimeS, 0.04, file.toString)
+      assertEqualsDouble(file.reduced.get.lagS, Reduced.AirSim.lagS, 0.1 * Reduced.AirSim.lagS, file.toString)
+      val flags = ConfigFactory.parseString(s"skein.fly.predictor = \"${folder.resolve("model.conf")}\"")
+      val read  = FlySettings.read(flags.withFallback(ConfigFactory.load()).resolve())
+      assertEquals(read.map(_.predictor), Right(PredictionModel.Fitted(file.model, file.altitudeM)))
+      assertEquals(file.altitudeM, Some(20.0))
+
+  recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
+    val broken =
+      Files.writeString(folder.resolve("broken.conf"), "skein.model { use = drag, drag { gain.value = 1 } }")
+    val (status, _, err) = run(SpreadCommand, "--seeds", "1", "--predictor", broken.toString)
+    assertEquals(status, 1)
+    assert(err.contains("lag-s"), err)
+    val (unfit, _, reason) = run(IdentifyCommand, folder.resolve("paused-none.duckdb").toString)
+    assertEquals(unfit, 1)
+    assert(reason.contains("expected"), reason)
+
+  recordings.test("report without --out writes beside the first recording"): folder =>
+    assertEquals(run(ReportCommand, folder.resolve("stream-vpn.duckdb").toString)._1, 0)
+    assert(Files.exists(folder.resolve("figures/distance.svg")))
+
+  recordings.test("report names a file that is no recording, and writes nothing"): folder =>
+    val text             = Files.writeString(folder.resolve("notes.txt"), "nothing")
+    val (status, _, err) = run(ReportCommand, folder.resolve("stream-vpn.duckdb").toString, text.toString)
+    assertEquals(status, 1)
+    assert(err.contains(s"$text is not a recording"), err)
+    assert(!Files.exists(folder.resolve("report.html")))
+
+  recordings.test("digest shows the same for the same contents in another file, and another for others"):
+    folder =>
+      val again = folder.resolve("again.duckdb")
+      write(SyntheticFlight("stream", "vpn", seed = 1, seconds = 12), again)
+      val files = Seq(folder.resolve("stream-vpn.duckdb"), again, folder.resolve("paused-none.duckdb"))
+      val (status, text, err) = run(DigestCommand, files.map(_.toString)*)
+      assertEquals((status, err), (0, ""))
+      val lines = text.linesIterator.map(_.split("  ", 2).toSeq).toSeq
+      assertEquals(lines.map(_(1)), files.map(_.toString))
+      assertEquals(lines(0)(0), lines(1)(0))
+      assertNotEquals(lines(0)(0), lines(2)(0))
+
+  recordings.test("export writes Parquet files of one recording"): folder =>
+    val parquet = folder.resolve("parquet")
+    assertEquals(
+      run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString, "--parquet", parquet.toString)._1,
+      0
+    )
+    assert(Files.size(parquet.resolve("decision.parquet")) > 1000)
+
+  recordings.test("export takes exactly one recording"): folder =>
+    val (status, _, err) = run(ExportCommand, "--parquet", folder.toString)
+    assertEquals(status, 1)
+    assert(err.contains("expected one recording, came 0"), err)

@@ -1,0 +1,19 @@
+package skein.cli
+
+import skein.rpc.{ServerLimits, ServerStats}
+
+class ServerNewsSuite extends munit.FunSuite:
+  private val calm = ServerStats(3, 3, 0, 0, 0, 0, 0, 0, 100, 0, 100, 0, 0, 0, 0, 500, 3 << 20)
+
+  test("as long as nobody is refused anything, nothing is said"):
+    assertEquals(ServerNews.line(calm, ServerLimits()), None)
+
+  test("each kind of refusal is counted and named, with the memory that was held"):
+    val limits = ServerLimits(connections = 4, heldBytesPerConnection = 1 << 20, heldBytesInCommon = 2 << 20)
+    assertEquals(
+      ServerNews.line(calm.copy(turnedAway = 2, tooSlow = 1, dropped = 7), limits),
+      Some(
+        "clients: 2 turned away because 4 connections were open, 1 closed for messages or replies that took too long; " +
+          "7 calls of closed connections dropped; at most 3 of 10 MiB were held for clients at any time"
+      )
+    )

@@ -1,0 +1,26 @@
+package skein.docs
+
+import java.nio.file.{Files, Path}
+import skein.cli.CommandReference
+import skein.record.RecordingSchema
+
+/** Pages that are written by the code they describe. */
+object Documentation:
+  val root: Path =
+    Iterator
+      .iterate(Path.of("").toAbsolutePath)(_.getParent)
+      .find(path => Files.exists(path.resolve("build.sbt")))
+      .get
+
+  val hint = """write it anew with ./sbtw "cli/Test/runMain skein.docs.writeDocumentation""""
+
+  /** By path from the root: what each page has to say. */
+  val generated: Vector[(String, () => String)] = Vector(
+    "docs/commands.md"  -> (() => CommandReference.markdown),
+    "docs/recording.md" -> (() => RecordingSchema.markdown)
+  )
+
+@main def writeDocumentation(): Unit =
+  for (name, written) <- Documentation.generated do
+    Files.writeString(Documentation.root.resolve(name), written())
+    Console.out.println(s"wrote $name")

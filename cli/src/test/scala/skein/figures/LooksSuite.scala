@@ -1,0 +1,16 @@
+package skein.figures
+
+import skein.loop.LoopKind
+import skein.measure.{FlightSet, FlightSummary}
+import skein.report.SyntheticFlight
+
+class LooksSuite extends munit.FunSuite:
+
+  test("every loop has a colour of its own, and one that is not known has another"):
+    val colours = LoopKind.values.toVector.map(loop => Looks.of(loop.label)) :+ Looks.of("a loop to come")
+    assertEquals(colours.distinct.size, LoopKind.values.length + 1)
+
+  test("flights stand in the order of the loops, whatever order they came in"):
+    val flights = LoopKind.values.reverse.toVector.filter(_ != LoopKind.Paused).map: loop =>
+      FlightSummary.of(SyntheticFlight(loop.label, "vpn", seed = 1, seconds = 12))
+    assertEquals(FlightSet(flights).flights.map(_.flight.loop), flights.reverse.map(_.flight.loop))

@@ -1,0 +1,48 @@
+package skein.flight
+
+import skein.loop.{LoopKind, Replay}
+import skein.measure.FlightSummary
+import skein.policy.{LeadPursuit, PolicyFamily, Role}
+import skein.report.{Report, ReportSections}
+import skein.settings.{FlySettings, PolicyFile, RecordedPlan}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+class PolicyFlightSimulation extends munit.FunSuite:
+  private val policy = PolicyFile(Role.Pursuer, PolicyFamily.leadPursuit, Vector(0.5, 1.25, 1.0))
+
+  private val settings = FlySettings(
+    List(LoopKind.Paused, LoopKind.Stream),
+    List(LatencyProfile.vpn),
+    Span.ofSeconds(12),
+    Span.ofMillis(100),
+    seed = 3,
+    pairs = 1,
+    asPublished = false,
+    policies = List(policy, policy)
+  )
+
+  test("a policy flies beside the paper's, over the same delays; recording, replay and report say which"):
+    assertEquals(
+      settings.plans.map(plan => (plan.id, plan.seed)),
+      Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>
+        Vector(s"paused-none$name" -> 3L, s"stream-vpn$name" -> 4L)
+      )
+    )
+    val flown = settings.plans
+      .take(4)
+      .map(plan => VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder.recording)
+    val own  = flown(3)
+    val read = RecordedPlan.of(own).fold(fail(_), identity)
+    assertEquals(read.plan, settings.plans(3))
+    assertEquals(
+      read.scenario.agents.find(_.role == Role.Pursuer).map(_.policy),
+      Some(LeadPursuit(0.5, 1.25, 1.0))
+    )
+    assertEquals(Replay(read.scenario, own).firstDifference, None)
+    assert(Replay(settings.agents, own).firstDifference.isDefined, "replayed as the paper's pursuer alike")
+    assert(own.flight.scenario.contains("lead-pursuit speedRatio=0.5 lead=1.25"), own.flight.scenario)
+
+    val table = ReportSections.text(Report.of(flown))
+    assert(table.contains("stream, lead-pursuit"), table)
+    assertEquals(flown.map(FlightSummary.of).map(_.published.isDefined), Vector(true, true, false, false))

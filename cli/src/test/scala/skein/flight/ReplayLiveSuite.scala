@@ -1,0 +1,20 @@
+package skein.flight
+
+import scala.concurrent.duration.*
+import skein.loop.LoopKind
+
+/** Real sockets, real time and real threads, of which virtual time has one. */
+class ReplayLiveSuite extends munit.FunSuite:
+
+  override val munitTimeout: Duration = 5.minutes
+
+  test("what live loops decided is decided again from their recordings, futures on several threads included"):
+    val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)
+    val settings = TwinFlights.settings(loops, seconds = 6).copy(pairs = 2)
+    TwinFlights.inFolder: folder =>
+      assertEquals(TwinFlights.flyLive(settings, settings.plans, folder), Right(()))
+      for plan <- settings.plans do
+        val replayed = Replayed.of(plan.file(folder)).fold(fail(_), identity)
+        assertEquals(replayed.decidedAgain, None, plan.id)
+        // An idle machine makes some 200, a busy one a tenth of that.
+        assert(replayed.decisions > 10, s"${plan.id}: ${replayed.decisions} decisions")

@@ -1,0 +1,121 @@
+package skein.flight
+
+import java.nio.file.Files
+import scala.concurrent.duration.*
+import skein.loop.{LoopKind, Outcome, Replay}
+import skein.measure.{FlightSummary, TeamResult}
+import skein.record.{EventKind, Recording}
+import skein.settings.FlySettings
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Scenarios of teams in virtual time. */
+class TeamSimulation extends munit.FunSuite:
+
+  // Twenty vehicles in virtual time take a while where others work too.
+  override val munitTimeout: Duration = 2.minutes
+
+  private def settings(scenario: String, loop: LoopKind, link: LatencyProfile, seconds: Double) = FlySettings(
+    List(loop),
+    List(link),
+    Span.ofSeconds(seconds),
+    Span.ofMillis(100),
+    seed = 1,
+    pairs = 1,
+    asPublished = false,
+    scenario = scenario
+  )
+
+  private def fly(settings: FlySettings): Recording =
+    val flown = VirtualFlights.fly(settings, settings.plans.head).fold(fail(_), identity)
+    assertEquals(flown.landed.outcome, Outcome.Completed)
+    flown.recorder.recording
+
+  private def resultOf(recording: Recording): TeamResult =
+    FlightSummary.of(recording).team.getOrElse(fail("no team"))
+
+  private def value(result: TeamResult, name: String): Double =
+    result.measures.find(
+      _.name == name
+    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measures}"))
+
+  test("five pursuers surround the evader over the VPN"):
+    val result = resultOf(fly(settings("surround", LoopKind.Predictive, LatencyProfile.vpn, 13)))
+    assert(value(result, "surrounded after s") < 12, result.measures)
+
+  test("a formation flies its circuit without a network"):
+    val result = resultOf(fly(settings("formation", LoopKind.Stream, LatencyProfile.none, 18)))
+    assert(value(result, "slot rms m") < 1.5, result.measures)
+
+  test(
+    "twenty cross over the VPN: each is commanded ten times a second at most and nothing is refused or lost"
+  ):
+    val recording = fly(settings("crossing", LoopKind.Predictive, LatencyProfile.vpn, 12))
+    val result    = resultOf(recording)
+    assert(value(result, "closest m") > 1, result.measures)
+    val unwanted = recording.events.filter(_.kind != EventKind.Dropped)
+    assert(unwanted.isEmpty, unwanted.take(5).mkString("\n"))
+    assertEquals(recording.acknowledgements.size, recording.commands.size)
+    for (vehicle, commands) <- recording.commands.groupBy(_.vehicle) do
+      assert(commands.size <= 121 && commands.size > 80, s"$vehicle: ${commands.size} commands")
+      val pauses = commands.map(_.sentAt).sorted.sliding(2).map(pair => pair(1).since(pair(0)))
+      assert(pauses.forall(_ >= Span.ofMillis(20)), s"$vehicle is commanded faster than the rate cap allows")
+
+  test("twenty that plan cross over the VPN: the set separation is kept, and they are through sooner"):
+    val result = resultOf(fly(settings("crossing", LoopKind.Plan, LatencyProfile.vpn, 12.5)))
+    assertEquals(value(result, "violations"), 0.0, result.measures)
+    assert(value(result, "closest m") >= 2.5, result.measures)
+    // Avoiding one another by their policy, none of them is there before 13 s.
+    assert(value(result, "arrived") >= 15, result.measures)
+
+  test("a team that searches its plans for long surrounds the evader as closely as by its rule"):
+    def offRing(loop: LoopKind) =
+      val flown = settings("surround", loop, LatencyProfile.vpn, 20)
+      value(resultOf(fly(flown.copy(planning = flown.planning.copy(slices = 20)))), "off ring m")
+    val (planned, byRule) = (offRing(LoopKind.Plan), offRing(LoopKind.Predictive))
+    assert(planned < byRule + 0.05, s"$planned m off the ring, by the rule $byRule m, seed 1")
+
+  test("a formation that plans keeps its slots over the VPN"):
+    val result = resultOf(fly(settings("formation", LoopKind.Plan, LatencyProfile.vpn, 24)))
+    assert(value(result, "slot rms m") < 0.32, s"${result.measures}, seed 1")
+
+  for (scenario, loop) <- Seq(
+      "surround"  -> LoopKind.Paused,
+      "formation" -> LoopKind.Futures,
+      "crossing"  -> LoopKind.Stream,
+      "crossing"  -> LoopKind.Predictive,
+      "crossing"  -> LoopKind.Plan
+    )
+  do
+    test(s"$scenario by ${loop.label} decides the same when it is decided upon again, and when flown again"):
+      val small    = settings(scenario, loop, LatencyProfile.vpn, 2)
+      val chosen   = small.copy(crossing = small.crossing.copy(vehicles = 6))
+      val plan     = chosen.plans.head
+      val recorder = VirtualFlights.fly(chosen, plan).fold(fail(_), identity).recorder
+      val folder   = Files.createTempDirectory("team")
+      val file     = plan.file(folder)
+      try
+        assert(recorder.writeTo(file).isRight)
+        val replayed = Replayed.of(file).fold(fail(_), identity)
+        assert(replayed.decisions > 50, replayed.toString)
+        assertEquals(replayed.decidedAgain, None)
+        assertEquals(replayed.flownAgain.map(_.again), Some(recorder.digest))
+      finally
+        Files.deleteIfExists(file): Unit
+        Files.delete(folder)
+
+  test("a replay notices that another vehicle of the team was seen elsewhere"):
+    val flown     = settings("surround", LoopKind.Predictive, LatencyProfile.direct, 2)
+    val recording = fly(flown)
+    val forged    = recording.sightings.map(sighting =>
+      if sighting.decision != 5 then sighting
+      else
+        sighting.copy(predicted =
+          sighting.predicted.map(motion =>
+            motion.copy(positionNed = motion.positionNed + Vector3(0.01, 0, 0))
+          )
+        )
+    )
+    assertEquals(Replay(flown.agents, recording).firstDifference, None)
+    val found = Replay(flown.agents, recording.copy(sightings = forged)).firstDifference
+    assert(found.exists(_.where.startsWith("decision 5 ")), found.toString)

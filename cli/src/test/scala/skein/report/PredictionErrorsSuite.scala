@@ -1,0 +1,80 @@
+package skein.report
+
+import scala.concurrent.duration.*
+import skein.figures.Figure
+import skein.flight.VirtualFlights
+import skein.loop.LoopKind
+import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup}
+import skein.settings.FlySettings
+import skein.signal.LatencyProfile
+import skein.units.*
+
+class PredictionErrorsSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 2.minutes
+
+  test("errors are sorted by age into bins around multiples of 20 ms, of which small ones are left out"):
+    val samples = Vector.tabulate(40)(index => (91.0 + index % 18, index / 1000.0)) ++
+      Vector.fill(PredictionErrors.Fewest - 1)((50.0, 9.0))
+    val errors = PredictionErrors(made = 70, samples)
+    assertEquals(errors.unverified, 70 - 59)
+    assertEquals(errors.byAge.map(_._1), Vector(100))
+    assertEquals(errors.around(100).map(_.count), Some(40))
+    assertEqualsDouble(errors.around(100).get.quantile(0.95), 0.95 * 0.039, 1e-9)
+    assertEquals(errors.around(200), None)
+
+  private lazy val flights =
+    fly(List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive), Span.ofMillis(100))
+
+  private def fly(loops: List[LoopKind], period: Span) =
+    val settings = FlySettings(
+      loops,
+      List(LatencyProfile.direct),
+      duration = Span.ofSeconds(12),
+      period = period,
+      seed = 1,
+      pairs = 1,
+      asPublished = false
+    )
+    VirtualFlights
+      .inParallel(settings, settings.plans)(flown => FlightSummary.of(flown.recorder.recording))
+      .map(_.fold(missing => fail(missing.message), identity))
+
+  test("of a flight, every prediction is counted: verified with its error, or unverified"):
+    val group = PredictionGroup.of(flights) match
+      case Vector(group) => group
+      case others        => fail(s"expected predictions of one loop, came ${others.size}")
+    assertEquals((group.name, group.link), ("predictive", "direct"))
+    for errors <- Seq(group.own, group.others) do
+      assert(
+        errors.made >= 200 && errors.unverified >= 0 && errors.unverified < 20,
+        s"${errors.made} ${errors.unverified}"
+      )
+      assert(errors.errors.get.quantile(0.95) < 0.1, errors.errors.get.quantile(0.95).toString)
+    assert(Figure.spread(flights).map(_.name).contains("prediction"))
+
+  test("predictions of which none could be verified are counted, not hidden"):
+    val groups = PredictionGroup.of(fly(List(LoopKind.Predictive), Span.ofMillis(400)))
+    for errors <- groups.flatMap(group => Seq(group.own, group.others)) do
+      assert(errors.made >= 50 && errors.unverified == errors.made, s"${errors.made} ${errors.unverified}")
+    assertEquals(PredictionTable.of(groups).rows.size, 2)
+
+  test("deviations are relative to the paused truth, by loop, link and clock"):
+    val deviations = Deviation.of(flights)
+    assertEquals(
+      deviations.map(one => (one.loop, one.link)),
+      Vector(("stream", "direct"), ("predictive", "direct"))
+    )
+    val metres = flights.map(one => one.flight.loop -> one.headlineM.get).toMap
+    assertEqualsDouble(deviations.head.share.mean, metres("stream") / metres("paused") - 1, 1e-12)
+    assertEquals(Deviation.of(flights.filterNot(_.flight.loop == "paused")), Vector.empty)
+
+  test("the sections stand in the text, on the report's page and on that of a spread"):
+    val set  = FlightSet(flights)
+    val text = ReportSections.text(set)
+    assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)
+    val pages =
+      Seq(HtmlReport.render(set, Figure.all(set)), HtmlReport.spread(flights, Figure.spread(flights)))
+    for page <- pages do
+      assert(
+        page.contains("Deviation from the paused truth") && page.contains("Prediction error against age")
+      )

@@ -1,0 +1,16 @@
+package skein.report
+
+import java.nio.file.Path
+
+/** Writes the report of the experiment's seven flights, flown synthetically, into the folder of its argument: for
+  * looking at pictures while working on them. `./sbtw "cli/Test/runMain skein.report.PreviewReport FOLDER"`
+  */
+object PreviewReport:
+  def main(arguments: Array[String]): Unit =
+    val flown = Vector("paused" -> "none") ++
+      (for link <- Seq("direct", "vpn"); loop <- Seq("sequential", "futures", "stream") yield loop -> link)
+    val set = Report.of(flown.zipWithIndex.map { case ((loop, link), seed) =>
+      SyntheticFlight(loop, link, seed)
+    })
+    println(ReportSections.text(set))
+    println(Report.write(set, Path.of(arguments(0))).fold(identity, _.page))

@@ -1,0 +1,92 @@
+package skein.report
+
+import java.nio.file.{Files, Path}
+import javax.imageio.ImageIO
+import javax.xml.parsers.DocumentBuilderFactory
+import scala.util.Using
+import skein.figures.Figure
+import skein.measure.Numbers
+import skein.record.{MemoryRecorder, RecordError, Recording}
+
+class ReportSuite extends munit.FunSuite:
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("report"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private lazy val set = Report.of(
+    Seq(
+      ("paused", "none"),
+      ("sequential", "direct"),
+      ("stream", "direct"),
+      ("stream", "vpn")
+    ).zipWithIndex.map:
+      case ((loop, link), index) => SyntheticFlight(loop, link, seed = index, seconds = 15)
+  )
+
+  folder.test("a report is one page and five figures, each as SVG and PNG"): folder =>
+    val output = Report.write(set, folder.resolve("new/folder")).fold(fail(_), identity)
+    assert(Files.size(output.page) > 10_000)
+    val names = Set("trajectories", "distance", "observations", "latency", "deviation")
+    assertEquals(Figure.all(set).map(_.name).toSet, names)
+    for name <- names do
+      val stem     = output.page.resolveSibling("figures").resolve(name).toString
+      val document =
+        DocumentBuilderFactory.newInstance().newDocumentBuilder().parse(Path.of(s"$stem.svg").toFile)
+      assertEquals(document.getDocumentElement.getTagName, "svg")
+      if output.withoutPng.isEmpty then
+        val image = ImageIO.read(Path.of(s"$stem.png").toFile)
+        val ratio = document.getDocumentElement.getAttribute("width").toDouble / image.getWidth
+        assertEqualsDouble(ratio, 1 / 3.0, 0.001)
+
+  test("the page needs nothing beside itself"):
+    val page    = HtmlReport.render(set, Figure.all(set))
+    val links   = "(?:src|href|url|@import)\\s*[=(]".r.findFirstIn(page)
+    val scripts = "<script|<link|<iframe|<img".r.findFirstIn(page)
+    val hosts   = "https?://[^\"]*".r.findAllIn(page).toSet
+    assertEquals((links, scripts, hosts - "http://www.w3.org/2000/svg"), (None, None, Set.empty[String]))
+
+  test("the same recordings give the same page"):
+    assertEquals(HtmlReport.render(set, Figure.all(set)), HtmlReport.render(set, Figure.all(set)))
+
+  test("what a recording says cannot become markup"):
+    val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val named  = flight.heading.flight.copy(simulator = "<b onload=\"x\">&", link = "<i>")
+    val page   =
+      HtmlReport.render(Report.of(Seq(flight.copy(heading = flight.heading.copy(flight = named)))), Nil)
+    assert(!page.contains("<b onload"), "the simulator's name was not escaped")
+    assert(!page.contains("<i>"), "the link's name was not escaped")
+
+  test("a flight without a single record still gives a page and a table"):
+    val empty = SyntheticFlight("stream", "direct", seed = 1, seconds = 12).heading
+    val set   = Report.of(Seq(Recording(empty)))
+    assert(HtmlReport.render(set, Figure.all(set)).contains("Skein"))
+    assert(ReportSections.text(set).contains("stream"))
+
+  test("the tables have our values beside the paper's"):
+    val stream = SummaryTables.distances(set).rows.find(row => row(0) == "stream" && row(1) == "vpn").get
+    val ours   = set.flights.find(_.flight.id == "stream-vpn").flatMap(_.distance).get.lastTenSeconds.get.mean
+    assert(stream.contains(Numbers.fixed(ours, 2)), stream)
+    assert(stream.contains("8.50"), stream)
+
+  test("columns of a text table stand below their names"):
+    val table = TextTable(Vector("<name", "m"), Vector(Vector("a", "10.5"), Vector("long name", "2")))
+    assertEquals(
+      table.render,
+      """name          m
+        |─────────  ────
+        |a          10.5
+        |long name     2""".stripMargin
+    )
+
+  folder.test("every file that cannot be read is named"): folder =>
+    val good = folder.resolve("good.duckdb")
+    assert(MemoryRecorder(SyntheticFlight("stream", "direct", 1, 12).heading).writeTo(good).isRight)
+    val missing = folder.resolve("missing.duckdb")
+    val text    = Files.writeString(folder.resolve("text.duckdb"), "nothing")
+    assertEquals(
+      Report.read(Seq(good, missing, text)),
+      Left(Seq(RecordError.NoSuchFile(missing), RecordError.NotARecording(text, "it is not a DuckDB file")))
+    )
+    assert(Report.read(Seq(good)).isRight)

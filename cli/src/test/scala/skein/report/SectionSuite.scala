@@ -1,0 +1,52 @@
+package skein.report
+
+import skein.figures.Figure
+
+class SectionSuite extends munit.FunSuite:
+  private val table = TextTable(
+    Vector("<loop", "<at", "m", "share", "range"),
+    Vector(Vector("stream", "12", "8.50", "+2.0", "1 … 2"), Vector("paused", "", "", "-0.5", ""))
+  )
+
+  test("data: numbers are numbers, what is empty is null, names are text"):
+    val read = ujson.read(Section.json(Seq(Section("One", "note", Some(table)), Section("a picture"))))
+    assertEquals(
+      read,
+      ujson.Obj(
+        "tables" -> ujson.Arr(
+          ujson.Obj(
+            "title"   -> "One",
+            "note"    -> "note",
+            "columns" -> ujson.Arr("loop", "at", "m", "share", "range"),
+            "rows"    -> ujson.Arr(
+              ujson.Arr("stream", "12", 8.5, 2.0, "1 … 2"),
+              ujson.Arr("paused", ujson.Null, ujson.Null, -0.5, ujson.Null)
+            )
+          )
+        )
+      )
+    )
+
+  test("text: a note stands below its table, in lines of at most 100 letters"):
+    val note  = Vector.fill(60)("words").mkString(" ")
+    val lines = Section.text(Seq(Section("One", note, Some(table)), Section("Two", table = Some(table)))).linesIterator.toVector
+    assertEquals(lines.head, "One")
+    val told = lines.drop(5).takeWhile(_.nonEmpty)
+    assertEquals(told.mkString(" "), note)
+    assert(told.size > 1 && told.forall(_.length <= 100), told.mkString("\n"))
+    assertEquals(lines.dropWhile(_ != "Two").size, 5)
+
+  test("text, page and data have the same tables in the same order"):
+    val set    = Report.of(
+      Seq("paused" -> "none", "stream" -> "vpn").map((loop, link) => SyntheticFlight(loop, link, seed = 1, seconds = 12))
+    )
+    val titles = ReportSections.of(set).map(_.title)
+    assert(titles.size >= 4, titles.toString)
+    val text = ReportSections.text(set)
+    val page = HtmlReport.render(set, Figure.all(set))
+    val data = ujson.read(Section.json(ReportSections.of(set)))("tables").arr.map(_("title").str).toVector
+    assertEquals(data, titles)
+    for medium <- Seq(text, page.replace("&#39;", "'")) do
+      val places = titles.map(medium.indexOf(_))
+      assert(places.forall(_ >= 0), s"$titles at $places")
+      assertEquals(places, places.sorted)

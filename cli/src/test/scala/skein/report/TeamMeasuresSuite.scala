@@ -1,0 +1,133 @@
+package skein.report
+
+import skein.figures.Figure
+import skein.measure.{FlightSummary, TeamResult}
+import skein.policy.TeamScenario
+import skein.record.*
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** Measures of flights whose vehicles fly where they are told. */
+class TeamMeasuresSuite extends munit.FunSuite:
+
+  /** @param placeM
+    *   north and east of a vehicle at a time, s
+    */
+  private def flown(scenario: TeamScenario, seconds: Int, loop: String = "stream")(
+      placeM: (Int, Double) => (Double, Double)
+  ): Recording =
+    val agents   = scenario.scenario.agents
+    val vehicles =
+      agents.map(agent => Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
+    val settings = scenario.settings.map((name, value) => Parameter(s"${scenario.name}.$name", value))
+    val flight   = Flight(
+      s"$loop-none",
+      loop,
+      "none",
+      1,
+      Span.ofMillis(100),
+      Span.ofSeconds(seconds),
+      "virtual",
+      "built-in",
+      scenario.name,
+      "test",
+      Instant.Epoch
+    )
+    val readings =
+      for
+        tick             <- 0 to seconds * 10
+        (agent, vehicle) <- agents.zipWithIndex
+      yield
+        val at            = Instant.Epoch + Span.ofMillis(tick * 100.0)
+        val (north, east) = placeM(vehicle, tick / 10.0)
+        val state = Kinematics(Vector3(north, east, -5), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+        Reading(tick, agent.name, Stamped(state, at, at, at))
+    Recording(Heading(flight, vehicles, settings), readings)
+
+  private def resultOf(recording: Recording): TeamResult =
+    FlightSummary.of(recording).team.getOrElse(fail("no team"))
+
+  private def value(result: TeamResult, name: String): Double =
+    result.measures.find(
+      _.name == name
+    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measures}"))
+
+  test("a ring that closes: its radius, the even gap, and from when on the evader is between its pursuers"):
+    val scenario = TeamScenario.Surround(vehicles = 5)
+    // Until 4 s all stand within 160°, then at right angles.
+    val result = resultOf(flown(scenario, 20): (vehicle, second) =>
+      val bearing = if second < 4 then (vehicle - 1) * 53.0 else (vehicle - 1) * 90.0
+      val radius  = if vehicle == 0 then 0.0 else 6.0 + vehicle
+      (3 + radius * math.cos(bearing.toRadians), -2 + radius * math.sin(bearing.toRadians)))
+    assertEqualsDouble(value(result, "ring m"), 8.5, 1e-9)
+    assertEqualsDouble(value(result, "nearest m"), 7, 1e-9)
+    // 7, 8, 9 and 10 m.
+    assertEqualsDouble(value(result, "off ring m"), math.sqrt(6.0 / 4), 1e-9)
+    assertEqualsDouble(value(result, "gap °"), 90, 1e-9)
+    assertEqualsDouble(value(result, "surrounded after s"), 3.95, 0.06)
+
+  test("an evader outside its ring is never surrounded"):
+    val result = resultOf(flown(TeamScenario.Surround(vehicles = 4), 12)((vehicle, _) =>
+      (vehicle.toDouble, vehicle * vehicle.toDouble)
+    ))
+    assertEquals(result.measures.find(_.name == "surrounded after s").flatMap(_.value), None)
+
+  test("slots are kept round the circuit, but for a follower that is 0.3 m beside its own from 15 s on"):
+    val scenario = TeamScenario.Formation(vehicles = 3, spacingM = 4)
+    val circuit  = scenario.circuit
+    val slots    = scenario.slots
+    val result   = resultOf(flown(scenario, 20): (vehicle, second) =>
+      val place         = second * 2
+      val (north, east) = circuit.point(place)
+      val heading       = circuit.headingRad(place)
+      val (ahead, side) = if vehicle == 0 then (0.0, 0.0) else slots(vehicle - 1)
+      val right         = if vehicle == 2 && second >= 15 then side + 0.3 else side
+      (
+        north + ahead * math.cos(heading) - right * math.sin(heading),
+        east + ahead * math.sin(heading) + right * math.cos(heading)
+      ))
+    assertEqualsDouble(value(result, "largest m"), 0.3, 0.01)
+    // One of two followers, half of the counted time.
+    assertEqualsDouble(value(result, "slot rms m"), 0.15, 0.005)
+    assert(value(result, "at s") >= 14.9)
+
+  test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
+    val scenario = TeamScenario.Crossing(vehicles = 3, streams = 2, minimumM = 2)
+    val goals    = scenario.goals
+    // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from 8 s on.
+    val result = resultOf(flown(scenario, 12): (vehicle, second) =>
+      vehicle match
+        case 0 => ((second - 5) * 4, 200.0)
+        case 1 => (0.0, 201.0)
+        case _ => if second < 8 then (500.0, 500.0) else goals(2))
+    assertEqualsDouble(value(result, "closest m"), 1, 1e-9)
+    assertEqualsDouble(value(result, "at s"), 5, 0.01)
+    assertEquals(value(result, "violations"), 1.0)
+    assertEquals(value(result, "arrived"), 1.0)
+    assertEqualsDouble(value(result, "to goal s"), 8, 0.1)
+    assertEqualsDouble(value(result, "per min"), 7.5, 0.1)
+
+  test("a flight is measured against the paused truth of its own scenario, and by where its vehicles are"):
+    val scenario              = TeamScenario.Surround(vehicles = 3)
+    def ring(radiusM: Double) = (vehicle: Int, _: Double) =>
+      (if vehicle == 0 then 0.0 else if vehicle == 1 then radiusM else -radiusM, 0.0)
+    val set = Report.of(
+      Seq(
+        flown(scenario, 12, "paused")(ring(9)),
+        flown(scenario, 12)(ring(10)),
+        flown(TeamScenario.Surround(vehicles = 3, ringM = 9), 12, "paused")(ring(100)),
+        SyntheticFlight("paused", "none", seed = 1, seconds = 12)
+      )
+    )
+    val flights = set.teams.head
+    val stream  = flights.flights.find(_.summary.flight.loop == "stream").get
+    assertEquals(stream.result.measures.head.value, Some(2.0))
+    assertEqualsDouble(flights.deviation(stream).get, 1, 1e-9)
+    // Two of three vehicles are 1 m off.
+    assertEqualsDouble(flights.offTruthM(stream).get, math.sqrt(2.0 / 3), 1e-9)
+    assertEquals(set.teams.size, 2)
+    assertEquals(set.duels.flights.size, 1)
+    val text = ReportSections.text(set)
+    assert(text.contains("Results: surround") && text.contains("Distance between pursuer and evader"), text)
+    val page = HtmlReport.render(set, Figure.all(set))
+    assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))

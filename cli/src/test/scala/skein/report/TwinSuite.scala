@@ -1,0 +1,67 @@
+package skein.report
+
+import skein.figures.Figure
+import skein.measure.Twin
+import skein.record.Recording
+import skein.units.*
+
+class TwinSuite extends munit.FunSuite:
+  private def virtual(loop: String, link: String, seed: Long): Recording =
+    SyntheticFlight(loop, link, seed, seconds = 12)
+
+  private def live(loop: String, link: String, seed: Long): Recording =
+    val recording = virtual(loop, link, seed)
+    val flight    = recording.heading.flight.copy(clock = "real")
+    recording.copy(heading = recording.heading.copy(flight = flight))
+
+  test("a live flight is paired with the virtual ones of its loop and link, and with no others"):
+    val set = Report.of(
+      Seq(
+        live("stream", "direct", 1),
+        virtual("stream", "direct", 2),
+        virtual("stream", "direct", 3),
+        virtual("stream", "vpn", 4),
+        live("sequential", "direct", 5)
+      )
+    )
+    val twin = set.twins match
+      case Vector(twin) => twin
+      case others       => fail(s"expected one pair, came ${others.size}")
+    assertEquals(twin.virtual.map(_.flight.seed), Vector(2L, 3L))
+    assertEquals(twin.seeds, "2 seeds, 2 … 3")
+    // Twins stand beside their live flight alone; a virtual flight without one is a flight like others.
+    assertEquals(
+      set.flights.map(one => (one.flight.loop, one.flight.link)),
+      Vector(("sequential", "direct"), ("stream", "direct"), ("stream", "vpn"))
+    )
+
+  test("a flight and its exact copy in virtual time are 0 apart in everything"):
+    val twin = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 1))).twins.head
+    assertEquals(twin.compared.size, 4)
+    assertEquals(twin.compared.map(_.distance), Vector.fill(4)(0.0))
+    assertEquals(twin.difference, Some(0.0))
+    assertEquals(twin.unlike, Vector.empty)
+
+  test(
+    "data that grew older on another link is that far apart, and the difference of the distances is relative to the twin"
+  ):
+    val other = live("stream", "vpn", 1)
+    val vpn   = other.copy(heading =
+      other.heading.copy(flight = other.flight.copy(link = "direct", duration = Span.ofSeconds(13)))
+    )
+    val twin   = Report.of(Seq(vpn, virtual("stream", "direct", 1))).twins.head
+    val age    = twin.find("pursuer", Twin.Age).getOrElse(fail("no ages")).distance
+    val (l, v) = twin.converged.getOrElse(fail("no distances"))
+    assert(age > 0.9, s"$age")
+    assertEqualsDouble(twin.difference.get, l / v - 1, 1e-12)
+    assertEquals(twin.unlike, Vector("duration 13 s live, 12 s virtual"))
+
+  test("the section stands in the text and on the page where there is a pair, and only there"):
+    val paired = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 2)))
+    val page   = HtmlReport.render(paired, Figure.all(paired))
+    assert(page.contains("Live against virtual") && page.contains("KS 0."), "no section")
+    val text = ReportSections.text(paired)
+    assert(text.contains("Live against virtual") && text.contains("seed 2"), text)
+    val alone = Report.of(Seq(live("stream", "direct", 1)))
+    assert(!HtmlReport.render(alone, Figure.all(alone)).contains("Live against virtual"))
+    assert(!ReportSections.text(alone).contains("Live against virtual"))

@@ -1,0 +1,37 @@
+package skein.report
+
+import skein.measure.{Deviation, Distribution}
+
+class VerdictSuite extends munit.FunSuite:
+
+  private def deviation(loop: String, link: String, share: Double, clock: String = "real") =
+    Deviation(loop, loop, link, clock, Distribution.of(Seq(share)).get)
+
+  test("each link's loops are named from the farthest off the truth to the nearest, the worst link last"):
+    val said = Verdict.sentences(Seq(
+      deviation("stream", "vpn", 0.298),
+      deviation("predictive", "vpn", -0.0104),
+      deviation("stream", "direct", 0.081),
+      deviation("predictive", "direct", -0.003)
+    ))
+    assertEquals(
+      said,
+      Vector(
+        "Over direct, off the truth by: stream 8.1 %, predictive 0.3 %.",
+        "Over vpn, off the truth by: stream 29.8 %, predictive 1.0 %."
+      )
+    )
+
+  test("live and virtual flights are not mixed"):
+    val said = Verdict.sentences(Seq(
+      deviation("stream", "vpn", 0.3),
+      deviation("predictive", "vpn", 0.01),
+      deviation("stream", "vpn", 0.2, "virtual"),
+      deviation("predictive", "vpn", 0.02, "virtual")
+    ))
+    assertEquals(said.count(_.contains("in virtual time")), 1)
+    assertEquals(said.size, 2)
+
+  test("one loop alone, or no truth, says nothing"):
+    assertEquals(Verdict.sentences(Seq(deviation("stream", "vpn", 0.3))), Vector.empty)
+    assertEquals(Verdict.sentences(Nil), Vector.empty)

@@ -1,0 +1,121 @@
+package skein.search
+
+import java.nio.file.Files
+import scala.jdk.CollectionConverters.*
+import skein.optimise.{Evaluator, SearchState, Tally}
+
+class SearchFileSuite extends munit.FunSuite:
+  private def question(method: String) = SearchQuestion(
+    family = "paper-pursuer",
+    role = "pursuer",
+    objective = "0.9*last10s + 0.01*effort",
+    method = method,
+    conditions = Conditions("stream", "reduced", 100, 12),
+    link = "vpn",
+    opponent = "paper-evader turningRadiusM=8.0",
+    candidates = 60,
+    episodes = 4,
+    population = 12,
+    seed = 7
+  )
+
+  private def setup(method: String) = question(method).setup.fold(mistake => fail(mistake), identity)
+
+  for method <- SearchQuestion.Methods.split(", ").toSeq do
+    test(s"$method, written down and read back after every step, ends as an unbroken search"):
+      val ready                       = setup(method)
+      val evaluator                   = ready.evaluator(ready.batch(2))
+      def through(state: SearchState) =
+        val text = SearchFile.json(SearchFile(SearchFile.Version, ready.question, state))
+        SearchFile.parse(text).fold(mistake => fail(mistake), identity)
+      def ended(next: SearchState => SearchState) =
+        Iterator.iterate(ready.search.start)(next).find(_.isDone).get
+      val unbroken = ended(ready.search.step(_, evaluator, Int.MaxValue))
+      val broken   = ended: state =>
+        val read = through(state)
+        assertEquals(read.question, ready.question)
+        ready.search.step(read.state, evaluator, 17)
+      assertEquals(broken, unbroken)
+
+  test("a run leaves its last state in the folder, and nothing half-written"):
+    val folder = Files.createTempDirectory("skein-search")
+    val ready  = setup("cma-es")
+    var steps  = 0
+    val run    = SearchRun(ready, ready.evaluator(ready.batch(1)), folder, () => System.nanoTime())
+    val state  = run.run(ready.search.start, () => steps == 3)(_ => steps += 1)
+    assertEquals(SearchFile.read(folder).map(_.state), state)
+    assertEquals(Files.list(folder).iterator.asScala.map(_.getFileName.toString).toSeq, Seq(SearchFile.Name))
+    Files.delete(folder.resolve(SearchFile.Name))
+    Files.delete(folder)
+
+  test(
+    "a run that is stopped within a step keeps the state before it, and goes on from there to the same end"
+  ):
+    val folder = Files.createTempDirectory("skein-search")
+    val ready  = setup("cma-es")
+    val flying = ready.evaluator(ready.batch(1))
+    var calls  = 0
+    val cut    = new Evaluator:
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+        calls += 1
+        flying.tallies(candidates, episodes)
+    def run(from: SearchState, isStopped: () => Boolean) =
+      val states = Vector.newBuilder[SearchState]
+      val last   = SearchRun(ready, cut, folder, () => 0L).run(from, isStopped)(states += _)
+      (last.fold(mistake => fail(mistake), identity), states.result())
+    val (unbroken, states) = run(ready.search.start, () => false)
+    calls = 0
+    val (stopped, _) = run(ready.search.start, () => calls == 3)
+    assertEquals(stopped, states(1))
+    assertEquals(SearchFile.read(folder).map(_.state), Right(stopped))
+    assertEquals(run(stopped, () => false)._1, unbroken)
+    Files.delete(folder.resolve(SearchFile.Name))
+    Files.delete(folder)
+
+  test("what is not the state of a search is refused"):
+    for (text, part) <-
+        Seq("{}" -> "version", "nonsense" -> "state of a search", """{"version": 99}""" -> "version 1")
+    do
+      val mistake = SearchFile.parse(text).left.getOrElse("accepted")
+      assert(mistake.contains(part), mistake)
+
+  test("the predictive loop and a link that alternates are right"):
+    val asked = question("cma-es").copy(
+      link = "vpn-mixed",
+      conditions = Conditions("predictive", "reduced", 100, 12)
+    )
+    assert(asked.setup.isRight, asked.setup)
+
+  for
+    (name, wrong, parts) <- Seq(
+      ("family", question("cma-es").copy(family = "nosuch"), Seq("--family", "paper-pursuer", "'nosuch'")),
+      ("objective", question("cma-es").copy(objective = "best"), Seq("--objective", "character 1", "'best'")),
+      ("method", question("luck"), Seq("--method", "cma-es", "'luck'")),
+      ("link", question("cma-es").copy(link = "pigeon"), Seq("--link", "pigeon")),
+      (
+        "loop",
+        question("cma-es").copy(conditions = Conditions("plan", "reduced", 100, 12)),
+        Seq("--loop", "plan")
+      ),
+      (
+        "model",
+        question("cma-es").copy(conditions = Conditions("stream", "car", 100, 12)),
+        Seq("--plant", "quadrotor", "'car'")
+      ),
+      (
+        "duration",
+        question("cma-es").copy(conditions = Conditions("stream", "reduced", 100, 2)),
+        Seq("--duration", "10 s")
+      ),
+      ("population", question("cma-es").copy(population = 2), Seq("--population", "4")),
+      ("episodes", question("grid").copy(episodes = 0), Seq("--episodes", "0")),
+      (
+        "number of a race's episodes",
+        question("racing").copy(candidates = 100_000, episodes = 200),
+        Seq("--episodes", "at most 128", "200")
+      )
+    )
+  do
+    test(s"a wrong $name is refused by the option's name"):
+      val mistake = wrong.setup.left.getOrElse("accepted")
+      for part <- parts do assert(mistake.contains(part), mistake)

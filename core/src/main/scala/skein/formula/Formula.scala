@@ -1,0 +1,237 @@
+package skein.formula
+
+import java.lang.reflect.{Method, Modifier}
+import scala.collection.mutable
+import scala.util.control.NonFatal
+import skein.formula.Value.*
+
+/** What an ordinary method computes, as data: numbers from [[inputs]] and [[parameters]] to [[outputs]]. A compiler is a
+  * function of it (`skein.simd.LaneCompiler`); one for another machine would be one more.
+  *
+  * @param inputs
+  *   names of the numbers that the arguments come to
+  * @param outputs
+  *   what the method answers, by name; an answer that is a single number is called `answer`
+  * @param parameters
+  *   where in the object the doubles are that the method reads of it
+  */
+final class Formula private (
+    val trace: Trace,
+    val inputs: Vector[String],
+    val outputs: Vector[(String, Node)],
+    parameterPaths: Vector[Path],
+    guards: Vector[Guard],
+    of: Class[?]
+):
+  private val reader = PathReader(parameterPaths, guards)
+
+  /** How the parameters are called, for example `.weights(3)`. */
+  val parameters: Vector[String] = parameterPaths.map(_.toString)
+
+  /** Whether another object's method is this formula, with parameters of its own. */
+  def fits(other: AnyRef): Boolean = (other.getClass eq of) && reader.fits(other)
+
+  /** The parameters of an object that [[fits]]. */
+  def parametersOf(other: AnyRef): Array[Double] = reader.read(other)
+
+  /** The values of these nodes of [[trace]]. */
+  def evaluate(nodes: Vector[Node], input: Array[Double], parameters: Array[Double]): Array[Double] =
+    val values = Array.ofDim[Double](trace.size)
+    Formula.evaluate(nodes, input, parameters, values)
+    nodes.map(node => values(node.id)).toArray
+
+  /** What comes out for doubles: slow, and to the bit what the method itself answers. */
+  def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
+    evaluate(outputs.map(_._2), input, parameters)
+
+object Formula:
+
+  /** What an object's method computes.
+    *
+    * @param method
+    *   by name
+    * @param sizes
+    *   of arguments that are arrays, by name
+    * @param arguments
+    *   the types of its arguments, where a class has several methods of the name
+    * @return
+    *   or why it cannot be traced
+    */
+  def of(
+      target: AnyRef,
+      method: String,
+      sizes: Map[String, Int] = Map.empty,
+      arguments: Option[Seq[Class[?]]] = None
+  ): Either[Untraceable, Formula] =
+    val candidates = methodsOf(target.getClass).filter: each =>
+      each.getName == method && !Modifier.isAbstract(each.getModifiers) && !each.isBridge &&
+        arguments.forall(_ == each.getParameterTypes.toSeq)
+    candidates.distinctBy(each =>
+      java.lang.invoke.MethodType.methodType(each.getReturnType, each.getParameterTypes)
+    ) match
+      case Seq(one) => of(target, one, sizes)
+      case Seq()    => Left(Untraceable(s"${target.getClass.getName} has no method $method"))
+      case _        => Left(Untraceable(s"${target.getClass.getName} has several methods $method"))
+
+  private def of(target: AnyRef, method: Method, sizes: Map[String, Int]): Either[Untraceable, Formula] =
+    try
+      val loader = Option(target.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
+      val files  = ClassFiles(loader)
+      val trace  = Trace()
+      val lifter = Lifter(files, trace)
+      val names  = Vector.newBuilder[String]
+      var count  = 0
+
+      def input(name: String): Node =
+        names += name
+        count += 1
+        trace.input(count - 1)
+
+      def argument(kind: Class[?], name: String): Value =
+        if kind == classOf[Double] then Number(input(name))
+        else if kind == classOf[Object] then
+          throw Untraceable(s"the type of the argument $name is not known; make it a case class of doubles")
+        else if kind == classOf[Array[Double]] then
+          val size = sizes.getOrElse(name, throw Untraceable(s"how many numbers has the argument $name?"))
+          lifter.make(Thing.Elements(Vector.tabulate(size)(i => Number(input(s"$name($i)")))))
+        else if kind.isPrimitive || kind.isArray || kind.isInterface || Modifier.isAbstract(kind.getModifiers)
+        then
+          throw Untraceable(
+            s"the argument $name is a ${kind.getName}; expected a Double, doubles, or a class of them"
+          )
+        else
+          val fields =
+            fieldsOf(kind).map(each => each.getName -> argument(each.getType, s"$name.${each.getName}"))
+          lifter.make(Thing.Record(kind.getName.replace('.', '/'), fields.toMap))
+
+      val descriptor = java.lang.invoke.MethodType
+        .methodType(method.getReturnType, method.getParameterTypes)
+        .toMethodDescriptorString
+      val owner = target.getClass.getName.replace('.', '/')
+      val code  = files
+        .method(owner, method.getName, descriptor)
+        .getOrElse(
+          throw Untraceable(
+            s"${target.getClass.getName} has no class file: a lambda expression? A class has one"
+          )
+        )
+      val args = method.getParameters.toVector.map(each => argument(each.getType, each.getName))
+      val self = if code.isStatic then Vector.empty else Vector(Known(target, Some(Path(None, Step.Itself))))
+      val answer = lifter.call(code, self ++ args)
+
+      def outputsOf(value: Value, name: String): Vector[(String, Node)] = value match
+        case Number(node)        => Vector(name -> node)
+        case Boxed(Number(node)) => Vector(name -> node)
+        case Made(id)            =>
+          lifter.thing(id) match
+            case Thing.Record(className, fields) => ofFields(className, fields, name)
+            case Thing.Either(className, fields) => ofFields(className, fields, name)
+            case Thing.Elements(values, _)       =>
+              values.zipWithIndex.flatMap((each, i) => outputsOf(each, s"$name($i)"))
+            case _ => throw Untraceable("it answers with a closure")
+        case Known(_, _) => throw Untraceable(s"$name is an object that was there before; make it of numbers")
+        case _           => throw Untraceable(s"$name is no double")
+
+      def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
+        fieldsOf(files.load(className)).toVector
+          .map(_.getName)
+          .filter(fields.contains)
+          .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
+
+      Right(Formula(
+        trace,
+        names.result(),
+        outputsOf(answer, Answer),
+        lifter.parameters,
+        lifter.guards,
+        target.getClass
+      ))
+    catch
+      case refused: Untraceable => Left(refused)
+      case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.${method.getName}: $other"))
+
+  private val Answer = "answer"
+
+  private def methodsOf(of: Class[?]): Vector[Method] =
+    Iterator.iterate[Class[?]](of)(
+      _.getSuperclass
+    ).takeWhile(_ != null).flatMap(_.getDeclaredMethods).toVector ++
+      of.getMethods
+
+  /** Superclasses' first, in the order in which they are declared. */
+  private def fieldsOf(kind: Class[?]): Seq[java.lang.reflect.Field] =
+    Iterator
+      .iterate[Class[?]](kind)(_.getSuperclass)
+      .takeWhile(each => each != null && each != classOf[Object])
+      .toSeq
+      .reverse
+      .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
+
+  /** Fills in the values of these nodes and of all that they need, by number; conditions are 1 or 0. */
+  private[formula] def evaluate(
+      of: Seq[Node],
+      input: Array[Double],
+      parameters: Array[Double],
+      values: Array[Double]
+  ): Unit =
+    import Op.{Always, And, Const, Eq, Input, Le, Lt, Not, Or, Param, Where}
+    for node <- Trace.needed(of) do
+      def a = values(node.args(0).id)
+      def b = values(node.args(1).id)
+      values(node.id) = node.op match
+        case Const        => node.value
+        case Input        => input(node.index)
+        case Param        => parameters(node.index)
+        case Where        => if a != 0 then b else values(node.args(2).id)
+        case Always       => 1
+        case Not          => 1 - a
+        case And          => Math.min(a, b)
+        case Or           => Math.max(a, b)
+        case Lt | Le | Eq => if Op.holds(node.op, a, b) then 1 else 0
+        case op           => if node.args.size == 1 then Op.compute(op, a) else Op.compute(op, a, b)
+
+/** Reads numbers inside of objects of one form, each object on the way once. */
+private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
+  private val places               = mutable.LinkedHashMap.empty[Path, Int]
+  private def place(of: Path): Int =
+    of.before.foreach(place)
+    places.getOrElseUpdate(of, places.size)
+  private val wanted   = paths.map(place).toArray
+  private val guarded  = guards.map(guard => place(guard.path)).toArray
+  private val expected = guards.map(_.expected).toArray
+  private val steps    = places.keysIterator.map(_.step).toArray
+  private val before   = places.keysIterator.map(_.before.fold(-1)(places)).toArray
+  for case Step.Of(field) <- steps do field.setAccessible(true)
+
+  def read(root: AnyRef): Array[Double] =
+    val found = walk(root)
+    wanted.map(at => found(at).asInstanceOf[java.lang.Double].doubleValue)
+
+  def fits(root: AnyRef): Boolean =
+    val found = walk(root)
+    guarded.indices.forall: i =>
+      val value = found(guarded(i))
+      expected(i) match
+        case null                => value == null
+        case kind: Class[?]      => value != null && (value.getClass eq kind)
+        case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
+        case number              => value == number
+
+  /** What stands at each place; nothing behind what is not of the form. */
+  private def walk(root: AnyRef): Array[AnyRef] =
+    val found = Array.ofDim[AnyRef](steps.length)
+    for i <- steps.indices do
+      val from = if before(i) < 0 then root else found(before(i))
+      found(i) = steps(i) match
+        case Step.Itself       => root
+        case _ if from == null => null
+        case Step.Of(field)    =>
+          if field.getDeclaringClass.isInstance(from) then field.get(from) else null
+        case Step.At(index) => from match
+            case numbers: Array[Double] => if index < numbers.length then Double.box(numbers(index)) else null
+            case objects: Array[AnyRef] => if index < objects.length then objects(index) else null
+            case numbers: Array[Int]    => if index < numbers.length then Int.box(numbers(index)) else null
+            case _                      =>
+              if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
+              else null
+    found

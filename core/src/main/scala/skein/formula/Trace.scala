@@ -1,0 +1,161 @@
+package skein.formula
+
+import scala.collection.mutable
+import skein.formula.Op.*
+
+/** One number, or one condition, of an expression.
+  *
+  * @param value
+  *   of a [[Op.Const]]
+  * @param index
+  *   of an [[Op.Input]] or [[Op.Param]]
+  */
+final class Node private[formula] (
+    val id: Int,
+    val op: Op,
+    val args: Vector[Node],
+    val value: Double,
+    val index: Int
+):
+  def isConst: Boolean            = op == Const
+  def is(number: Double): Boolean = isConst && value == number
+
+  override def toString: String = op match
+    case Const  => value.toString
+    case Input  => s"in$index"
+    case Param  => s"p$index"
+    case Always => "true"
+    case _      => args.mkString(s"$op(", ", ", ")")
+
+/** Expressions as a graph in which equal ones are one node, so that nothing is computed twice. What is known already is
+  * computed at once, to the bit as it would be later; nothing is rearranged. A node's arguments have smaller numbers than
+  * itself. Not for several threads.
+  *
+  * @param most
+  *   nodes; more are refused
+  */
+final class Trace(most: Int = 200_000):
+  private val known = mutable.HashMap.empty[(Op, Vector[Int], Long), Node]
+  private val all   = mutable.ArrayBuffer.empty[Node]
+
+  def size: Int = all.size
+
+  def const(value: Double): Node = leaf(Const, value, 0, java.lang.Double.doubleToRawLongBits(value))
+  def input(index: Int): Node    = leaf(Input, 0, index, index)
+  def param(index: Int): Node    = leaf(Param, 0, index, index)
+  val always: Node               = leaf(Always, 0, 0, 0)
+
+  def neg(a: Node): Node            = unary(Neg, a)
+  def add(a: Node, b: Node): Node   = binary(Add, a, b)
+  def sub(a: Node, b: Node): Node   = binary(Sub, a, b)
+  def mul(a: Node, b: Node): Node   = binary(Mul, a, b)
+  def div(a: Node, b: Node): Node   = binary(Div, a, b)
+  def lt(a: Node, b: Node): Node    = comparison(Lt, a, b)
+  def le(a: Node, b: Node): Node    = comparison(Le, a, b)
+  def equal(a: Node, b: Node): Node = comparison(Eq, a, b)
+  def never: Node                   = not(always)
+
+  def unary(op: Op, a: Node): Node =
+    if a.isConst then const(Op.compute(op, a.value))
+    else if op == Neg && a.op == Neg then a.args(0)
+    else node(op, a)
+
+  def binary(op: Op, a: Node, b: Node): Node =
+    if a.isConst && b.isConst then const(Op.compute(op, a.value, b.value))
+    else
+      op match
+        case Mul if b.is(1)                    => a
+        case Mul if a.is(1)                    => b
+        case Div if b.is(1)                    => a
+        case Mul if b.is(-1)                   => neg(a)
+        case Mul if a.is(-1)                   => neg(b)
+        case Sub if b.is(0) && 1 / b.value > 0 => a
+        case Mul if a.isConst && ofConsts(b)   => leaves(b)(mul(a, _))
+        case Mul if b.isConst && ofConsts(a)   => leaves(a)(mul(_, b))
+        case _                                 => node(op, a, b)
+
+  private def comparison(op: Op, a: Node, b: Node): Node =
+    if a.isConst && b.isConst then if Op.holds(op, a.value, b.value) then always else never
+    // What a condition has chosen between known numbers is compared: it is the condition again.
+    else if b.isConst && ofConsts(a) then chosen(a)(comparison(op, _, b))
+    else if a.isConst && ofConsts(b) then chosen(b)(comparison(op, a, _))
+    else node(op, a, b)
+
+  def not(a: Node): Node =
+    if a.op == Not then a.args(0) else node(Not, a)
+
+  def and(a: Node, b: Node): Node =
+    if a.op == Always then b
+    else if b.op == Always || a == b then a
+    else if isNever(a) || isNever(b) then never
+    else node(And, a, b)
+
+  def or(a: Node, b: Node): Node =
+    if isNever(a) then b
+    else if isNever(b) || a == b then a
+    else if a.op == Always || b.op == Always then always
+    else node(Or, a, b)
+
+  def where(condition: Node, a: Node, b: Node): Node =
+    if a == b || condition.op == Always then a
+    else if isNever(condition) then b
+    else if condition.op == Not then where(condition.args(0), b, a)
+    // What the same condition chose before.
+    else if a.op == Where && a.args(0) == condition then where(condition, a.args(1), b)
+    else if b.op == Where && b.args(0) == condition then where(condition, a, b.args(2))
+    else node(Where, condition, a, b)
+
+  /** The same operation of other arguments. */
+  def again(node: Node, args: Vector[Node]): Node = node.op match
+    case Const | Always => import_(node)
+    case Input          => input(node.index)
+    case Param          => param(node.index)
+    case Where          => where(args(0), args(1), args(2))
+    case Not            => not(args(0))
+    case And            => and(args(0), args(1))
+    case Or             => or(args(0), args(1))
+    case Lt | Le | Eq   => comparison(node.op, args(0), args(1))
+    case op             => if args.size == 1 then unary(op, args(0)) else binary(op, args(0), args(1))
+
+  private def import_(node: Node): Node = if node.op == Const then const(node.value) else always
+
+  private def isNever(a: Node) = a.op == Not && a.args(0).op == Always
+
+  /** Whether it is chosen between few numbers that are known. */
+  private def ofConsts(a: Node, depth: Int = 3): Boolean =
+    depth > 0 && a.op == Where && a.args.drop(1).forall(each => each.isConst || ofConsts(each, depth - 1))
+
+  private def leaves(a: Node)(change: Node => Node): Node =
+    if a.op == Where then where(a.args(0), leaves(a.args(1))(change), leaves(a.args(2))(change))
+    else change(a)
+
+  private def chosen(a: Node)(holds: Node => Node): Node =
+    if a.op != Where then holds(a)
+    else
+      val (yes, no) = (chosen(a.args(1))(holds), chosen(a.args(2))(holds))
+      if yes == no then yes
+      else or(and(a.args(0), yes), and(not(a.args(0)), no))
+
+  private def node(op: Op, args: Node*): Node =
+    known.getOrElseUpdate((op, args.iterator.map(_.id).toVector, 0L), make(op, args.toVector, 0, 0))
+
+  private def leaf(op: Op, value: Double, index: Int, key: Long): Node =
+    known.getOrElseUpdate((op, Vector.empty, key), make(op, Vector.empty, value, index))
+
+  private def make(op: Op, args: Vector[Node], value: Double, index: Int): Node =
+    if all.size >= most then throw Untraceable(s"it comes to more than $most operations")
+    val made = Node(all.size, op, args, value, index)
+    all += made
+    made
+
+object Trace:
+  /** What these need, each once, arguments first; in the order in which a depth-first walk ends. */
+  def needed(of: Seq[Node]): Vector[Node] =
+    val seen                    = mutable.HashSet.empty[Int]
+    val order                   = Vector.newBuilder[Node]
+    def visit(node: Node): Unit =
+      if seen.add(node.id) then
+        node.args.foreach(visit)
+        order += node
+    of.foreach(visit)
+    order.result()

@@ -1,0 +1,67 @@
+package skein.formula
+
+import java.lang.reflect.Field
+
+/** What a local variable, a field or the operand stack holds while a method is traced. */
+private[formula] sealed trait Value
+
+private[formula] object Value:
+  /** A double. */
+  final case class Number(node: Node) extends Value
+
+  /** An int or smaller, or a boolean as 1 or 0; known if its node is a constant. */
+  final case class Whole(node: Node) extends Value
+
+  /** A long, which must be known. */
+  final case class Long(value: scala.Long) extends Value
+
+  /** What `dcmpg` and `dcmpl` leave.
+    *
+    * @param ifUnordered
+    *   what a NaN counts as, 1 or −1
+    */
+  final case class Compared(a: Node, b: Node, ifUnordered: Int) extends Value
+
+  /** An object that was there before.
+    *
+    * @param path
+    *   from the object whose method is traced; none for what every object shares
+    */
+  final case class Known(what: AnyRef, path: Option[Path]) extends Value
+
+  /** An object, array or closure made while tracing. */
+  final case class Made(id: Int) extends Value
+
+  /** A number in an object of its own. */
+  final case class Boxed(value: Value) extends Value
+  case object Null                     extends Value
+
+  /** One of two objects that cannot be made one. */
+  case object Undecided extends Value
+
+/** What was made while tracing. */
+private[formula] enum Thing:
+  case Record(className: String, fields: Map[String, Value])
+  case Elements(values: Vector[Value], isFrozen: Boolean = false)
+  case Closure(interface: String, method: String, impl: Thing.Impl, captured: Vector[Value])
+
+  /** One of two objects, as a condition decides: it can be read, not changed. */
+  case Either(className: String, fields: Map[String, Value])
+
+private[formula] object Thing:
+  /** The method that a closure's body was compiled to. */
+  final case class Impl(owner: String, name: String, descriptor: String, kind: Kind)
+  enum Kind:
+    case Static, Instance, Constructor
+
+/** A way from an object to a number or object inside of it. */
+private[formula] final case class Path(before: Option[Path], step: Step):
+  override def toString: String = before.fold("")(_.toString) + (step match
+    case Step.At(index) => s"($index)"
+    case Step.Of(field) => (if before.isEmpty then "" else ".") + field.getName
+    case Step.Itself    => "")
+
+private[formula] enum Step:
+  case Itself
+  case Of(field: Field)
+  case At(index: Int)

@@ -1,0 +1,59 @@
+package skein.policy
+
+import skein.units.*
+
+/** What a vehicle is told to do. World frame NED, metres, m/s, radians from north towards east. An action goes on until
+  * the next one, or until the time is over that it was sent for; the vehicle then holds its position.
+  */
+enum Action:
+  /** Flies with this velocity. */
+  case Velocity(velocityNed: Vector3, yaw: Yaw = Yaw.Still)
+
+  /** Flies with this horizontal velocity and holds an altitude.
+    *
+    * @param down
+    *   negative above the origin
+    */
+  case VelocityAt(northMps: Double, eastMps: Double, down: Metres, yaw: Yaw = Yaw.Still)
+
+  /** Flies to a place, no faster than `speed`, and stays there. */
+  case Position(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw = Yaw.Still)
+
+  /** Stays where it is and turns. */
+  case Turn(yaw: Yaw)
+
+  /** Keeps roll, pitch and yaw.
+    *
+    * @param thrust
+    *   share of the most, 0 to 1
+    */
+  case Attitude(roll: Radians, pitch: Radians, yaw: Radians, thrust: Double)
+
+  /** Holds its position. */
+  case Hover
+
+  /** Sinks until it stands on the ground. */
+  case Land
+
+object Action:
+  /** Flies on a heading at an altitude. */
+  def heading(heading: Radians, speed: MetresPerSecond, down: Metres): Action =
+    VelocityAt(
+      speed.value * StrictMath.cos(heading.value),
+      speed.value * StrictMath.sin(heading.value),
+      down
+    )
+
+/** What an action does with the vehicle's yaw. */
+enum Yaw:
+  /** Keeps it. */
+  case Still
+
+  /** Turns to this heading, the shorter way. */
+  case Towards(heading: Radians)
+
+  /** Turns at this rate, rad/s, clockwise seen from above. */
+  case Turning(radiansPerSecond: Double)
+
+  /** Turns into the direction of travel. */
+  case Forward

@@ -1,0 +1,51 @@
+package skein.vehicle
+
+/** [[FlightController]] with gains, integrals and derivatives of every controller's own, as AirSim's is once a client has
+  * set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last bit.
+  *
+  * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ← clip(I-term ·
+  * discount + dt·e·I, −1, 1), where only the vertical velocity's is discounted. When the mode of an axis changes, its
+  * controllers start anew: the first update neither integrates nor derives, and the second derives from an error of
+  * zero, which is a kick if D is not zero. So it is in AirSim.
+  */
+final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGains, stepS: Double)
+    extends FlightController(gains, stepS):
+  import CascadeLoop.*
+
+  private val pids: Array[Pid] = Array(
+    // AirSim hands its rate controllers no other gain than the proportional one.
+    Pid(cascade.rate.first.p),
+    Pid(cascade.rate.second.p),
+    Pid(cascade.rate.third.p),
+    cascade.angle.first,
+    cascade.angle.second,
+    cascade.angle.third,
+    cascade.velocity.second,
+    cascade.velocity.first,
+    cascade.position.first,
+    cascade.position.second,
+    cascade.position.third,
+    cascade.velocity.third
+  )
+
+  override def update(state: QuadrotorState, setpoint: Setpoint): Unit =
+    val memory = Option(state.cascadeMemory).getOrElse(CascadeMemory())
+    state.cascadeMemory = memory
+    memory.begin(setpoint)
+    super.update(state, setpoint)
+
+  override protected def respond(state: QuadrotorState, loop: Int, gain: Double, error: Double): Double =
+    pid(state, loop, 1.0, error)
+
+  override protected def climb(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
+    pid(state, DownVelocity, gains.verticalDiscount, error)
+
+  private def pid(state: QuadrotorState, loop: Int, discount: Double, error: Double): Double =
+    val memory = state.cascadeMemory.nn
+    val gain   = pids(loop)
+    var slope  = 0.0
+    if !memory.isNew(loop) then
+      memory.integral(loop) = unit(memory.integral(loop) * discount + stepS * error * gain.i)
+      slope = (error - memory.error(loop)) / stepS
+      memory.error(loop) = error
+    unit(gain.p * error + memory.integral(loop) + gain.d * slope)

@@ -1,0 +1,41 @@
+package skein.formula
+
+import skein.policy.*
+import skein.signal.SplitMix64
+
+/** Every family of policies is a formula, and a formula computes what the policy's own method answers, to the bit. */
+class PolicyFormulaLaws extends munit.FunSuite:
+  private val seed = 20261122L
+
+  private val policies: Seq[(String, SplitMix64 => Policy)] =
+    PolicyFamily.all.map(family => family.name -> drawn(family)) ++ Seq(
+      "keep-heading"               -> (_ => KeepHeading),
+      "paper-pursuer as published" -> (_ => PaperPursuer.asPublished),
+      "neural, no hidden layer"    -> drawn(PolicyFamily.neural(NeuralShape(Vector.empty))),
+      "neural:8x8"                 -> drawn(PolicyFamily.neural(NeuralShape(Vector(8, 8))))
+    )
+
+  private def drawn(family: PolicyFamily)(random: SplitMix64): Policy =
+    family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
+
+  for (name, draw) <- policies do
+    test(s"$name: the formula answers to the bit what the method does (seed $seed)"):
+      val random  = SplitMix64(seed)
+      val formula = Formula.of(draw(random), "heading").fold(throw _, identity)
+      assertEquals(formula.inputs.size, 7)
+      for _ <- 1 to 40 do
+        val policy = draw(random)
+        assert(formula.fits(policy), s"$policy is of another form")
+        val parameters = formula.parametersOf(policy)
+        for _ <- 1 to 20 do
+          def uniform(most: Double) = most * (2 * random.nextDouble() - 1)
+          // Now and then exactly nothing, where branches meet.
+          def place() = if random.nextDouble() < 0.05 then 0.0 else uniform(25)
+          val seen    =
+            Array(place(), place(), uniform(12), uniform(12), uniform(10), uniform(10), random.nextDouble())
+          val own = policy.heading(seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6))
+          assertEquals(
+            java.lang.Double.doubleToRawLongBits(formula.evaluate(seen, parameters)(0)),
+            java.lang.Double.doubleToRawLongBits(own),
+            s"$policy of ${seen.mkString(" ")}"
+          )

@@ -1,0 +1,23 @@
+package skein.units
+
+class SpanSuite extends munit.FunSuite:
+
+  test("a length of time is read with its unit"):
+    for
+      (text, nanos) <- Seq(
+        "40s"    -> 40_000_000_000L,
+        "1.5 s"  -> 1_500_000_000L,
+        "100ms"  -> 100_000_000L,
+        " 2 min" -> 120_000_000_000L,
+        "250us"  -> 250_000L,
+        "0 s"    -> 0L
+      )
+    do assertEquals(Span.parse(text).map(_.toNanos), Right(nanos), text)
+
+  test("a bare number is no length of time, and is told which unit it may have meant"):
+    assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, came '40'"))
+    assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, came '0.5'"))
+
+  test("what is negative, endless or no time at all is refused"):
+    for text <- Seq("-1s", "Inf", "soon", "", "NaN", "1e400s", "99999999999d") do
+      assertEquals(Span.parse(text), Left(s"expected a duration with unit, such as 100ms, came '$text'"))

@@ -1,0 +1,256 @@
+package skein.flight
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Success
+import skein.airsim.*
+import skein.link.*
+import skein.loop.*
+import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
+import skein.policy.Scenario
+import skein.record.{Flight as FlightRow, *}
+import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
+import skein.settings.{FlightPlan, FlySettings, PolicyFile, RecordedPlan}
+import skein.signal.LatencyProfile
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** One flight put together: simulator, link, client, vehicles at their starts, loop. */
+final class FlightRig private[skein] (
+    val plan: FlightPlan,
+    val flight: Flight,
+    watch: Watch,
+    vigil: Vigil,
+    startedAt: Instant,
+    clock: Clock,
+    shutDown: () => Future[Done]
+)(using ExecutionContext):
+
+  /** How far it is, in the controller's time. */
+  def progress: Progress =
+    val now = clock.now()
+    Progress(plan.id, now.since(startedAt), watch.sight(now), vigil.silentFor)
+
+  /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
+  val landed: Future[Landed] =
+    for
+      outcome <- flight.outcome
+      closed  <- shutDown().transform(Success(_))
+      notClosed = closed.failed.toOption.map(error => Outcome.Failed(s"it could not be closed: $error"))
+      ended     = notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome)
+      _         = watch.offer(FlightRig.ending(ended, clock.now()))
+      written <- watch.close()
+    yield Landed(plan, ended, written)
+
+private object FlightRig:
+  def ending(outcome: Outcome, at: Instant): Ending = outcome match
+    case Outcome.Completed      => Ending(at, EndingKind.Completed, None)
+    case Outcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
+    case Outcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
+
+/** How a flight ended, and what is on record. */
+final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])
+
+/** Puts flights together.
+  *
+  * @param simulator
+  *   the address of a simulator that runs already; without one, each flight has a built-in simulator of its own
+  * @param workers
+  *   what a flight that plans searches with
+  * @param tell
+  *   a line for a person, of what goes wrong in flight, as soon as it does
+  */
+final class FlightRigs(
+    transport: Transport,
+    clock: Clock,
+    settings: FlySettings,
+    simulator: Option[Address],
+    workers: PlanSettings => PlanWorkers = FlightRigs.threads,
+    tell: String => Unit = _ => ()
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
+  private val scenario: Scenario = settings.agents
+
+  /** What a recording of this flight begins with. */
+  def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
+    FlightRow(
+      plan.id,
+      plan.loop.label,
+      plan.link.name,
+      plan.seed,
+      settings.period,
+      settings.duration,
+      clockKind,
+      simulator.fold("built-in")(_.toString),
+      settings.scenario + (if settings.asPublished then ", as published" else "") +
+        plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
+      FlightRigs.version,
+      clock.now()
+    ),
+    scenario.agents.map(agent =>
+      Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+    ),
+    RecordedPlan.parameters(settings, plan)
+  )
+
+  /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
+    *
+    * @return
+    *   or why it cannot be flown
+    */
+  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightRig]] =
+    val opened   = Opened()
+    val starting =
+      for
+        server <- serve()
+        address = server.fold(simulator.get)(opened.closing(_)(_.close()).address)
+        ready <- prepare(address)
+        proxy <- between(plan, address)
+        watch  = Watch(recorder)
+        client = opened.closing(
+          fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), watch)
+        )(_.close())
+        vehicles = ready.zipWithIndex.map((vehicle, index) =>
+          // Altitudes count from where each vehicle starts, as in its own frame.
+          Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
+        )
+        crafts = vehicles.map(vehicle =>
+          AirSimVehicle(
+            vehicle,
+            lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+          )
+        )
+        _ <- client.ping()
+      yield
+        val loopSettings = settings.loopSettings.copy(seed = plan.seed)
+        val planners     =
+          if plan.loop != LoopKind.Plan then PlanWorkers.none
+          else
+            opened.closing(workers(settings.planningByModel)): threads =>
+              threads.close()
+              Future.successful(Done)
+        val team      = Team(plan.agents(settings), crafts, clock, watch, loopSettings, planners)
+        val startedAt = clock.now()
+        val vigil     = Vigil(
+          watch,
+          clock,
+          startedAt,
+          Vigil.within(settings.period, FlightRigs.askTimeout),
+          address.toString,
+          () => FlightRigs.startedAgain(vehicles, address),
+          line => tell(s"${plan.id}: $line")
+        )
+        val flight = Flight.start(
+          plan.loop,
+          team,
+          AirSimTime(client),
+          settings.duration,
+          clock,
+          watch,
+          () => vigil.onTime
+        )
+        vigil.over(flight)
+        Right(FlightRig(plan, flight, watch, vigil, startedAt, clock, () => opened.close()))
+    starting
+      .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
+      .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
+
+  private def serve(): Future[Option[SimulatorServer]] =
+    if simulator.isDefined then Future.successful(None)
+    else
+      val vehicles = scenario.agents.map(agent =>
+        VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
+      )
+      SimulatorServer
+        .start(
+          SimulatorSettings(
+            WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+            FlightRigs.anyPort
+          ),
+          transport,
+          clock
+        )
+        .map(Some(_))
+
+  /** Over a connection of its own, without the link: this is not part of the flight. */
+  private def prepare(address: Address): Future[Vector[Multirotor]] =
+    val client      = AirSimClient(RpcClient(transport, address, clock))
+    val preparation = Preparation(client, clock)
+    val prepared    = if simulator.isDefined then preparation.climb(scenario) else preparation.place(scenario)
+    prepared
+      .flatMap(result => client.close().map(_ => result))
+      .map(_.fold(error => throw CannotFly(error.message), identity))
+
+  /** The emulated link, if the flight is to have one. */
+  private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
+    if plan.link == LatencyProfile.none then Future.successful(None)
+    else
+      val link = EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+      LinkProxy.start(FlightRigs.anyPort, simulator, link, transport).map(Some(_))
+
+  private def fly(plan: FlightPlan, address: Address, recorder: Recorder): AirSimClient =
+    val rpc = RpcClient(
+      transport,
+      address,
+      clock,
+      FlightRigs.rpcSettings(plan.loop),
+      plan.seed,
+      event =>
+        FlightRigs.eventOf(event).foreach((kind, detail) =>
+          recorder.offer(Event(clock.now(), kind, None, detail))
+        )
+    )
+    AirSimClient(rpc, timeout = FlightRigs.askTimeout)
+
+  private case class CannotFly(reason: String) extends RuntimeException(reason)
+
+object FlightRigs:
+  /** The paper's, of every question. */
+  val askTimeout: Span = Span.ofMillis(500)
+
+  /** Of the client that flies a loop. */
+  def rpcSettings(loop: LoopKind): RpcSettings = loop match
+    // Each command must reach the simulator before the step that follows it: one ordered connection.
+    case LoopKind.Paused => RpcSettings(controlConnections = 1)
+    case _               => RpcSettings()
+
+  /** Threads to plan on, no more than there are cores. */
+  private def threads(planning: PlanSettings): PlanWorkers =
+    new ThreadedPlanWorkers(planning.searches.min(Runtime.getRuntime.availableProcessors))
+
+  /** Whether a simulator has been started again since it let these vehicles be flown: then nobody has api control of
+    * them. Its clock need not tell, since AirSim's begins with the time of day.
+    *
+    * @return
+    *   `Left` where it did not answer, else why a flight cannot go on
+    */
+  private def startedAgain(vehicles: Vector[Multirotor], simulator: Address)(using
+      ExecutionContext
+  ): Future[Either[String, Option[String]]] =
+    Future
+      .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(_.map((vehicle.name, _))))
+      .map: answers =>
+        answers.collectFirst { case Right((name, false)) => name } match
+          case Some(name) =>
+            Right(Some(
+              s"the simulator at $simulator no longer gives $name to this flight: it was started again, or another took api control away"
+            ))
+          case None => answers.collectFirst { case Left(error) => error.message }.toLeft(None)
+
+  private val anyPort = Address("127.0.0.1", 0)
+
+  private val version = Option(getClass.getPackage.getImplementationVersion).getOrElse("development")
+
+  /** What of the client's events a recording keeps; failed calls are recorded by whoever called. */
+  private def eventOf(event: RpcEvent): Option[(EventKind, String)] = event match
+    case RpcEvent.Disconnected(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.ConnectFailed(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.LateReply(method, _, _, after) =>
+      Some(EventKind.LateReply -> s"$method answered after ${after.toMillis.fixed(0)} ms")
+    case _ => None

@@ -1,0 +1,72 @@
+package skein.flight
+
+import java.nio.file.{Files, Path}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import scala.util.Try
+import scala.util.control.NonFatal
+import skein.record.DuckDbRecorder
+import skein.settings.FlightPlan
+
+/** Flights in real time, side by side, each with a recording of its own in `folder`. */
+final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSystem):
+  import system.dispatcher
+
+  /** Completes when all have ended and their recordings are closed. */
+  val landed: Future[Vector[Landed]] = Future.sequence(rigs.map(_.landed))
+
+  /** Ends all flights now; vehicles hover. */
+  def stop(): Unit = rigs.foreach(_.flight.stop())
+
+  def progress: Vector[Progress] = rigs.map(_.progress)
+
+object LiveFlights:
+
+  /** Starts all flights, or none.
+    *
+    * @return
+    *   or why they cannot be flown; those that had started were stopped again
+    */
+  def start(rigs: FlightRigs, plans: Vector[FlightPlan], folder: Path)(using
+      system: ActorSystem
+  ): Future[Either[String, LiveFlights]] =
+    import system.dispatcher
+    Future
+      .sequence(plans.map(start(rigs, _, folder)))
+      .flatMap: started =>
+        val flying = started.collect { case Right(rig) => rig }
+        started.collectFirst { case Left(reason) => reason } match
+          case None         => Future.successful(Right(LiveFlights(flying)))
+          case Some(reason) =>
+            flying.foreach(_.flight.stop())
+            Future
+              .sequence(flying.map(_.landed))
+              .map: _ =>
+                flying.foreach(rig => unmade(rig.plan.file(folder)))
+                Left(reason)
+
+  private def start(rigs: FlightRigs, plan: FlightPlan, folder: Path)(using
+      system: ActorSystem
+  ): Future[Either[String, FlightRig]] =
+    import system.dispatcher
+    DuckDbRecorder
+      .open(plan.file(folder), rigs.heading(plan, clockKind = "real"))
+      .flatMap:
+        case Left(error)     => Future.successful(Left(error.message))
+        case Right(recorder) =>
+          rigs
+            .start(plan, recorder)
+            .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
+            .flatMap:
+              case Left(reason) =>
+                recorder
+                  .close()
+                  .map: _ =>
+                    unmade(plan.file(folder))
+                    Left(s"${plan.id}: $reason")
+              case started => Future.successful(started)
+
+  /** Takes away the recording of a flight that was not flown, which would be in the way when it is tried again. */
+  private def unmade(file: Path): Unit =
+    for name <- Seq(file.getFileName.toString, s"${file.getFileName}.wal") do
+      val _ = Try(Files.deleteIfExists(file.resolveSibling(name)))

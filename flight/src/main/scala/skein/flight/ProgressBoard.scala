@@ -1,0 +1,61 @@
+package skein.flight
+
+import java.io.PrintStream
+import me.tongfei.progressbar.{ProgressBar, ProgressBarBuilder, ProgressBarStyle}
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** How far a flight is.
+  *
+  * @param silentFor
+  *   how long nothing was heard of the simulator, where it is silent
+  */
+final case class Progress(id: String, flown: Span, sight: Option[Sight], silentFor: Option[Span] = None):
+  def text: String =
+    val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
+    val seen    = sight.map(sight =>
+      s"${sight.distance.value.fixed(1, width = 5)} m apart, ${sight.age.toMillis.fixed(0, width = 3)} ms old"
+    )
+    silence.orElse(seen).getOrElse("")
+
+/** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
+trait ProgressBoard extends AutoCloseable:
+  /** To be called about twice a second. */
+  def show(progress: Seq[Progress]): Unit
+
+object ProgressBoard:
+
+  def apply(ids: Seq[String], duration: Span, out: PrintStream): ProgressBoard =
+    if System.console() != null && System.console().isTerminal then Bars(ids, duration)
+    else Lines(duration, out)
+
+  private final class Bars(ids: Seq[String], duration: Span) extends ProgressBoard:
+    private val width                          = ids.map(_.length).maxOption.getOrElse(0)
+    private val bars: Map[String, ProgressBar] = ids.map(id => id -> bar(id)).toMap
+
+    def show(progress: Seq[Progress]): Unit =
+      for one <- progress do
+        val _ = bars(one.id).stepTo(one.flown.toSeconds.round).setExtraMessage(one.text)
+
+    def close(): Unit = bars.values.foreach(_.close())
+
+    private def bar(id: String) = ProgressBarBuilder()
+      .setTaskName(id.padTo(width, ' '))
+      .setInitialMax(duration.toSeconds.ceil.toLong)
+      .setUnit(" s", 1)
+      .setStyle(ProgressBarStyle.UNICODE_BLOCK)
+      .setUpdateIntervalMillis(500)
+      .hideEta()
+      .build()
+
+  private final class Lines(duration: Span, out: PrintStream) extends ProgressBoard:
+    private val every   = Span.ofSeconds(10)
+    private var shownAt = Span.Zero
+
+    def show(progress: Seq[Progress]): Unit =
+      for furthest <- progress.map(_.flown).maxOption if furthest >= shownAt + every do
+        shownAt = furthest
+        val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")
+        out.println(s"${furthest.toSeconds.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
+
+    def close(): Unit = ()

@@ -1,0 +1,53 @@
+package skein.flight
+
+import java.nio.file.Path
+import skein.loop.Replay
+import skein.record.*
+import skein.settings.RecordedPlan
+
+/** What came of replaying a recording.
+  *
+  * @param decisions
+  *   that the recording holds
+  * @param decidedAgain
+  *   the first difference when the recorded readings and moves are decided upon again
+  * @param flownAgain
+  *   for a flight in virtual time: what came of flying it again, physics, network and all
+  */
+final case class Replayed(
+    id: String,
+    decisions: Int,
+    decidedAgain: Option[Difference],
+    flownAgain: Option[FlownAgain]
+):
+  def isSame: Boolean = decidedAgain.isEmpty && flownAgain.forall(_.isSame)
+
+/** @param inDecisions
+  *   the first decision that differs
+  */
+final case class FlownAgain(recorded: Digest, again: Digest, inDecisions: Option[Difference]):
+  def isSame: Boolean = recorded == again
+
+object Replayed:
+
+  /** Replays a recording, live or virtual. Blocks. */
+  def of(file: Path): Either[String, Replayed] =
+    for
+      recording <- RecordingReader.read(file).left.map(_.message)
+      _ <- Either.cond(recording.heading.vehicles.nonEmpty, (), "it has no vehicles, so nothing was decided")
+      flown <- RecordedPlan.of(recording)
+      decided = Replay(flown.scenario, recording, flown.settings.planningByModel).firstDifference
+      again <- Option.when(recording.flight.isVirtual)(flyAgain(file, recording, flown)) match
+        case None         => Right(None)
+        case Some(result) => result.map(Some(_))
+    yield Replayed(recording.flight.id, recording.decisions.size, decided, again)
+
+  private def flyAgain(file: Path, recording: Recording, flown: RecordedPlan): Either[String, FlownAgain] =
+    for
+      recorded <- Digest.ofFile(file).left.map(_.message)
+      landing  <- VirtualFlights.fly(flown.settings, flown.plan)
+    yield FlownAgain(
+      recorded,
+      landing.recorder.digest,
+      Difference.first(recording.decisions, landing.recorder.recording.decisions)
+    )

@@ -1,0 +1,104 @@
+package skein.flight
+
+import java.io.{PrintWriter, StringWriter}
+import java.nio.file.Path
+import java.util.concurrent.Executors
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.link.{MemoryNetwork, NetworkPlan}
+import skein.loop.PlanSettings
+import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
+import skein.record.{Digest, MemoryRecorder}
+import skein.settings.{FlightPlan, FlySettings}
+import skein.units.Clock
+import skein.vtime.VirtualTime
+
+/** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler and the
+  * sockets replaced. Equal settings and plans give equal recordings, byte for byte.
+  */
+object VirtualFlights:
+
+  /** Flies all, as many at once as there are cores, and writes a recording of each into `folder`. Blocks.
+    *
+    * @param onLanded
+    *   told of each flight as it has ended, and of its recording's contents
+    * @return
+    *   or which of them could not be flown, and why; the recordings of the others are written
+    */
+  def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
+      onLanded: (Landed, Digest) => Unit
+  ): Either[String, Vector[Landed]] =
+    val (missing, landed) = inParallel(settings, plans): flown =>
+      val landed = flown.landed.copy(written = flown.recorder.writeTo(flown.landed.plan.file(folder)))
+      onLanded(landed, flown.recorder.digest)
+      landed
+    .partitionMap(identity)
+    Either.cond(missing.isEmpty, landed, NotFlown.message(missing, plans.size))
+
+  /** Flies all, as many at once as there are cores, and keeps of each what `use` makes of it. Blocks.
+    *
+    * @return
+    *   one for each plan, in their order
+    */
+  def inParallel[A](settings: FlySettings, plans: Vector[FlightPlan])(
+      use: VirtualLanding => A
+  ): Vector[Either[NotFlown, A]] =
+    eachInParallel(plans)(plan => fly(settings, plan).map(use))
+
+  /** Whatever ends one flight, it is told with that flight's seed, and the others are flown. */
+  private[skein] def eachInParallel[A](plans: Vector[FlightPlan])(
+      fly: FlightPlan => Either[String, A]
+  ): Vector[Either[NotFlown, A]] =
+    def flown(plan: FlightPlan) =
+      val result =
+        try fly(plan)
+        catch case error: Throwable => Left(NotFlown.trace(error))
+      result.left.map(NotFlown(plan, _))
+    val cores   = Runtime.getRuntime.availableProcessors
+    val threads = Executors.newFixedThreadPool(plans.size.min(cores).max(1))
+    try plans.map(plan => threads.submit(() => flown(plan))).map(_.get())
+    finally threads.shutdown()
+
+  /** Flies on the calling thread, to the end.
+    *
+    * @return
+    *   how it ended and what was recorded, or why it could not be flown
+    */
+  def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualLanding] =
+    VirtualTime
+      .run(plan.seed): system =>
+        given ActorSystem = system
+        import system.dispatcher
+        val clock    = Clock.ofNanos(VirtualTime.clock(system))
+        val network  = MemoryNetwork(NetworkPlan(), plan.seed, clock)
+        val rigs     = FlightRigs(network.host("localhost"), clock, settings, simulator = None, workers)
+        val recorder = MemoryRecorder(rigs.heading(plan, clockKind = "virtual"))
+        rigs
+          .start(plan, recorder)
+          .flatMap:
+            case Left(reason) => Future.successful(Left(reason))
+            case Right(rig)   => rig.landed.map(landed => Right(VirtualLanding(landed, recorder)))
+      .value
+
+  private def workers(planning: PlanSettings): PlanWorkers =
+    CountedPlanWorkers(planning.searches, planning.slices)
+
+/** A flight in virtual time and all that was recorded of it. */
+final case class VirtualLanding(landed: Landed, recorder: MemoryRecorder)
+
+/** A flight in virtual time that could not be flown to its end, or not be used. */
+final case class NotFlown(plan: FlightPlan, reason: String):
+  def message: String = s"${plan.id}, seed ${plan.seed}: $reason"
+
+object NotFlown:
+  private val TraceLines = 30
+
+  /** For a person, the last thing to be said. */
+  def message(missing: Seq[NotFlown], planned: Int): String =
+    (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
+
+  /** What was thrown and where, and what caused it. */
+  private[skein] def trace(error: Throwable): String =
+    val text = StringWriter()
+    error.printStackTrace(PrintWriter(text))
+    text.toString.linesIterator.take(TraceLines).mkString("\n")

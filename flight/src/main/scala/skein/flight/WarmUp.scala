@@ -1,0 +1,96 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import scala.annotation.tailrec
+import scala.concurrent.Future
+import skein.link.Transport
+import skein.loop.Outcome
+import skein.loop.planning.BackgroundThread
+import skein.record.MemoryRecorder
+import skein.settings.FlySettings
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Flies what is to be flown live before, so that the compiler has seen the whole way of a decision before the first one
+  * counts: in virtual time, over the links to come, and then over real sockets. At ten decisions a second a flight of a
+  * minute would end before it is compiled: cold, a decision takes many times as long from the reading to the command
+  * (`skein.bench.FrameworkLatency`).
+  */
+object WarmUp:
+  /** How many virtual flights it takes. */
+  val Flights = 20
+
+  /** After which these are enough, of real time, for large teams and for loops that plan. */
+  val AtMost: Span = Span.ofSeconds(3)
+
+  /** Of each virtual flight: short, so that every loop and link has its turn. */
+  private val Flown = Span.ofSeconds(5)
+
+  /** Of the rehearsal, of real time: with its period and its vehicles, as many decisions as a duel makes in two minutes. */
+  private val Rehearsed       = Span.ofSeconds(3)
+  private val RehearsalPeriod = Span.ofMillis(20)
+  private val RehearsalPairs  = 10
+
+  /** Flies the plans of `settings` in turn in virtual time; blocks.
+    *
+    * @param flights
+    *   after which it ends, or with the first flight that ends later than [[AtMost]]
+    * @return
+    *   how many were flown, or why one could not be
+    */
+  def fly(settings: FlySettings, flights: Int, clock: Clock): Either[String, Int] =
+    val short = settings.copy(duration = settings.duration.min(Flown))
+    val plans = short.plans
+    val until = clock.now() + AtMost
+
+    @tailrec
+    def next(flown: Int): Either[String, Int] =
+      if flown == flights || clock.now() >= until then Right(flown)
+      else
+        val plan = plans(flown % plans.size)
+        VirtualFlights.fly(short, plan) match
+          case Left(reason)  => Left(s"${plan.id}, to warm up: $reason")
+          case Right(flight) =>
+            flight.landed.outcome match
+              case Outcome.Failed(reason) => Left(s"${plan.id}, to warm up: $reason")
+              case _                      => next(flown + 1)
+
+    next(0)
+
+  /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a link, against
+    * built-in simulators, with more vehicles and more often: what virtual time replaces, sockets and threads, is warm
+    * then too. Afterwards the compiler gives way to what is flown.
+    *
+    * @return
+    *   how many decisions were made, or why a loop could not be flown
+    */
+  def rehearse(settings: FlySettings, transport: Transport, clock: Clock)(using
+      system: ActorSystem
+  ): Future[Either[String, Int]] =
+    import system.dispatcher
+    val alone = settings.copy(
+      links = List(LatencyProfile.none),
+      duration = settings.duration.min(Rehearsed),
+      period = settings.period.min(RehearsalPeriod)
+    )
+    val plans = alone.plans
+    val rigs  = FlightRigs(
+      transport,
+      clock,
+      alone.copy(pairs = alone.pairs.max(RehearsalPairs / plans.size)),
+      simulator = None
+    )
+    Future
+      .traverse(plans): plan =>
+        val recorder = MemoryRecorder(rigs.heading(plan, "real"))
+        rigs
+          .start(plan, recorder)
+          .flatMap:
+            case Left(reason) => Future.successful(Left(reason))
+            case Right(rig)   => rig.landed.map(_.outcome).map:
+                case Outcome.Failed(reason) => Left(reason)
+                case _                      => Right(recorder.recording.decisions.size)
+          .map(_.left.map(reason => s"${plan.id}, to warm up: $reason"))
+      .map: flown =>
+        val _ = BackgroundThread.compilersGiveWay()
+        flown.collectFirst { case Left(reason) => reason }.toLeft(flown.flatMap(_.toOption).sum)

@@ -1,0 +1,47 @@
+package skein.flight
+
+import java.util.concurrent.atomic.AtomicLong
+import scala.concurrent.Future
+import skein.record.*
+import skein.units.*
+
+/** Records as `recorder` does, and remembers what is newest for whoever watches the flight. */
+final class Watch(recorder: Recorder) extends Recorder:
+  @volatile private var newest: Option[Decision] = None
+  private val heard                              = AtomicLong(Long.MinValue)
+  @volatile private var lastBroken               = Option.empty[Event]
+
+  def offer(record: Record): Unit =
+    record match
+      case decision: Decision => newest = Some(decision)
+      case reading: Reading   => val _ = heard.accumulateAndGet(reading.state.receivedAt.toNanos, math.max)
+      case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
+      case _                                                    => ()
+    recorder.offer(record)
+
+  def failure: Future[RecordError]                  = recorder.failure
+  def close(): Future[Either[RecordError, Written]] = recorder.close()
+
+  /** When the newest reading came, by the controller's clock. */
+  def heardAt: Option[Instant] = Some(heard.get).filter(_ != Long.MinValue).map(Instant.ofNanos)
+
+  /** When and why a connection was lost last, or could not be opened. */
+  def broken: Option[Event] = lastBroken
+
+  /** Distance between a vehicle and its opponent at the newest decision, and how old the newest reading is now. */
+  def sight(now: Instant): Option[Sight] =
+    for
+      decision <- newest
+      heard    <- heardAt
+    yield
+      // From when physics was sampled until the reading came.
+      val underWay = decision.trueAge.fold(Span.Zero)(_.own - decision.observations.ownAge)
+      Sight(
+        Metres(
+          decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
+        ),
+        now.since(heard) + underWay
+      )
+
+/** What is known of a flight, in two numbers. */
+final case class Sight(distance: Metres, age: Span)

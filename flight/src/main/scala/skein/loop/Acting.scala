@@ -1,0 +1,44 @@
+package skein.loop
+
+import skein.policy.{Action, Yaw}
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** What of an action stands for it where headings and speeds are asked for, and what the flight controller makes of it. */
+private object Acting:
+
+  /** Rad: where it flies, or else where it looks; the heading before where it says neither. */
+  def headingRad(action: Action, beforeRad: Double): Double = action match
+    case Action.Velocity(velocity, _)         => along(velocity.x, velocity.y, beforeRad)
+    case Action.VelocityAt(north, east, _, _) => along(north, east, beforeRad)
+    case Action.Turn(Yaw.Towards(heading))    => heading.value
+    case Action.Attitude(_, _, yaw, _)        => yaw.value
+    case Action.Position(_, _, _) | Action.Turn(_) | Action.Hover | Action.Land => beforeRad
+
+  /** Horizontal. */
+  def speed(action: Action): MetresPerSecond = MetresPerSecond(action match
+    case Action.Velocity(velocity, _)         => StrictMath.hypot(velocity.x, velocity.y)
+    case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
+    case _                                    => 0)
+
+  /** What a model of the vehicle is told, for a prediction. */
+  def setpoint(action: Action): Setpoint = action match
+    case Action.Velocity(velocity, yaw) => turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
+    case Action.VelocityAt(north, east, down, yaw) => turned(Setpoint.velocityZ(north, east, down.value), yaw)
+    case Action.Position(position, _, yaw)         => turned(Setpoint.hold(position), yaw)
+    case Action.Turn(yaw)                          => turned(Setpoint.velocity(0, 0, 0), yaw)
+    case Action.Attitude(roll, pitch, yaw, thrust) =>
+      Setpoint.anglesThrottle(roll.value, pitch.value, yaw.value, thrust)
+    case Action.Hover => Setpoint.velocity(0, 0, 0)
+    case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
+
+  private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
+    if StrictMath.hypot(northMps, eastMps) < 1e-9 then beforeRad else StrictMath.atan2(eastMps, northMps)
+
+  private def turned(setpoint: Setpoint, yaw: Yaw): Setpoint = yaw match
+    case Yaw.Towards(heading)    => setpoint.withYaw(heading.value)
+    case Yaw.Turning(rate)       => setpoint.withYawRate(rate)
+    case Yaw.Still | Yaw.Forward => setpoint
+
+  /** AirSim's. */
+  private val LandingMps = 0.2

@@ -1,0 +1,43 @@
+package skein.loop
+
+import skein.policy.{Agent, AgentPolicy, KeepHeading, PolicyFamily}
+import skein.units.Span
+
+/** By when a policy must have decided, and what is done where it has not. The policy then runs beside the loop, on threads
+  * of its own, and what it decides too late is not used.
+  */
+final case class Deadline(within: Span, otherwise: Fallback):
+  require(within > Span.Zero, "a deadline must be positive")
+
+/** What is done instead of a decision that came too late. */
+enum Fallback:
+  /** Nothing is sent: the vehicle flies on under its last move, for as long as that lasts. */
+  case Hold
+
+  /** The last decision, once more. */
+  case Repeat
+
+  /** A policy of the family, where it is meant for the vehicle's role; for others as [[Repeat]]. */
+  case Decides(family: PolicyFamily)
+
+  def label: String = this match
+    case Hold            => "hold"
+    case Repeat          => "repeat"
+    case Decides(family) => family.name
+
+  /** Who decides for an agent; absent where nobody does. */
+  def policy(agent: Agent): Option[AgentPolicy] = this match
+    case Hold                                                 => None
+    case Decides(family) if family.roles.contains(agent.role) => Some(family.defaultPolicy)
+    case _                                                    => Some(KeepHeading)
+
+object Fallback:
+
+  /** `hold`, `repeat` or a family's name. */
+  def parse(text: String): Either[String, Fallback] = text match
+    case "hold"   => Right(Hold)
+    case "repeat" => Right(Repeat)
+    case name     =>
+      PolicyFamily.parse(name).map(Decides(_)).left.map(reason =>
+        s"expected hold, repeat or a policy: $reason"
+      )

@@ -1,0 +1,60 @@
+package skein.loop
+
+import skein.loop.planning.Plan
+import skein.planning.{Part, PlannerSettings}
+import skein.policy.Scenario
+import skein.units.*
+
+/** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its replay uses too.
+  *
+  * Where nothing was searched for a vehicle for half a horizon, its own policy decides.
+  *
+  * @param vehicles
+  *   by their places in the scenario, at least one
+  */
+final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[Planning]):
+  val planner: PlannerSettings = plannings.head.planner
+
+  /** How long after its arrival a command begins to act on a vehicle. */
+  val deadTime: Span = plannings.map(_.deadTime).max
+
+  def regardsTeam(vehicle: Int): Boolean = plannings(vehicles.indexOf(vehicle)).regardsTeam
+
+  /** What is planned for, by vehicle.
+    *
+    * @param pictures
+    *   with the estimates of when the commands will act
+    */
+  def pose(memories: Vector[Memory], pictures: Vector[Picture], now: Instant): Vector[Part] =
+    plannings.indices.toVector.map(index => plannings(index).pose(memories(index), pictures(index), now))
+
+  /** The decisions for what was found, by vehicle. */
+  def decide(
+      memories: Vector[Memory],
+      pictures: Vector[Picture],
+      now: Instant,
+      parts: Vector[Part],
+      answer: Plan.Answer
+  ): (Vector[Memory], Vector[PlannedDecision]) =
+    plannings.indices.toVector
+      .map: index =>
+        plannings(index).decide(
+          memories(index),
+          pictures(index),
+          now,
+          parts(index).copy(situation = answer.best.situation(index, parts(index))),
+          answer.best.plans(index),
+          isOld = answer.unsearchedS(index) > planner.horizonS / 2
+        )
+      .unzip
+
+object JointPlanning:
+
+  /** Absent where nobody plans. */
+  def of(scenario: Scenario, settings: PlanSettings, seed: Long): Option[JointPlanning] =
+    val (vehicles, plannings) =
+      (for
+        vehicle  <- scenario.agents.indices.toVector
+        planning <- Plannings.of(scenario, vehicle, settings, seed)
+      yield (vehicle, planning)).unzip
+    Option.when(vehicles.nonEmpty)(JointPlanning(vehicles, plannings))

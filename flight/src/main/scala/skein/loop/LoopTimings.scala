@@ -1,0 +1,41 @@
+package skein.loop
+
+import skein.flow.{Sense, Steer}
+import skein.forward.{Asking, LoopTiming, Steering}
+import skein.units.*
+
+/** The live loops' timing as forward simulation has it. */
+object LoopTimings:
+
+  /** Absent for `plan`, whose decisions are themselves forward simulations.
+    *
+    * @param askTimeout
+    *   of every question
+    */
+  def of(kind: LoopKind, settings: LoopSettings, askTimeout: Span): Option[LoopTiming] =
+    val periodS = settings.period.toSeconds
+    val asking  = Asking(
+      settings.window,
+      askTimeout.toSeconds,
+      settings.spread.toSeconds,
+      inOrder = settings.early == Sense.Early.Waits
+    )
+    val steering =
+      Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Steer.Handover.toSeconds)
+    kind match
+      case LoopKind.Paused     => Some(LoopTiming.Paused(periodS))
+      case LoopKind.Sequential => Some(LoopTiming.Sequential(periodS, asking, steering))
+      case LoopKind.Futures    => Some(LoopTiming.Futures(periodS, asking, steering))
+      case LoopKind.Stream     =>
+        Some(
+          LoopTiming.Stream(
+            periodS,
+            (settings.period - settings.paceInterval).toSeconds,
+            settings.patience.toSeconds,
+            settings.decideThenPace,
+            asking,
+            steering
+          )
+        )
+      case LoopKind.Predictive => Some(LoopTiming.Predictive(periodS, settings.model(0), asking, steering))
+      case LoopKind.Plan       => None

@@ -1,0 +1,121 @@
+package skein.loop
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+import scala.util.{Failure, Success}
+import skein.port.{SteppedTime, VehicleError}
+import skein.record.*
+import skein.units.*
+
+/** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for and
+  * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
+  *
+  * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
+  * against the simulator's clock. However it ends, the simulator is let run again and the vehicles are told to hover;
+  * both are tried up to [[UntilCertain.Attempts]] times.
+  */
+object PausedLoop:
+
+  def apply(team: Team, stepper: SteppedTime, steps: Long, clock: Clock, stopped: () => Boolean)(using
+      ActorSystem
+  ): RunnableGraph[Future[Done]] =
+    val flight = PausedFlight(team, stepper, steps, clock, stopped)
+    Source
+      .unfoldAsync(flight.start)(flight.next)
+      .toMat(Sink.ignore)(Keep.right)
+      .mapMaterializedValue(flight.landed)
+
+  /** While the simulator stands still, no time passes between question and answer. */
+  private[loop] def timeless(reading: Reading): Reading =
+    val at = reading.state.validAt
+    reading.copy(state = reading.state.copy(sentAt = at, receivedAt = at))
+
+private final case class Step(number: Long, memories: Vector[Memory], picture: Picture)
+
+/** One flight of [[PausedLoop]]. */
+private final class PausedFlight(
+    team: Team,
+    stepper: SteppedTime,
+    steps: Long,
+    clock: Clock,
+    stopped: () => Boolean
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  // The moves of the newest step, and those of the one before, which they replace.
+  @volatile private var newest, replaced = Vector.empty[Future[Either[VehicleError, Boolean]]]
+
+  val start: Step =
+    Step(0, team.vehicles.map(team.start).toVector, Picture.empty(team.vehicles.size))
+
+  def next(step: Step): Future[Option[(Step, Done)]] =
+    if step.number == steps || stopped() then Future.successful(None) else fly(step)
+
+  /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it stands still,
+    * moves that missed their cancellation never end, and those of four vehicles hold every worker it has.
+    */
+  def landed(flown: Future[Done]): Future[Done] =
+    flown.transformWith: ended =>
+      for
+        running <- UntilCertain(stepper.resume())(_.isRight)
+        _       <- team.hoverAll()
+        done    <- running match
+          case Right(())                      => Future.fromTry(ended)
+          case Left(error) if ended.isSuccess => Future.failed(LoopFailed(standsStill(error)))
+          case Left(error)                    =>
+            team.log.note(EventKind.Aborted, None, standsStill(error))
+            Future.fromTry(ended)
+      yield done
+
+  private def fly(step: Step): Future[Option[(Step, Done)]] =
+    for
+      _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
+      readings <- orFail(team.readAll())
+      now     = readings(0).state.validAt
+      picture =
+        readings.foldLeft(step.picture)((seen, reading) =>
+          seen.withReading(reading._1, PausedLoop.timeless(reading._2))
+        )
+      _       = verifyStep(step, now)
+      decided =
+        team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
+      _ = send(decided.map(_._2), picture)
+      // A move has reached the simulator when the one that it replaces has ended.
+      _ <- Future.traverse(replaced)(orFail)
+      _ <- orFail(stepper.continueFor(team.settings.period))
+    yield
+      val moved = team.vehicles.zip(decided).foldLeft(picture):
+        case (seen, (vehicle, (_, decision))) =>
+          seen.withMove(Move.of(vehicle, decision, now))
+      Some((Step(step.number + 1, decided.map(_._1), moved), Done))
+
+  private def send(decisions: Vector[Decision], picture: Picture): Unit =
+    replaced = newest
+    newest = decisions.zipWithIndex.map: (decision, vehicle) =>
+      team.log.decided(vehicle, decision, picture)
+      team.log.sent(vehicle, decision, clock.now())
+      team.move(vehicle, decision).andThen(result => team.log.ended(vehicle, decision, clock.now(), result))
+
+  private def verifyStep(step: Step, now: Instant): Unit =
+    for before <- step.picture.readings(0) do
+      val stepped = now.since(before.state.validAt)
+      if stepped != team.settings.period then
+        team.log.note(
+          EventKind.StepDrift,
+          None,
+          s"step ${step.number} took ${stepped.toMillis} ms of simulator time instead of ${team.settings.period.toMillis} ms"
+        )
+
+  private def orFail[A](call: Future[Either[VehicleError, A]]): Future[A] =
+    call.transform:
+      case Success(Right(value)) => Success(value)
+      case Success(Left(error))  => Failure(LoopFailed(error.message))
+      case Failure(error)        => Failure(error)
+
+  private def standsStill(error: VehicleError) =
+    s"the simulator could not be let run again and stands still: ${error.message}"
+
+/** Why a loop cannot go on. */
+final class LoopFailed(message: String) extends RuntimeException(message)

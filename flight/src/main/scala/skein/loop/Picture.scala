@@ -1,0 +1,228 @@
+package skein.loop
+
+import skein.policy.{Action, AgentPolicy, Observation, PlanarPolicy, Policy, Role, Scenario, Seen, TeamSight}
+import skein.forecast.{Estimate, Evidence, Forecast}
+import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sighting, TrueAge}
+import skein.signal.{ClockAlignment, Kinematics}
+import skein.units.*
+
+/** A command that was sent to a vehicle, as the other vehicles' policies see it.
+  *
+  * @param speed
+  *   absent where the vehicle always commands its own
+  * @param action
+  *   absent where it is told by heading and speed
+  */
+final case class Move(
+    vehicle: Int,
+    decision: Long,
+    headingRad: Double,
+    sentAt: Instant,
+    speed: Option[MetresPerSecond] = None,
+    action: Option[Action] = None
+)
+
+object Move:
+  def of(vehicle: Int, decision: Decision, sentAt: Instant): Move =
+    Move(vehicle, decision.sequence, decision.heading.value, sentAt, decision.speed, decision.action)
+
+/** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
+  * two clocks relate.
+  *
+  * @param forecast
+  *   present where the loop predicts
+  * @param estimates
+  *   of every vehicle when a command decided upon this picture will act; absent where none are made
+  */
+final case class Picture(
+    readings: Vector[Option[Reading]],
+    moves: Vector[Option[Move]],
+    alignment: Option[ClockAlignment],
+    forecast: Option[Forecast] = None,
+    estimates: Option[Vector[Estimate]] = None
+):
+  def withReading(vehicle: Int, reading: Reading): Picture =
+    copy(
+      readings = readings.updated(vehicle, Some(reading)),
+      alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
+    ).withEvidence(Evidence.Seen(vehicle, reading.state))
+
+  def withMove(move: Move): Picture = copy(moves = moves.updated(move.vehicle, Some(move)))
+
+  def withEvidence(evidence: Evidence): Picture = copy(forecast = forecast.map(_.withEvidence(evidence)))
+
+  /** Where a vehicle is taken to be: as estimated, or else as read. */
+  def kinematics(vehicle: Int): Kinematics =
+    estimates.fold(readings(vehicle).get.state.value)(_(vehicle).kinematics)
+
+  /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
+  def isNews(vehicle: Int, reading: Reading): Boolean =
+    readings(vehicle).forall(held => reading.state.isNewerThan(held.state))
+
+  /** Whether every vehicle was seen at least once; only then can be decided. */
+  def isComplete: Boolean = readings.forall(_.isDefined)
+
+object Picture:
+  def empty(vehicles: Int): Picture = Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None)
+
+/** What one vehicle's decisions depend on apart from the picture.
+  *
+  * @param held
+  *   what the policy remembers; of its own type
+  */
+final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
+
+/** Decisions for one vehicle of a scenario: the pure core of every loop.
+  *
+  * @param policy
+  *   the agent's own, or one in its place
+  */
+final class Decider(scenario: Scenario, self: Int, policy: AgentPolicy):
+  private val agent = scenario.agents(self)
+
+  def this(scenario: Scenario, self: Int) = this(scenario, self, scenario.agents(self).policy)
+
+  val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
+
+  /** Decides from a complete picture.
+    *
+    * @param now
+    *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
+    */
+  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
+    val seen = observation(memory, picture, now)
+    // A memory comes from this policy alone: from its start, or from its last decision.
+    policy match
+      case planar: PlanarPolicy =>
+        val (chosen, held)   = planar.planar(seen, memory.held.asInstanceOf[planar.Memory])
+        val (next, decision) = decided(memory, picture, now, chosen.heading.value, chosen.speed)
+        (next.copy(held = held), decision)
+      case _ =>
+        val (action, held)   = policy.choose(seen, memory.held.asInstanceOf[policy.Memory])
+        val (next, decision) =
+          decided(
+            memory,
+            picture,
+            now,
+            Acting.headingRad(action, memory.headingRad),
+            Some(Acting.speed(action))
+          )
+        (next.copy(held = held), decision.copy(action = Some(action)))
+
+  def regardsTeam: Boolean = policy match
+    case _: Policy => false
+    case _         => true
+
+  /** What the vehicle's policy decides upon. */
+  def observation(memory: Memory, picture: Picture, now: Instant): Observation =
+    val places = scenario.agents.indices.toVector
+    Observation(
+      self,
+      places.map(seen(picture, now, _)),
+      opponentIn(picture),
+      places.map(place => Radians(if place == self then memory.headingRad else headingIn(picture, place))),
+      elapsed(memory, now),
+      memory.decisions,
+      agent.speed,
+      Metres(agent.startPositionNed.z)
+    )
+
+  private def seen(picture: Picture, now: Instant, vehicle: Int): Seen =
+    val reading = picture.readings(vehicle).get.state
+    val age     =
+      picture.alignment.fold(reading.ageByArrival(now))(known =>
+        now.since(known.toController(reading.validAt))
+      )
+    Seen(picture.kinematics(vehicle), age, isPredicted = picture.estimates.isDefined)
+
+  /** What the vehicle knows of its team. */
+  def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
+    TeamSight.of(observation(memory, picture, now))
+
+  /** What a decision was made from besides what it names itself: the other vehicles, where the whole team was regarded.
+    */
+  def sightings(picture: Picture, decision: Decision, regardsTeam: Boolean): Vector[Sighting] =
+    if !regardsTeam then Vector.empty
+    else
+      for
+        other <- scenario.agents.indices.toVector
+        reading = picture.readings(other).get
+        if other != self && reading.vehicle != decision.opponent.vehicle
+      yield Sighting(
+        agent.name,
+        decision.sequence,
+        reading.vehicle,
+        reading.sequence,
+        picture.estimates.map: estimates =>
+          val expected = estimates(other).kinematics
+          PredictedMotion(expected.positionNed, expected.velocityNed)
+      )
+
+  private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
+
+  private def opponentIn(picture: Picture): Int =
+    scenario.opponentOf(self, picture.kinematics(_).positionNed)
+
+  private def headingIn(picture: Picture, other: Int): Double =
+    picture.moves(other).fold(scenario.agents(other).startHeading.value)(_.headingRad)
+
+  /** The decision for a course that was chosen, however that was done.
+    *
+    * @param speed
+    *   absent where the vehicle commands its own
+    */
+  def decided(
+      memory: Memory,
+      picture: Picture,
+      now: Instant,
+      heading: Double,
+      speed: Option[MetresPerSecond]
+  ): (Memory, Decision) =
+    val other                      = opponentIn(picture)
+    val own                        = picture.readings(self).get
+    val opponent                   = picture.readings(other).get
+    val opponentHeading            = headingIn(picture, other)
+    val (here, there)              = (picture.kinematics(self), picture.kinematics(other))
+    val toOpponent                 = there.positionNed - here.positionNed
+    val (toEvader, pursuerHeading) = agent.role match
+      case Role.Evader => (toOpponent * -1, opponentHeading)
+      case _           => (toOpponent, memory.headingRad)
+    val (cos, sin) = (StrictMath.cos(pursuerHeading), StrictMath.sin(pursuerHeading))
+    val decision   = Decision(
+      sequence = memory.decisions,
+      vehicle = agent.name,
+      decidedAt = now,
+      own = own,
+      opponent = opponent,
+      relativeX = Metres(toEvader.x * cos + toEvader.y * sin),
+      relativeY = Metres(-toEvader.x * sin + toEvader.y * cos),
+      headingBefore = Radians(memory.headingRad),
+      opponentHeading = Radians(opponentHeading),
+      heading = Radians(heading),
+      elapsed = elapsed(memory, now),
+      observations = Observations(
+        ownAge = own.state.ageByArrival(now),
+        opponentAge = opponent.state.ageByArrival(now),
+        sinceOwnMove = picture.moves(self).map(move => now.since(move.sentAt)),
+        sinceOpponentMove = picture.moves(other).map(move => now.since(move.sentAt))
+      ),
+      trueAge = picture.alignment.map(alignment =>
+        TrueAge(
+          own = now.since(alignment.toController(own.state.validAt)),
+          opponent = now.since(alignment.toController(opponent.state.validAt)),
+          clockOffset = alignment.offset,
+          uncertainty = alignment.uncertainty
+        )
+      ),
+      predicted = picture.estimates.map(estimates =>
+        Predicted(
+          estimates(self).predictedFor,
+          here.positionNed,
+          here.velocityNed,
+          there.positionNed,
+          there.velocityNed
+        )
+      ),
+      speed = speed
+    )
+    (memory.copy(headingRad = heading, decidedAt = Some(now), decisions = memory.decisions + 1), decision)

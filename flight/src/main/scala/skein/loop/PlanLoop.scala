@@ -1,0 +1,55 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.*
+import org.apache.pekko.stream.scaladsl.*
+import org.apache.pekko.{Done, NotUsed}
+import scala.concurrent.Future
+import skein.record.Decision
+
+/** [[PredictiveLoop]] that plans: for the vehicles of a [[JointPlanning]], thousands of manoeuvres are flown forward from
+  * the estimates of each tick until the deadline, each vehicle's against the plans of all others, and the first actions of
+  * the best ones are commanded. Estimates are of the moment at which those commands will act. All other vehicles decide
+  * as in [[PredictiveLoop]].
+  */
+object PlanLoop:
+
+  def apply(team: Team, stop: SharedKillSwitch)(using ActorSystem): RunnableGraph[Future[Done]] =
+    team.planning.fold(PredictiveLoop(team, stop))(planning(team, _, stop))
+
+  private def planning(team: Team, planning: JointPlanning, stop: SharedKillSwitch)(using ActorSystem) =
+    RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
+      import GraphDSL.Implicits.*
+      val single   = team.vehicles.filterNot(planning.vehicles.contains)
+      val lead     = team.settings.planning.deadline + planning.deadTime
+      val observed = builder.add(Observed(team, stop))
+      val cast     = builder.add(Broadcast[Sight](single.size + 1))
+      val planned  = builder.add(Broadcast[Vector[(Int, Decision)]](planning.vehicles.size))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size))
+      val fan      = builder.add(Broadcast[Steering](3))
+
+      observed ~> cast
+      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      for vehicle <- single do
+        cast ~> PredictiveLoop.newest(team, Some(vehicle)) ~> team.predict(vehicle) ~>
+          team.decide(vehicle).via(stop.flow) ~> team.steer(vehicle) ~> steered.in(vehicle)
+
+      cast ~> PredictiveLoop.newest(team, None) ~> team.predict(
+        planning.vehicles,
+        lead
+      ) ~> team.plan(planning) ~>
+        planned
+      for vehicle <- planning.vehicles do
+        // A command that cannot leave yet does not hold up the next plan.
+        planned ~> only(vehicle) ~> team.newest(vehicle).via(stop.flow) ~> team.steer(vehicle) ~>
+          steered.in(vehicle)
+
+      steered ~> fan
+      fan ~> team.record
+      fan ~> team.told ~> team.feedBackAll ~> observed
+      fan ~> end
+      ClosedShape
+    })
+
+  private def only(vehicle: Int): Flow[Vector[(Int, Decision)], Decision, NotUsed] =
+    Flow[Vector[(Int, Decision)]].mapConcat(_.collect { case (`vehicle`, decision) => decision })

@@ -1,0 +1,100 @@
+package skein.loop
+
+import skein.planning.*
+import skein.policy.{Agent, GoalPolicy, Policy, Role, Scenario}
+import skein.record.Decision
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
+private abstract class Planning(scenario: Scenario, self: Int):
+  protected val agent: Agent     = scenario.agents(self)
+  protected val decider: Decider = Decider(scenario, self)
+
+  def planner: PlannerSettings
+
+  /** How long after its arrival a command begins to act on the vehicle. */
+  def deadTime: Span
+
+  /** Whether plans depend on more vehicles than this one and its opponent. */
+  def regardsTeam: Boolean
+
+  /** What is planned upon, from a picture with the estimates of when the command will act. */
+  def pose(memory: Memory, picture: Picture, now: Instant): Part
+
+  /** What the vehicle's policy does in the plan's place. */
+  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action
+
+  /** Whether speeds are planned too. */
+  protected def choosesSpeed: Boolean
+
+  /** The decision for what was found.
+    *
+    * @param part
+    *   in whose situation it keeps apart from the planned ways of others too
+    * @param isOld
+    *   whether the vehicle's policy decides in the plan's place
+    */
+  final def decide(
+      memory: Memory,
+      picture: Picture,
+      now: Instant,
+      part: Part,
+      plan: Plan,
+      isOld: Boolean
+  ): (Memory, PlannedDecision) =
+    val action =
+      if isOld then byPolicy(memory, picture, now, part)
+      else Action.of(plan.copy(manoeuvre = begun(part, plan)), part.situation, part.objective, planner.dtS)
+    val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
+    val (next, decision) =
+      decider.decided(memory, picture, now, memory.headingRad + action.turned, speed)
+    (next, PlannedDecision(decision, action, plan, isOld))
+
+  /** The plan's manoeuvre where it costs clearly less than every one suggested. */
+  private def begun(part: Part, plan: Plan): Manoeuvre =
+    val rollout = ManoeuvreRollout(part.situation, part.objective, planner.dtS)
+    val enough  = rollout.fly(plan.manoeuvre).cost + Planning.ClearGain
+    part.situation.suggested.find(rollout.fly(_).cost < enough).getOrElse(plan.manoeuvre)
+
+/** A decision that was planned, and how.
+  *
+  * @param byPolicy
+  *   whether the last plan was too old to go on with
+  */
+final case class PlannedDecision(decision: Decision, action: Action, plan: Plan, byPolicy: Boolean)
+
+object Planning:
+
+  /** Whether a vehicle's decisions are planned; else its policy decides. */
+  private[loop] def plans(agent: Agent): Boolean = agent.policy match
+    case _: Policy     => agent.role == Role.Pursuer
+    case _: GoalPolicy => true
+    case _             => false
+
+  /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the time to find
+    * every small gain follows the simple model, and guesses of other vehicles, where they are wrong, too; the policy
+    * does not. Vehicles that are where they want to be fly by it, and by plans where these save some 0.1 m for a second.
+    */
+  private val ClearGain = 0.1
+
+  /** After a longer pause a vehicle turns no further at once than in this time, s. */
+  private val LongestTurnS = 0.5
+
+  /** The random numbers of a vehicle's next plan. */
+  private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
+    (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
+
+  /** How long the vehicle may turn at once, s. */
+  private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
+    memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, LongestTurnS))
+
+  private[loop] def motion(seen: Kinematics): Motion =
+    Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
+
+  private[loop] def straight(motion: Motion, planner: PlannerSettings): PredictedTrack =
+    PredictedTrack.straight(motion, planner.steps, planner.dtS)
+
+  /** The vehicles of which nothing is planned, but for one. */
+  private[loop] def unplanned(scenario: Scenario, but: Int): Vector[Int] =
+    scenario.agents.indices.toVector.filter(other => other != but && !plans(scenario.agents(other)))

@@ -1,0 +1,18 @@
+package skein.loop
+
+import skein.policy.{GoalPolicy, Scenario}
+
+/** Who plans how. */
+private object Plannings:
+
+  /** How a vehicle's decisions are planned; absent where its policy decides.
+    *
+    * @param seed
+    *   of the search's random numbers
+    */
+  def of(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
+    val agent = scenario.agents(self)
+    Option.when(Planning.plans(agent)):
+      agent.policy match
+        case goal: GoalPolicy => TeamPlanning(scenario, self, goal, settings, seed)
+        case _                => PursuitPlanning(scenario, self, settings, seed)

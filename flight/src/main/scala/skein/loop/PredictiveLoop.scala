@@ -1,0 +1,39 @@
+package skein.loop
+
+import org.apache.pekko.stream.*
+import org.apache.pekko.stream.scaladsl.*
+import org.apache.pekko.{Done, NotUsed}
+import scala.concurrent.Future
+import skein.flow.Newest
+import skein.record.EventKind
+
+/** [[StreamLoop]] that decides upon the future: each observation is carried forward to the moment at which the command
+  * will act, by simulating every vehicle under the commands on their way to it. What the answers to commands tell is
+  * fed back besides the commands themselves.
+  */
+object PredictiveLoop:
+
+  def apply(team: Team, stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
+    RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
+      import GraphDSL.Implicits.*
+      val observed = builder.add(Observed(team, stop))
+      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size))
+      val fan      = builder.add(Broadcast[Steering](3))
+
+      observed ~> cast
+      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      for vehicle <- team.vehicles do
+        cast ~> newest(team, Some(vehicle)) ~> team.predict(vehicle) ~> team.decide(vehicle).via(stop.flow) ~>
+          team.steer(vehicle) ~> steered.in(vehicle)
+
+      steered ~> fan
+      fan ~> team.record
+      fan ~> team.told ~> team.feedBackAll ~> observed
+      fan ~> end
+      ClosedShape
+    })
+
+  /** A prediction is made for the moment of its decision: when the command can leave. */
+  private[loop] def newest(team: Team, vehicle: Option[Int]): Flow[Sight, Sight, NotUsed] =
+    Newest[Sight](_ => team.log.note(EventKind.Dropped, vehicle, "not commanded within a period"))

@@ -1,0 +1,287 @@
+package skein.loop
+
+import skein.policy.Scenario
+import skein.record.*
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.units.*
+
+/** Decides again what a recorded flight decided, live or virtual, with the pure core of every loop: no stream, no
+  * clock.
+  *
+  * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and moves the
+  * controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its predictions and whom
+  * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
+  * against and the heading chosen. The memory from decision to decision is the replay's own.
+  */
+final class Replay(scenario: Scenario, recording: Recording, planning: PlanSettings = PlanSettings()):
+  import Replay.*
+
+  private val paused   = recording.flight.isPaused
+  private val indexOf  = scenario.agents.map(_.name).zipWithIndex.toMap
+  private val readings =
+    if paused then recording.readings.map(PausedLoop.timeless) else recording.readings
+  private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
+  private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
+  private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
+  private val missed     = recording.events.collect {
+    case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision)) => (vehicle, decision)
+  }.toSet
+  private val fallback = recording.heading.parameters
+    .find(_.name == Replay.Fallback)
+    .flatMap(parameter => skein.loop.Fallback.parse(parameter.value).toOption)
+    .getOrElse(skein.loop.Fallback.Repeat)
+  private val moves = sentMoves.map(move => (move.vehicle, move.sentAt.toNanos) -> move).toMap
+
+  private val planned =
+    recording.planned.map(planned => (planned.vehicle, planned.decision) -> planned).toMap
+
+  private val joint = Option
+    .when(recording.flight.loopKind.contains(LoopKind.Plan))(())
+    .flatMap(_ => JointPlanning.of(scenario, planning, recording.flight.seed))
+  private val planners = joint.fold(Vector.empty)(_.vehicles).map(scenario.agents(_).name)
+
+  /** Decisions made together, by their time and vehicle. */
+  private val together =
+    recording.decisions
+      .filter(decision => planners.contains(decision.vehicle))
+      .groupBy(_.decidedAt)
+      .view
+      .mapValues(_.map(decision => decision.vehicle -> decision).toMap)
+      .toMap
+
+  /** The first decision that comes out differently. */
+  def firstDifference: Option[Difference] =
+    val minds = scenario.agents.indices.toVector.map: self =>
+      val decider = Decider(scenario, self)
+      Mind(decider, decider.start)
+    val jointly =
+      joint.map(planning => JointMind(planning, planning.vehicles.map(Decider(scenario, _).start)))
+    whole.iterator
+      .scanLeft((Minds(minds, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
+        again(state._1, recorded) match
+          case Left(difference)         => (state._1, Some(difference))
+          case Right((minds, decision)) => (minds, Difference.between(recorded, decision))
+      .collectFirst { case (_, Some(difference)) => difference }
+
+  /** All decisions, but for those made together last of which a recording that broke off has not got all. */
+  private def whole: Vector[Decision] =
+    val cut = together.maxByOption(_._1).filter(_._2.size < planners.size).map(_._1)
+    recording.decisions.filterNot(decision =>
+      cut.contains(decision.decidedAt) && planners.contains(decision.vehicle)
+    )
+
+  private def again(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
+    (minds.decided.get(recorded.vehicle, recorded.sequence), minds.jointly) match
+      case (Some(decision), _)                                       => Right((minds, decision))
+      case (None, Some(mind)) if planners.contains(recorded.vehicle) => againTogether(minds, mind, recorded)
+      case _                                                         => againAlone(minds, recorded)
+
+  private def againAlone(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
+    for
+      self    <- vehicle(recorded, "vehicle", recorded.vehicle)
+      picture <- picture(recorded, self, minds.single(self).regardsTeam)
+    yield
+      val mind             = minds.single(self)
+      val (next, decision) =
+        if missed((recorded.vehicle, recorded.sequence)) then
+          mind.decideBy(instead(self), picture, recorded.decidedAt)
+        else mind.decide(picture, recorded.decidedAt)
+      (minds.copy(single = minds.single.updated(self, next)), decision)
+
+  private def againTogether(
+      minds: Minds,
+      mind: JointMind,
+      recorded: Decision
+  ): Either[Difference, (Minds, Decision)] =
+    val made = together(recorded.decidedAt)
+    for
+      all <- collected(planners): name =>
+        made.get(name).toRight(Difference(
+          where(recorded),
+          "vehicle",
+          name,
+          "expected to decide at that time too"
+        ))
+      pictures <- collected(all): decision =>
+        vehicle(decision, "vehicle", decision.vehicle).flatMap(self =>
+          picture(decision, self, mind.planning.regardsTeam(self))
+        )
+      slices <- searched(recorded)
+    yield
+      val (next, decisions) = mind.decide(pictures, recorded.decidedAt, slices)
+      val decided = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+      // Where its number is another, it differs from what is recorded.
+      val own = decisions(planners.indexOf(recorded.vehicle))
+      (minds.copy(jointly = Some(next), decided = decided), own)
+
+  private def collected[A, B](all: Vector[A])(one: A => Either[Difference, B])
+      : Either[Difference, Vector[B]] =
+    all.map(one).partitionMap(identity) match
+      case (Vector(), found) => Right(found)
+      case (missing, _)      => Left(missing.head)
+
+  /** What a decision was made from. */
+  private def picture(recorded: Decision, self: Int, regardsTeam: Boolean): Either[Difference, Picture] =
+    for
+      other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
+      own      <- reading(recorded, "ownSequence", recorded.own)
+      opponent <- reading(recorded, "opponentSequence", recorded.opponent)
+      ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
+      itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
+      others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
+    yield
+      val empty = Picture.empty(scenario.agents.size)
+      val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
+      val known = empty.copy(
+        readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),
+        moves = empty.moves.updated(self, ownMove).updated(other, itsMove),
+        alignment = recorded.trueAge.map(alignment)
+      )
+      val possible = pictures(known, recorded)
+      possible
+        .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
+        .getOrElse(possible.head)
+
+  /** How far each search of a decision went. */
+  private def searched(of: Decision): Either[Difference, Vector[Int]] =
+    planned
+      .get((of.vehicle, of.sequence))
+      .map(_.slices.map(_.toInt))
+      .toRight(Difference(where(of), "slices", "absent", "expected in the table of plans"))
+
+  /** Who decided where a deadline was missed. */
+  private def instead(self: Int): Decider =
+    fallback.policy(scenario.agents(self)).fold(Decider(scenario, self))(Decider(scenario, self, _))
+
+  /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
+  private def othersSeen(of: Decision, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
+    val rest = scenario.agents.indices.filter(index => index != self && index != opponent)
+    rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
+      val name = scenario.agents(vehicle).name
+      for
+        readings <- soFar
+        sighting <- sightingOf(of, name).toRight(
+          Difference(where(of), "sighting", name, "missing in the table of sightings")
+        )
+        reading <- bySequence
+          .get((name, sighting.reading))
+          .toRight(Difference(where(of), "sighting", s"$name ${sighting.reading}", "no such reading"))
+      yield readings.updated(vehicle, reading)
+
+  private def sightingOf(of: Decision, vehicle: String): Option[Sighting] =
+    sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
+
+  /** The picture with what was known of the vehicles that the decision was not made from. It was drawn at some moment
+    * after the readings used had come, so there is one for each reading that came since.
+    */
+  private def pictures(known: Picture, recorded: Decision): Vector[Picture] =
+    val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
+    val others   = scenario.agents.indices.filter(known.readings(_).isEmpty).toVector
+    val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))
+    for
+      moment <- (earliest +: moments).distinct
+      picture = others.foldLeft(known): (picture, other) =>
+        picture.copy(readings = picture.readings.updated(other, heard(other).newestAt(moment)))
+      if picture.isComplete
+    yield picture.copy(estimates = recorded.predicted.map(estimates(picture, recorded, _)))
+
+  private def estimates(picture: Picture, recorded: Decision, predicted: Predicted) =
+    picture.readings.flatten.map: reading =>
+      val read      = reading.state.value
+      val estimated =
+        if reading.vehicle == recorded.vehicle then
+          moved(read, predicted.ownPositionNed, predicted.ownVelocityNed)
+        else if reading.vehicle == recorded.opponent.vehicle then
+          moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed)
+        else
+          sightingOf(recorded, reading.vehicle).flatMap(_.predicted) match
+            case Some(motion) => moved(read, motion.positionNed, motion.velocityNed)
+            case None         => moved(read, OutOfSight, read.velocityNed)
+      skein.forecast.Estimate(estimated, predicted.actsAt, reading.state.validAt)
+
+  private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
+    read.copy(positionNed = positionNed, velocityNed = velocityNed)
+
+  /** Bounds whose middle and half width are the estimate recorded. */
+  private def alignment(age: TrueAge): ClockAlignment =
+    val (least, most) = (age.clockOffset - age.uncertainty, age.clockOffset + age.uncertainty)
+    ClockAlignment.of(Stamped((), Instant.Epoch, Instant.Epoch + least, Instant.Epoch + most))
+
+  private def vehicle(of: Decision, column: String, name: String): Either[Difference, Int] =
+    indexOf.get(name).toRight(Difference(where(of), column, name, "no vehicle of the scenario"))
+
+  private def reading(of: Decision, column: String, used: Reading): Either[Difference, Reading] =
+    bySequence.get((used.vehicle, used.sequence)) match
+      case Some(read) if read == used => Right(read)
+      case Some(read)                 =>
+        Left(Difference(where(of), column, used.toString, s"another in the table of readings: $read"))
+      case None =>
+        Left(Difference(where(of), column, used.sequence.toString, "missing in the table of readings"))
+
+  private def move(
+      of: Decision,
+      column: String,
+      vehicle: Int,
+      since: Option[Span]
+  ): Either[Difference, Option[Move]] =
+    since match
+      case None       => Right(None)
+      case Some(span) =>
+        moves
+          .get((vehicle, (of.decidedAt - span).toNanos))
+          .map(Some(_))
+          .toRight(Difference(where(of), column, span.toMillis.toString, "no command was sent then"))
+
+  /** While the simulator stands still, moves are sent at the moment of their decision, on its clock. */
+  private def sentMoves: Vector[Move] =
+    val decided = recording.decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+    for
+      command  <- recording.commands
+      sequence <- command.decision
+      decision <- decided.get((command.vehicle, sequence))
+      vehicle  <- indexOf.get(command.vehicle)
+    yield Move(
+      vehicle,
+      sequence,
+      decision.heading.value,
+      if paused then decision.decidedAt else command.sentAt,
+      decision.speed,
+      decision.action
+    )
+
+  private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"
+
+object Replay:
+  /** @param jointly
+    *   where some plan
+    * @param decided
+    *   together last, by vehicle and number
+    */
+  private final case class Minds(
+      single: Vector[Mind],
+      jointly: Option[JointMind],
+      decided: Map[(String, Long), Decision]
+  )
+
+  /** The parameter that names what was done where deadlines were missed. */
+  val Fallback: String = "fallback"
+
+  /** What was predicted of vehicles that a decision was not made against is not recorded. */
+  private val OutOfSight = Vector3(Double.PositiveInfinity, 0, 0)
+
+  /** What was heard of one vehicle, ready to be asked for any moment. */
+  private final class Heard(readings: Vector[Reading]):
+    private val byArrival = readings.sortBy(_.state.receivedAt)
+    private val arrivals  = byArrival.map(_.state.receivedAt)
+    private val newest    = byArrival.drop(1).scanLeft(byArrival.headOption): (newest, reading) =>
+      newest.filter(_.state.validAt >= reading.state.validAt).orElse(Some(reading))
+
+    /** The newest reading that had come by then. */
+    def newestAt(moment: Instant): Option[Reading] = newest.take(arrivedBy(moment)).lastOption.flatten
+
+    /** When readings came, after one moment and up to another. */
+    def between(after: Instant, until: Instant): Vector[Instant] =
+      arrivals.slice(arrivedBy(after), arrivedBy(until))
+
+    private def arrivedBy(moment: Instant): Int =
+      arrivals.search(moment + Span.ofNanos(1)).insertionPoint

@@ -1,0 +1,31 @@
+package skein.loop
+
+import org.apache.pekko.Done
+import org.apache.pekko.stream.{ClosedShape, SharedKillSwitch}
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+
+/** What `sequential` and `futures` share: each snapshot that they read is decided upon at once. */
+private object SnapshotGraph:
+
+  def apply(team: Team, snapshots: Source[Percept, ?], stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
+    RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
+      import GraphDSL.Implicits.*
+      val percepts = builder.add(MergePreferred[Percept](1, eagerComplete = true))
+      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size))
+      val fan      = builder.add(Broadcast[Steering](3))
+
+      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      for vehicle <- team.vehicles do
+        cast ~> team.decide(vehicle) ~> team.newest(vehicle).via(stop.flow) ~>
+          team.steer(vehicle) ~> steered.in(vehicle)
+
+      snapshots ~> percepts.in(0)
+      percepts ~> team.picture ~> cast
+      steered ~> fan
+      fan ~> team.record
+      fan ~> team.sent ~> team.feedBack ~> percepts.preferred
+      fan ~> end
+      ClosedShape
+    })

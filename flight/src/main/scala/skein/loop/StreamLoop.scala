@@ -1,0 +1,82 @@
+package skein.loop
+
+import org.apache.pekko.{Done, NotUsed}
+import org.apache.pekko.stream.*
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+import skein.flow.*
+import skein.port.VehicleError
+import skein.record.{Decision, EventKind, Reading}
+import skein.units.*
+
+/** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the latest
+  * are joined, each vehicle decides at its own pace on the newest picture and is commanded; what was commanded is fed
+  * back. Nothing waits for anything else.
+  */
+object StreamLoop:
+
+  def apply(team: Team, stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
+    RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
+      import GraphDSL.Implicits.*
+      val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size))
+      val percepts = builder.add(MergePreferred[Percept](1, eagerComplete = true))
+      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size))
+      val fan      = builder.add(Broadcast[Steering](3))
+      val start    = team.now
+
+      for vehicle <- team.vehicles do
+        sense(team, vehicle, start, stop) ~> readings.in(vehicle)
+        cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered.in(vehicle)
+
+      readings ~> joinLatest(team) ~> percepts.in(0)
+      percepts ~> team.picture ~> cast
+      steered ~> fan
+      fan ~> team.record
+      fan ~> team.sent ~> team.feedBack ~> percepts.preferred
+      fan ~> end
+      ClosedShape
+    })
+
+  /** All vehicles are asked in phase, as far as the settings do not spread them; a phase of chance between them would make
+    * the data of one older than that of the other.
+    */
+  private[loop] def sense(
+      team: Team,
+      vehicle: Int,
+      start: Instant,
+      stop: SharedKillSwitch
+  ): Source[(Int, Reading), ?] =
+    val settings = team.settings
+    val offset   = settings.spread * vehicle.toLong / team.vehicles.size.toLong
+    Sense
+      .at[VehicleError, Reading, NotUsed](
+        team.ticks(start + offset),
+        settings.window,
+        settings.early,
+        isNewer = (answered, held) => answered.state.isNewerThan(held.state)
+      )(() => team.read(vehicle))(
+        onSkip = _.foreach(reading =>
+          team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
+        ),
+        onMissed =
+          ticks => team.log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
+      )
+      .via(stop.flow)
+      .map((vehicle, _))
+
+  private[loop] def joinLatest(team: Team): Flow[(Int, Reading), Percept, ?] =
+    val everyone = team.vehicles.toSet
+    Flow
+      .fromGraph(
+        JoinLatest[Int, Reading](everyone, team.settings.patience)(
+          isNewer = (arrived, held) => arrived.state.isNewerThan(held.state),
+          onStale = (vehicle, reading) =>
+            team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+        )
+      )
+      .map(Percept.Seen(_, everyone))
+
+  private def pacedDecisions(team: Team, vehicle: Int): Flow[Sight, Decision, ?] =
+    if team.settings.decideThenPace then team.decide(vehicle).via(team.pace(vehicle))
+    else Flow[Sight].via(team.pace(vehicle)).via(team.decide(vehicle))

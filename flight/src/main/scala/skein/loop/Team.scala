@@ -1,0 +1,337 @@
+package skein.loop
+
+import java.util.concurrent.atomic.{AtomicLongArray, AtomicReferenceArray}
+import org.apache.pekko.NotUsed
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success}
+import skein.flow.*
+import skein.forecast.{Commanded, Evidence, Forecast}
+import skein.loop.planning.{Plan, PlanWorkers}
+import skein.policy.{Action, AgentPolicy, Policy, Scenario}
+import skein.port.{VehicleError, VehiclePort}
+import skein.record.*
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
+final class Team(
+    val scenario: Scenario,
+    crafts: Vector[VehiclePort],
+    clock: Clock,
+    recorder: Recorder,
+    val settings: LoopSettings,
+    workers: PlanWorkers = PlanWorkers.none
+)(using ExecutionContext):
+  require(crafts.size == scenario.agents.size, "one craft per agent")
+
+  val vehicles: Range  = crafts.indices
+  private val deciders = vehicles.map(Decider(scenario, _))
+  val log: TeamLog     = TeamLog(scenario, deciders, clock, recorder)
+
+  // `futures` asks one vehicle from several threads at once.
+  private val asked = AtomicLongArray(crafts.size)
+
+  // The newest moves of each vehicle, oldest first: as many as may be unanswered.
+  private val moves = AtomicReferenceArray(Array.fill(crafts.size)(Vector.empty[Future[Any]]))
+
+  /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
+  def read(vehicle: Int): Future[Either[VehicleError, Reading]] =
+    val sequence = asked.getAndIncrement(vehicle)
+    crafts(vehicle)
+      .read()
+      .map:
+        case Right(state) =>
+          Right(log.read(vehicle, sequence, state))
+        case Left(error) =>
+          log.failed(vehicle, s"reading $sequence", error)
+          Left(error)
+
+  /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
+  def readAll(): Future[Either[VehicleError, Map[Int, Reading]]] =
+    vehicles.foldLeft(Future.successful[Either[VehicleError, Map[Int, Reading]]](Right(Map.empty))):
+      (soFar, vehicle) =>
+        soFar.flatMap:
+          case Right(readings) => read(vehicle).map(_.map(reading => readings.updated(vehicle, reading)))
+          case error           => Future.successful(error)
+
+  /** Joins percepts to pictures; emits those on which somebody shall decide. */
+  def picture: Flow[Percept, Sight, NotUsed] = pictureFrom(Picture.empty(crafts.size))
+
+  /** The same, with all that a forecast needs. */
+  def pictureWithForecast: Flow[Percept, Sight, NotUsed] =
+    pictureFrom(
+      Picture.empty(crafts.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+    )
+
+  private def pictureFrom(start: Picture): Flow[Percept, Sight, NotUsed] =
+    Flow[Percept]
+      .statefulMap(() => start)(
+        (picture, percept) =>
+          percept match
+            case Percept.Seen(readings, deciders) =>
+              val seen =
+                readings.foldLeft(picture)((picture, reading) => picture.withReading(reading._1, reading._2))
+              (seen, Option.when(seen.isComplete)(Sight(seen, deciders)))
+            case Percept.Read(vehicle, reading) if picture.isNews(vehicle, reading) =>
+              (picture.withReading(vehicle, reading), None)
+            case Percept.Read(vehicle, reading) =>
+              log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+              (picture, None)
+            case Percept.Moved(move) =>
+              val command = Commanded(move.decision, setpoint(move), move.sentAt)
+              (picture.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
+            case Percept.Due(deciders) => (picture, Option.when(picture.isComplete)(Sight(picture, deciders)))
+            case Percept.Heard(evidence) => (picture.withEvidence(evidence), None)
+        ,
+        _ => None
+      )
+      .collect { case Some(sight) => sight }
+
+  /** Once a period, in the middle between two questions, everybody is due to decide. */
+  def due(start: Instant): Source[Percept, NotUsed] =
+    ticks(start + settings.period / 2).map(_ => Percept.Due(vehicles.toSet))
+
+  /** Once a period from an instant on: how many ticks were due since the last. */
+  def ticks(first: Instant): Source[Int, NotUsed] =
+    Source.fromGraph(Metronome(first, settings.period, clock))
+
+  def now: Instant = clock.now()
+
+  /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
+    * predictions turned out.
+    */
+  def predict(vehicle: Int): Flow[Sight, Sight, NotUsed] =
+    Flow[Sight]
+      .collect { case sight if sight.deciders(vehicle) => sight }
+      .via(predict(Vector(vehicle), lead = Span.Zero))
+
+  /** Carries sights forward to when the commands of some vehicles will act, and records how earlier predictions turned
+    * out.
+    *
+    * @param lead
+    *   how much later that is because of what is done with the sight
+    */
+  def predict(deciders: Vector[Int], lead: Span): Flow[Sight, Sight, NotUsed] =
+    Flow[Sight]
+      .collect(Function.unlift(sight => sight.picture.forecast.map((sight, _))))
+      .via(Predict.whenActing(clock, vehicle => deciders.exists(verified(_)(vehicle)), lead)(outcome =>
+        for decider <- deciders if verified(decider)(outcome.vehicle) do
+          log.predicted(decider, outcome)
+      ))
+      .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
+
+  /** Decides for one vehicle on the sights that are meant for it, within the deadline if there is one, and records the
+    * decision.
+    */
+  def decide(vehicle: Int): Flow[Sight, Decision, NotUsed] = settings.deadline match
+    case None           => decideAtOnce(vehicle)
+    case Some(deadline) =>
+      Flow
+        .fromMaterializer: (materializer, _) =>
+          given system: ActorSystem = materializer.system
+          val policies              = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
+          decideWithin(vehicle, deadline.within, deadline.otherwise.policy(scenario.agents(vehicle))):
+            case (memory, (picture, now)) => Future(decideAt(vehicle, memory, picture, now))(using policies)
+        .mapMaterializedValue(_ => NotUsed)
+
+  private def decideAtOnce(vehicle: Int): Flow[Sight, Decision, NotUsed] =
+    Flow[Sight]
+      // Not `filter`: it fetches one element ahead, which would grow old in it.
+      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
+        val (next, decision) = decideAt(vehicle, memory, seen._1, seen._2)
+        (next, (decision, seen._1)))
+      .via(Tap(log.decided(vehicle, _, _)))
+      .map(_._1)
+
+  /** Decides by a policy that takes its time. A deadline missed is recorded.
+    *
+    * @param instead
+    *   decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last decision); without it nothing
+    *   is sent then, and the vehicle flies on under its last move for as long as that lasts
+    * @param policy
+    *   from memory, picture and the time of asking
+    */
+  def decideWithin(
+      vehicle: Int,
+      deadline: Span,
+      instead: Option[AgentPolicy]
+  )(
+      policy: (Memory, (Picture, Instant)) => Future[(Memory, Decision)]
+  )(using ActorSystem): Flow[Sight, Decision, NotUsed] =
+    type Seen = (Picture, Instant)
+    def withPicture(decided: (Memory, Decision), seen: Seen) = (decided._1, (decided._2, seen._1))
+    val otherwise                                            = instead.fold(Otherwise.Hold()): fallback =>
+      val decider = Decider(scenario, vehicle, fallback)
+      Otherwise.Ask((memory: Memory, seen: Seen) =>
+        withPicture(decider.decide(memory, seen._1, seen._2), seen)
+      )
+    Flow[Sight]
+      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
+        policy(memory, seen).map(withPicture(_, seen))
+      ))
+      .map:
+        case Timely.Decided(decision)     => Some(decision)
+        case Timely.Missed(miss, instead) =>
+          log.missed(vehicle, miss, instead.map(_._1.sequence))
+          instead
+      .collect { case Some(decided) => decided }
+      .via(Tap(log.decided(vehicle, _, _)))
+      .map(_._1)
+
+  /** How the decisions of those vehicles are planned that plan. */
+  val planning: Option[JointPlanning] = JointPlanning.of(scenario, settings.planning, settings.seed)
+
+  /** Plans upon each sight for all vehicles that plan, and records the decisions and how they were planned. */
+  def plan(planning: JointPlanning)(using ActorSystem): Flow[Sight, Vector[(Int, Decision)], NotUsed] =
+    type Seen = (Picture, Instant)
+    val vehicles = planning.vehicles
+    Flow[Sight]
+      .map(sight => (sight.picture, clock.now()))
+      .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
+        (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
+        (memories, seen: Seen, parts, answer) =>
+          val (next, planned) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
+          (next, (planned, answer, seen._1))
+      ))
+      .via(Tap((planned, answer, picture) =>
+        for (vehicle, one) <- vehicles.zip(planned) do
+          log.planned(vehicle, one, answer, picture, planning.regardsTeam(vehicle))
+      ))
+      .map((planned, _, _) => vehicles.zip(planned.map(_.decision)))
+
+  def start(vehicle: Int): Memory = deciders(vehicle).start
+
+  /** The pure decision, for loops that keep their own time. */
+  def decideAt(vehicle: Int, memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
+    deciders(vehicle).decide(memory, picture, now)
+
+  /** Paces one vehicle: the newest element, at least an interval after the last. */
+  def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
+    Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
+      log.note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
+    ))
+
+  /** Keeps the newest decision for a vehicle that cannot be commanded yet. */
+  def newest(vehicle: Int): Flow[Decision, Decision, NotUsed] =
+    Newest(decision =>
+      log.note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
+    )
+
+  /** Commands one vehicle; emits what is sent and how it ended.
+    *
+    * '''Emits when''' a command is sent or has ended. '''Backpressures when''' [[Steer]] does. '''Completes when'''
+    * upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels when''' downstream
+    * cancels.
+    */
+  def steer(vehicle: Int): Flow[Decision, Steering, NotUsed] =
+    Flow
+      .fromGraph(
+        Steer[Decision, Either[VehicleError, Boolean]](
+          settings.minCommandInterval,
+          clock,
+          settings.movesInFlight
+        )(
+          move(vehicle, _),
+          () => crafts(vehicle).hover(),
+          Team.isCertain,
+          decision =>
+            log.note(
+              EventKind.Dropped,
+              Some(vehicle),
+              s"command ${decision.sequence} not sent before the end"
+            )
+        )
+      )
+      .map(Steering(vehicle, _))
+
+  /** Takes down every command and how it ended. Never backpressures. */
+  def record: Sink[Steering, ?] = Sink.foreach(log.steered)
+
+  /** The moves sent. */
+  def sent: Flow[Steering, Move, NotUsed] = Flow[Steering].collect:
+    case Steering(vehicle, Steered.Sent(decision, at)) => Move.of(vehicle, decision, at)
+
+  /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
+  def told: Flow[Steering, Percept, NotUsed] = Flow[Steering].collect(Function.unlift:
+    case Steering(vehicle, Steered.Sent(decision, at)) => Some(Percept.Moved(Move.of(vehicle, decision, at)))
+    case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
+      Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
+    case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
+    case Steering(vehicle, Steered.Ended(decision, _, _))       =>
+      Some(Percept.Heard(Evidence.Failed(vehicle, decision.sequence))))
+
+  /** Carries the newest move of each vehicle back into the picture. */
+  def feedBack: Flow[Move, Percept, NotUsed] =
+    Flow[Move].map(move => (move.vehicle, move)).via(FeedBack.newest).map((_, move) => Percept.Moved(move))
+
+  /** Carries percepts back into the picture, the newest of each vehicle and kind. */
+  def feedBackAll: Flow[Percept, Percept, NotUsed] =
+    Flow[Percept]
+      .map:
+        case percept @ Percept.Moved(move)     => ((percept.ordinal, move.vehicle), percept)
+        case percept @ Percept.Heard(evidence) => ((percept.ordinal, evidence.vehicle), percept)
+        case percept                           => ((percept.ordinal, -1), percept)
+      .via(FeedBack.newest)
+      .map(_._2)
+
+  /** Sends what was decided; the answer comes when the move ends. */
+  def move(vehicle: Int, decision: Decision): Future[Either[VehicleError, Boolean]] =
+    val answer =
+      crafts(vehicle).act(action(vehicle, decision), settings.moveDuration)
+    val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
+    answer
+
+  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one that never
+    * says that it does is noted. Ends when every move has been answered, too.
+    */
+  def hoverAll()(using ActorSystem): Future[Unit] =
+    Future.traverse(vehicles.toVector)(hover).map(_ => ())
+
+  private def hover(vehicle: Int)(using ActorSystem): Future[Unit] =
+    val sent = moves.get(vehicle)
+    for
+      // To hover is a command, too, and must not be a third one outstanding.
+      _      <- allEnded(sent.dropRight(1))
+      answer <- UntilCertain(crafts(vehicle).hover())(Team.isHovering).transform(Success(_))
+      _      <- allEnded(sent.takeRight(1))
+    yield answer match
+      case Success(Left(error)) if !Team.isHovering(Left(error)) =>
+        log.failed(vehicle, "not known to hover", error)
+      case Success(_)     => ()
+      case Failure(error) => log.note(EventKind.Aborted, Some(vehicle), s"not known to hover: $error")
+
+  private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
+    Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
+
+  private def setpoint(move: Move): Setpoint =
+    move.action.fold {
+      val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
+      Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
+    }(Acting.setpoint)
+
+  private def action(vehicle: Int, decision: Decision): Action =
+    decision.action.getOrElse:
+      val velocity = scenario.agents(vehicle).velocityNed(decision.heading.value, decision.speed)
+      Action.VelocityAt(velocity.x, velocity.y, altitude(vehicle))
+
+  /** Whose predictions are held against readings by a decider: where each of a team predicts all, its own. */
+  private def verified(decider: Int): Int => Boolean = scenario.agents(decider).policy match
+    case _: Policy => _ => true
+    case _         => _ == decider
+
+  private def altitude(vehicle: Int): Metres = Metres(scenario.agents(vehicle).startPositionNed.z)
+
+object Team:
+
+  /** Whether a call's result says that the call neither runs nor is on its way. */
+  private def isCertain(result: Either[VehicleError, Boolean]): Boolean = result.fold(_.isCertain, _ => true)
+
+  /** Whether a vehicle took the command to hover, or refused it. */
+  private def isHovering(result: Either[VehicleError, Boolean]): Boolean = result match
+    case Right(_) | Left(_: VehicleError.Refused) => true
+    case Left(_)                                  => false

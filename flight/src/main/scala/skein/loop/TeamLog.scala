@@ -1,0 +1,133 @@
+package skein.loop
+
+import scala.util.{Failure, Success, Try}
+import skein.flow.{Miss, Steered, Verified}
+import skein.loop.planning.Plan
+import skein.policy.Scenario
+import skein.port.VehicleError
+import skein.record.*
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** Tells a recorder what happens to a team in flight. */
+final class TeamLog(scenario: Scenario, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
+
+  def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
+    recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
+
+  /** A policy did not decide in time.
+    *
+    * @param instead
+    *   the sequence of the decision that the fallback made, if it made one
+    */
+  def missed(vehicle: Int, miss: Miss, instead: Option[Long]): Unit =
+    val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
+    recorder.offer(
+      Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)
+    )
+
+  /** What a call came to nothing by.
+    *
+    * @param what
+    *   was called
+    */
+  def failed(vehicle: Int, what: String, error: VehicleError): Unit =
+    note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}")
+
+  /** A vehicle told where it is; returns the recorded reading. */
+  def read(vehicle: Int, sequence: Long, state: Stamped[Kinematics]): Reading =
+    val reading = Reading(sequence, name(vehicle), state)
+    recorder.offer(reading)
+    reading
+
+  /** How a prediction turned out that one vehicle's controller made. */
+  def predicted(decider: Int, verified: Verified): Unit =
+    recorder.offer(
+      Prediction(
+        decider = name(decider),
+        vehicle = name(verified.vehicle),
+        madeAt = verified.madeAt,
+        predictedFor = verified.estimate.predictedFor,
+        age = verified.estimate.age,
+        positionNed = verified.estimate.kinematics.positionNed,
+        error = verified.error
+      )
+    )
+
+  /** A decision and what it was made from. */
+  def decided(vehicle: Int, decision: Decision, picture: Picture): Unit =
+    decided(vehicle, decision, picture, deciders(vehicle).regardsTeam)
+
+  /** A planned decision, how it was planned, and what from. */
+  def planned(
+      vehicle: Int,
+      made: PlannedDecision,
+      answer: Plan.Answer,
+      picture: Picture,
+      regardsTeam: Boolean
+  ): Unit =
+    val PlannedDecision(decision, action, plan, byPolicy) = made
+    decided(vehicle, decision, picture, regardsTeam)
+    recorder.offer(
+      Planned(
+        name(vehicle),
+        decision.sequence,
+        plan.candidates,
+        answer.slices.map(_.toLong),
+        Option.when(plan.cost.isFinite)(plan.cost),
+        clock.now().since(decision.decidedAt),
+        action.breaches.size
+      )
+    )
+    if plan.slices == 0 then
+      val instead = if byPolicy then "the policy decides" else "the last plan goes on"
+      note(EventKind.DeadlineMissed, Some(vehicle), s"no slice was searched: $instead")
+    for breach <- action.breaches.headOption do
+      note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
+
+  private def decided(vehicle: Int, decision: Decision, picture: Picture, regardsTeam: Boolean): Unit =
+    recorder.offer(decision)
+    deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
+
+  /** A command was sent, or has ended. */
+  def steered(steering: Steering): Unit = steering.event match
+    case Steered.Sent(decision, at)          => sent(steering.vehicle, decision, at)
+    case Steered.Ended(decision, at, result) => ended(steering.vehicle, decision, at, result)
+
+  /** A decision went on its way as a command. */
+  def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
+    val agent    = scenario.agents(vehicle)
+    val velocity = agent.velocityNed(decision.heading.value, decision.speed)
+    recorder.offer(
+      Command(
+        decision.sequence,
+        agent.name,
+        Some(decision.sequence),
+        MetresPerSecond(velocity.x),
+        MetresPerSecond(velocity.y),
+        Metres(agent.startPositionNed.z),
+        at
+      )
+    )
+
+  /** What became of a command. */
+  def ended(vehicle: Int, decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
+    val outcome = result match
+      case Success(Right(true))  => "done"
+      case Success(Right(false)) => "superseded"
+      case Success(Left(error))  =>
+        failed(vehicle, s"command ${decision.sequence}", error)
+        error.message
+      case Failure(error) => error.toString
+    recorder.offer(Acknowledgement(name(vehicle), decision.sequence, at, outcome))
+
+  private def name(vehicle: Int): String = scenario.agents(vehicle).name
+
+object TeamLog:
+  private def kindOf(error: VehicleError): EventKind = error match
+    case VehicleError.TimedOut(_)                              => EventKind.TimedOut
+    case VehicleError.Lost(_, _) | VehicleError.Unreachable(_) => EventKind.Disconnected
+    case VehicleError.Overloaded(_)                            => EventKind.Overloaded
+    case VehicleError.Cancelled(_)                             => EventKind.Cancelled
+    case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) =>
+      EventKind.Refused

@@ -1,0 +1,64 @@
+package skein.measure
+
+import skein.record.LoopKind
+
+/** Flights that are reported together; in the order of the paper: by link, then by loop.
+  *
+  * @param flights
+  *   without the virtual twins of live flights
+  * @param twins
+  *   live flights beside their virtual twins
+  */
+final case class FlightSet private (flights: Vector[FlightSummary], twins: Vector[Twin]):
+
+  def links: Vector[String] = flights.map(_.flight.link).distinct
+
+  def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
+
+  /** The flight that the others are measured against. */
+  val truth: Option[FlightSummary] = truthOf(None)
+
+  private def truthOf(policy: Option[String]): Option[FlightSummary] =
+    flights.find(summary => summary.flight.isPaused && summary.policy == policy)
+
+  /** Duels alone. */
+  def duels: FlightSet =
+    new FlightSet(flights.filter(_.team.isEmpty), twins.filter(_.live.team.isEmpty))
+
+  /** Teams' flights by scenario. */
+  val teams: Vector[TeamFlights] = TeamFlights.of(flights)
+
+  /** Twins' virtual flights included. */
+  def all: Vector[FlightSummary] = flights ++ twins.flatMap(_.virtual).distinct
+
+  /** By loop, link and clock. */
+  def deviations: Vector[Deviation] = Deviation.of(all)
+
+  /** By loop and link. */
+  def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
+
+  /** Mean distance of the last 10 s against that of the truth with the same policies, as a share of it; absent for the
+    * truth itself.
+    */
+  def deviation(flight: FlightSummary): Option[Double] =
+    for
+      truth <- truthOf(flight.policy) if truth != flight
+      from  <- truth.distance.flatMap(_.lastTenSeconds)
+      own   <- flight.distance.flatMap(_.lastTenSeconds)
+    yield own.mean / from.mean - 1
+
+object FlightSet:
+  private val linkOrder = Vector("none", "direct", "vpn", "vpn-mixed")
+
+  def apply(flights: Seq[FlightSummary]): FlightSet =
+    def place(order: Vector[String], name: String) =
+      Some(order.indexOf(name)).filter(_ >= 0).getOrElse(order.size)
+    val ordered = flights.toVector.sortBy: summary =>
+      (
+        place(linkOrder, summary.flight.link),
+        summary.flight.link,
+        summary.flight.loopKind.fold(LoopKind.values.length)(_.ordinal),
+        summary.policy.isDefined
+      )
+    val twins = Twin.among(ordered)
+    new FlightSet(ordered.diff(twins.flatMap(_.virtual)), twins)

@@ -1,0 +1,145 @@
+package skein.measure
+
+import skein.policy.Role
+import skein.record.*
+import skein.units.*
+
+/** What one recording comes to.
+  *
+  * @param roles
+  *   evaders first, as in the paper
+  * @param roundTripsMs
+  *   of the link's own samples where there are any, else of the readings
+  * @param distance
+  *   in a duel, between the first pursuer and the first evader; absent if they were not both seen
+  * @param cutShort
+  *   why it ended before its time, if it did
+  * @param policy
+  *   short name of the policy that was flown in the place of the paper's; the flight's scenario says more
+  * @param team
+  *   absent for a duel
+  * @param planning
+  *   absent where nothing was planned
+  * @param predictions
+  *   absent where nothing was predicted
+  */
+final case class FlightSummary(
+    flight: Flight,
+    tracks: Vector[Track],
+    distance: Option[DistanceCurve],
+    roles: Vector[RoleSummary],
+    roundTripsMs: Option[Distribution],
+    readings: Int,
+    decisions: Int,
+    commands: Int,
+    events: Map[EventKind, Int],
+    cutShort: Option[String],
+    team: Option[TeamResult] = None,
+    policy: Option[String] = None,
+    planning: Option[PlanningSummary] = None,
+    predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None
+):
+  /** The loop, the policy where it is not the paper's, and whether the flight was cut short. */
+  def name: String =
+    flight.loop + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short")
+
+  /** Time flown on the simulator's clock, s. */
+  def flownS: Double =
+    team.map(_.curve.last._1).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
+
+  /** What stands for the flight when it is compared with others, m: of a duel the mean distance over the last 10 s, of a
+    * team its first measure. Nothing, where it was cut short.
+    */
+  def headlineM: Option[Double] =
+    if cutShort.isDefined then None
+    else
+      team match
+        case Some(result) => result.measures.head.value
+        case None         => distance.flatMap(_.lastTenSeconds).map(_.mean)
+
+  /** The paper's flight of this loop over this link; it published duels alone. No flight that was cut short stands beside
+    * it.
+    */
+  def published: Option[Published.Flight] =
+    if team.isDefined || policy.isDefined || cutShort.isDefined then None
+    else flight.loopKind.flatMap(Published.flight(_, flight.link))
+
+  def count(kind: EventKind): Int = events.getOrElse(kind, 0)
+
+/** The decisions for all vehicles of one role.
+  *
+  * @param ownTrueAgeMs
+  *   from when physics was sampled to the decision
+  */
+final case class RoleSummary(
+    role: String,
+    observedMs: Map[Observation, Distribution],
+    ownTrueAgeMs: Option[Distribution],
+    opponentTrueAgeMs: Option[Distribution]
+)
+
+object FlightSummary:
+
+  def of(recording: Recording): FlightSummary =
+    val tracks = Track.of(recording)
+    val team   = TeamResults.of(recording, tracks)
+    FlightSummary(
+      recording.flight,
+      tracks,
+      for
+        pursuer <- tracks.find(_.isA(Role.Pursuer)) if team.isEmpty
+        evader  <- tracks.find(_.isA(Role.Evader))
+        curve   <- DistanceCurve.between(pursuer, evader)
+      yield curve,
+      roles(recording),
+      roundTripsMs(recording),
+      recording.readings.size,
+      recording.decisions.size,
+      recording.commands.size,
+      recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
+      cutShort(recording, tracks),
+      team,
+      recording.heading.parameters.find(_.name == "policy").map(_.value),
+      PlanningSummary.of(recording),
+      PredictionErrors.of(recording)
+    )
+
+  /** By what is on record of its end, and else by how long its vehicles were seen. */
+  private def cutShort(recording: Recording, tracks: Vector[Track]): Option[String] = recording.ending match
+    case Some(Ending(_, EndingKind.Completed, _)) => None
+    case Some(Ending(_, how, reason))             =>
+      Some(reason.getOrElse(how.toString.toLowerCase(java.util.Locale.ROOT)))
+    case None =>
+      val seen = tracks.map(track => track.to.since(track.from)).maxOption.getOrElse(Span.Zero)
+      recording.events
+        .find(_.kind == EventKind.Aborted)
+        .map(_.detail)
+        .orElse(Option.when(seen + Margin < recording.flight.duration)(
+          s"the recording breaks off after ${Numbers.fixed(seen.toSeconds, 1)} of ${Numbers.fixed(recording.flight.duration.toSeconds, 1)} s"
+        ))
+
+  /** What may be missing at both ends of a flight between its time and its readings. */
+  private val Margin = Span.ofSeconds(2)
+
+  private def roles(recording: Recording): Vector[RoleSummary] =
+    val roleOf = recording.heading.vehicles.map(vehicle =>
+      vehicle.name -> vehicle.role.toLowerCase(java.util.Locale.ROOT)
+    ).toMap
+    recording.decisions
+      .groupBy(decision => roleOf.getOrElse(decision.vehicle, ""))
+      .toVector
+      .sortBy(_._1)
+      .map: (role, decisions) =>
+        RoleSummary(
+          role,
+          Observation.values
+            .flatMap(observation => Distribution.of(decisions.flatMap(observation.ms)).map(observation -> _))
+            .toMap,
+          Distribution.of(decisions.flatMap(_.trueAge).map(_.own.toMillis)),
+          Distribution.of(decisions.flatMap(_.trueAge).map(_.opponent.toMillis))
+        )
+
+  private def roundTripsMs(recording: Recording): Option[Distribution] =
+    val ofReadings = recording.readings.map(_.state.roundTrip)
+    val ofLink     = recording.latencies.map(_.roundTrip)
+    Distribution.of((if ofLink.nonEmpty then ofLink else ofReadings).map(_.toMillis))

@@ -1,0 +1,64 @@
+package skein.measure
+
+import skein.policy.TeamScenario
+import skein.record.Recording
+
+/** How far predictions of one kind of vehicle were off, by how far they were carried.
+  *
+  * @param made
+  *   predictions made; of those that are no `samples` the moment was never read, or read with too wide a gap around it
+  * @param samples
+  *   of those verified: age of the reading carried forward, ms, and error, m
+  */
+final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
+  def unverified: Int = made - samples.size
+
+  def ++(other: PredictionErrors): PredictionErrors =
+    PredictionErrors(made + other.made, samples ++ other.samples)
+
+  def errors: Option[Distribution] = Distribution.of(samples.map(_._2))
+
+  /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of [[PredictionErrors.BinMs]]. */
+  def around(ageMs: Int): Option[Distribution] =
+    Distribution.of(samples.collect { case (age, error) if PredictionErrors.bin(age) == ageMs => error })
+
+  /** By age, ms, ascending; ages with fewer than [[PredictionErrors.Fewest]] samples are left out. */
+  def byAge: Vector[(Int, Distribution)] =
+    samples
+      .groupMap((age, _) => PredictionErrors.bin(age))(_._2)
+      .toVector
+      .sortBy(_._1)
+      .flatMap((age, errors) =>
+        Distribution.of(errors).filter(_.count >= PredictionErrors.Fewest).map(age -> _)
+      )
+
+object PredictionErrors:
+  val BinMs: Int = 20
+
+  /** For a 95 % quantile. */
+  val Fewest: Int = 20
+
+  private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs
+
+  /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted. */
+  def of(recording: Recording): Option[(own: PredictionErrors, others: PredictionErrors)] =
+    val predicted = recording.decisions.filter(_.predicted.nonEmpty)
+    val decisions = predicted.groupMapReduce(_.vehicle)(_ => 1)(_ + _)
+    // A decider predicts once per decision each vehicle that it predicts at all: itself, and in a duel its opponent, even
+    // where not one of these predictions could be verified.
+    val scenario  = recording.flight.scenario
+    val isDuel    = TeamScenario.of(scenario, recording.heading.parametersOf(scenario)).isLeft
+    val opponents = if isDuel then predicted.map(one => (one.vehicle, one.opponent.vehicle)) else Vector.empty
+    val pairs     = (predicted.map(one => (one.vehicle, one.vehicle)) ++
+      opponents ++
+      recording.predictions.map(one => (one.decider, one.vehicle))).distinct
+    def errors(own: Boolean) =
+      def isAsked(decider: String, vehicle: String) = (decider == vehicle) == own
+      PredictionErrors(
+        pairs.collect {
+          case (decider, vehicle) if isAsked(decider, vehicle) => decisions.getOrElse(decider, 0)
+        }.sum,
+        recording.predictions.collect:
+          case one if isAsked(one.decider, one.vehicle) => (one.age.toMillis, one.error.value)
+      )
+    Option.when(decisions.nonEmpty)((own = errors(own = true), others = errors(own = false)))

@@ -1,0 +1,84 @@
+package skein.measure
+
+import skein.record.Flight
+
+/** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
+  *
+  * @param virtual
+  *   at least one; their samples are taken together
+  */
+final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
+
+  /** The compared quantities that both have. */
+  def compared: Vector[Compared] =
+    for
+      role     <- live.roles
+      quantity <- Twin.quantities
+      ours     <- quantity.of(role)
+      theirs   <- Distribution.of(
+        virtual.flatMap(_.roles).filter(_.role == role.role).flatMap(quantity.of(_)).flatMap(_.sorted)
+      )
+    yield Compared(role.role, quantity.title, ours, theirs)
+
+  def find(role: String, quantity: String): Option[Compared] =
+    compared.find(one => one.role == role && one.quantity == quantity)
+
+  /** What stands for the flights, m (see [[FlightSummary.headlineM]]): live, and the twins' mean. */
+  def converged: Option[(Double, Double)] =
+    for
+      ours   <- live.headlineM
+      theirs <- Distribution.of(virtual.flatMap(_.headlineM))
+    yield (ours, theirs.mean)
+
+  /** How much further apart the live flight ended, as a share of the twins' distance. */
+  def difference: Option[Double] = converged.map((ours, theirs) => ours / theirs - 1)
+
+  /** The seeds of the twins, for a table. */
+  def seeds: String =
+    virtual.map(_.flight.seed).distinct.sorted match
+      case Vector(seed) => s"seed $seed"
+      case several      => s"${several.size} seeds, ${several.head} … ${several.last}"
+
+  /** In what the twins were not flown as the live flight was; empty for true twins. */
+  def unlike: Vector[String] =
+    def names[A](what: String, of: Flight => A)(show: A => String) =
+      val theirs = virtual.map(twin => of(twin.flight)).distinct
+      Option.when(theirs != Vector(of(live.flight)))(
+        s"$what ${show(of(live.flight))} live, ${theirs.map(show).mkString(", ")} virtual"
+      )
+    Vector(
+      names("duration", _.duration)(span => s"${Numbers.brief(span.toSeconds)} s"),
+      names("period", _.period)(span => s"${Numbers.brief(span.toMillis)} ms"),
+      names("scenario", _.scenario)(identity),
+      names("simulator", _.simulator)(identity)
+    ).flatten
+
+/** One quantity in a live flight and in its twins. */
+final case class Compared(role: String, quantity: String, live: Distribution, virtual: Distribution):
+  val distance: Double = KolmogorovSmirnov.distance(live, virtual)
+
+object Twin:
+  val Age: String       = "age of own data"
+  val SinceMove: String = "time since own last move"
+
+  private[skein] final case class Quantity(title: String, of: RoleSummary => Option[Distribution])
+
+  private[skein] val quantities: Vector[Quantity] = Vector(
+    Quantity(Age, _.ownTrueAgeMs),
+    Quantity(SinceMove, _.observedMs.get(Observation.SinceOwnMove))
+  )
+
+  /** Roles and quantities, in the order in which they are shown, and a short name of each. */
+  def columns(twins: Vector[Twin]): Vector[(String, String, String)] =
+    for
+      (quantity, short) <- Vector(Age -> "age", SinceMove -> "move")
+      role              <- twins.flatMap(_.live.roles).map(_.role).distinct.sorted
+    yield (role, quantity, s"KS $short ${role.head}.")
+
+  /** Pairs every live flight with the virtual flights of its loop and link, if there are any. */
+  def among(flights: Vector[FlightSummary]): Vector[Twin] =
+    val virtual = flights.filter(isVirtual).groupBy(key)
+    flights.filterNot(isVirtual).flatMap(live => virtual.get(key(live)).map(Twin(live, _)))
+
+  private def isVirtual(summary: FlightSummary) = summary.flight.isVirtual
+  private def key(summary: FlightSummary)       = (summary.name, summary.flight.link)

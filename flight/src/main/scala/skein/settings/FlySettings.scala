@@ -1,0 +1,274 @@
+package skein.settings
+
+import com.typesafe.config.Config
+import java.nio.file.Path
+import pureconfig.*
+import pureconfig.error.CannotConvert
+import skein.flow.Steer
+import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
+import skein.planning.Planner
+import skein.policy.{Scenario, TeamScenario}
+import skein.signal.LatencyProfile
+import skein.units.*
+import skein.units.Decimals.fixed
+import skein.vehicle.ReducedModel
+
+/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
+  *
+  * @param pairs
+  *   duels side by side
+  * @param asPublished
+  *   of the duel alone
+  * @param policies
+  *   with which the duel is flown too, beside the paper's
+  * @param scenario
+  *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
+  * @param altitudeM
+  *   of the duel
+  * @param predictor
+  *   by which `predictive` predicts
+  * @param movesInFlight
+  *   moves of one vehicle that may be unanswered; more than 2 are for links that never deliver several at once: see
+  *   [[skein.flow.Steer]]
+  * @param deadline
+  *   of every decision; without one, policies are waited for
+  * @param fallback
+  *   what is done where the deadline is missed
+  */
+final case class FlySettings(
+    loops: List[LoopKind],
+    links: List[LatencyProfile],
+    duration: Span,
+    period: Span,
+    seed: Long,
+    pairs: Int,
+    asPublished: Boolean,
+    scenario: String = FlySettings.Duel,
+    altitudeM: Double = Scenario.DuelAltitudeM,
+    surround: TeamScenario.Surround = TeamScenario.Surround(),
+    formation: TeamScenario.Formation = TeamScenario.Formation(),
+    crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
+    predictor: PredictionModel = PredictionModel.Quadrotor,
+    movesInFlight: Int = Steer.MostOutstanding,
+    deadline: Option[Span] = None,
+    fallback: Fallback = Fallback.Repeat,
+    policies: List[PolicyFile] = Nil,
+    planning: PlanSettings = PlanSettings()
+):
+
+  /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
+    * vehicle's altitude.
+    */
+  def planningByModel: PlanSettings = planning.copy(response = predictor match
+    case PredictionModel.Fitted(model, _) => model
+    case _                                => ReducedModel.AirSim)
+
+  /** Absent for the duel. */
+  def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
+
+  /** Who flies. */
+  def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished, altitudeM))(_.scenario)
+
+  /** How the loops are run. */
+  def loopSettings: LoopSettings =
+    val altitudes = agents.agents.map(-_.startPositionNed.z)
+    val timely    = LoopSettings
+      .every(period)
+      .copy(
+        model = vehicle => predictor.at(altitudes(vehicle)),
+        planning = planningByModel,
+        movesInFlight = movesInFlight,
+        deadline = deadline.map(Deadline(_, fallback))
+      )
+    if asPublished then timely.asPublished else timely
+
+  /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
+    * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
+    */
+  def plans: Vector[FlightPlan] =
+    val names = policies.zipWithIndex.map: (policy, index) =>
+      val same = policies.take(index).count(_.family.name == policy.family.name)
+      policy.family.name + (if same == 0 then "" else s"-${same + 1}")
+    val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
+    papers ++ chosen.flatMap(policy =>
+      papers.map(plan => plan.copy(id = s"${plan.id}-${policy.name}", policy = Some(policy)))
+    )
+
+  private def papers: Vector[FlightPlan] =
+    val truth  = Option.when(loops.contains(LoopKind.Paused))((LoopKind.Paused, LatencyProfile.none))
+    val others =
+      for
+        link <- links
+        loop <- loops if loop != LoopKind.Paused
+      yield (loop, link)
+    (truth.toVector ++ others).distinct.zipWithIndex.map:
+      case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
+
+/** A policy that is flown in the place of the paper's.
+  *
+  * @param name
+  *   short, in tables; no two of an experiment share one
+  */
+final case class ChosenPolicy(name: String, file: PolicyFile)
+
+/** One flight of an experiment.
+  *
+  * @param policy
+  *   without one, the paper's fly
+  */
+final case class FlightPlan(
+    id: String,
+    loop: LoopKind,
+    link: LatencyProfile,
+    seed: Long,
+    policy: Option[ChosenPolicy] = None
+):
+  /** Who flies, in the scenario of the settings. */
+  def agents(settings: FlySettings): Scenario =
+    policy.fold(settings.agents)(_.file.flownIn(settings.agents))
+
+  /** Where its recording goes. */
+  def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
+
+  /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the same seed, then
+    * with the seeds that follow.
+    */
+  def twins(count: Int): Vector[FlightPlan] =
+    Vector.tabulate(count): index =>
+      copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
+
+object FlySettings:
+  val Duel = "duel"
+
+  /** The air of forward simulation and of the built-in simulator is that at the ground. */
+  val MostAltitudeM = 1000.0
+
+  /** What a forecast remembers of commands has room for more. */
+  val MostMovesInFlight = 32
+
+  /** Reads `skein.fly`.
+    *
+    * @return
+    *   or every mistake, with its file, line, and what was expected
+    */
+  def read(config: Config): Either[String, FlySettings] =
+    for
+      _        <- ConfigKeys.unknown(config, "skein.fly").toLeft(())
+      settings <-
+        ConfigSource.fromConfig(config).at("skein.fly").load[FlySettings].left.map(_.prettyPrint())
+      valid <- validated(settings)
+    yield valid
+
+  private def validated(settings: FlySettings): Either[String, FlySettings] =
+    val mistakes = Seq(
+      Option.when(settings.loops.isEmpty)("loops: expected at least one loop, came none"),
+      Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
+        "links: expected at least one link for any loop but paused, came none"
+      ),
+      Option.when(
+        settings.duration <= Span.Zero
+      )(s"duration: expected more than 0, came ${settings.duration.toSeconds} s"),
+      Option.when(
+        settings.period < Span.ofMillis(1)
+      )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
+      Option.when(
+        settings.pairs < 1 || settings.pairs > 50
+      )(s"pairs: expected 1 to 50, came ${settings.pairs}"),
+      Option.when(!(settings.altitudeM > 0 && settings.altitudeM <= MostAltitudeM))(
+        s"altitude-m: expected more than 0 and up to $MostAltitudeM m, came ${settings.altitudeM}"
+      ),
+      Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
+        s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
+      ),
+      Option.when(settings.deadline.exists(_ <= Span.Zero))(
+        s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
+      ),
+      Option.when(settings.scenario != Duel && settings.team.isEmpty)(
+        s"scenario: expected $Duel or one of ${TeamScenario.names.mkString(", ")}, came '${settings.scenario}'"
+      ),
+      Option.when(settings.scenario != Duel && settings.asPublished)(
+        s"as-published: expected with the scenario $Duel, came with '${settings.scenario}'"
+      ),
+      Option.when(settings.scenario != Duel && settings.pairs != 1)(
+        s"pairs: expected with the scenario $Duel, came ${settings.pairs} with '${settings.scenario}'"
+      ),
+      Option.when(settings.scenario != Duel && settings.policies.nonEmpty)(
+        s"policies: expected with the scenario $Duel, came with '${settings.scenario}'"
+      )
+    ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys) ++
+      settings.planning.mistakes.map(mistake => inKeys(s"planning.$mistake"))
+    val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
+    Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
+
+  private def predictorMistake(settings: FlySettings): Option[String] =
+    settings.agents.agents
+      .flatMap(agent => PredictionModel.mistake(settings.predictor, -agent.startPositionNed.z))
+      .headOption
+      .map("predictor: " + _)
+
+  private def planMistake(settings: FlySettings): Option[String] =
+    val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
+    settings.agents.agents
+      .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
+      .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
+      .map(lagS =>
+        s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
+      )
+
+  /** A mistake that begins with a setting's name, by its key in the configuration. */
+  private def inKeys(mistake: String): String =
+    val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
+    ConfigKeys.ofField(name) + rest
+
+  private given ConfigReader[FlySettings] = ConfigKeys.reader
+
+  private given ConfigReader[TeamScenario.Surround]  = ConfigKeys.reader
+  private given ConfigReader[TeamScenario.Formation] = ConfigKeys.reader
+  private given ConfigReader[TeamScenario.Crossing]  = ConfigKeys.reader
+
+  private given ConfigReader[Span] = parsed("duration", Span.parse)
+
+  private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+
+  private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
+
+  private given ConfigReader[PolicyFile] = parsed("policy", PolicyFile.read)
+
+  private given ConfigReader[PlanSettings] =
+    ConfigKeys.reader[Planning].map: read =>
+      PlanSettings(
+        deadline = read.deadline,
+        horizonSteps = read.horizonSteps,
+        step = read.step,
+        method = read.method,
+        behaviours = read.behaviours,
+        searches = read.searches,
+        slices = read.slices,
+        turningRadiusM = read.turningRadiusM,
+        slowestShare = read.slowestShare,
+        separationM = read.separationM,
+        geofenceM = read.geofenceM
+      )
+
+  /** [[PlanSettings]] as far as they are configured. */
+  private final case class Planning(
+      deadline: Span,
+      horizonSteps: Int,
+      step: Span,
+      method: String,
+      behaviours: Int,
+      searches: Int,
+      slices: Int,
+      turningRadiusM: Double,
+      slowestShare: Double,
+      separationM: Double,
+      geofenceM: Double
+  )
+
+  private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
+
+  private given ConfigReader[LatencyProfile] =
+    parsed("latency profile", text => LatencyProfile.parse(text, TextFile.read).left.map(_.message))
+
+  private def parsed[A](what: String, parse: String => Either[String, A]): ConfigReader[A] =
+    ConfigReader[String].emap(text => parse(text).left.map(CannotConvert(text, what, _)))

@@ -1,0 +1,22 @@
+package skein.settings
+
+import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigParseOptions}
+
+/** HOCON files that users name: configurations, policies, models. */
+object HoconFile:
+
+  /** The file, not resolved.
+    *
+    * @return
+    *   or why it cannot be read, in a line
+    */
+  def read(path: String): Either[String, Config] = TextFile.read(path).flatMap(parse(_, path))
+
+  /** @param path
+    *   of the file that the text is from
+    */
+  def parse(text: String, path: String): Either[String, Config] =
+    try Right(ConfigFactory.parseString(text, ConfigParseOptions.defaults.setOriginDescription(path)))
+    catch
+      case mistake: ConfigException => Left(mistake.getMessage)
+      case _: StackOverflowError => Left(s"$path: its braces and brackets are nested too deeply to be read")

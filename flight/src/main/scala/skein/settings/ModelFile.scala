@@ -1,0 +1,150 @@
+package skein.settings
+
+import com.typesafe.config.{Config, ConfigException}
+import skein.forward.Reduced
+import skein.identify.*
+import skein.vehicle.ReducedModel
+
+/** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how well.
+  *
+  * @param use
+  *   which of them to fly by
+  * @param altitudeM
+  *   at which was flown what it was fitted to; files of older versions do not say
+  */
+final case class ModelFile(
+    use: Structure,
+    models: Map[Structure, ReducedModel],
+    altitudeM: Option[Double] = None
+):
+
+  /** The model to predict and simulate by. */
+  def model: ReducedModel = models(use)
+
+  /** The three-parameter model, for what flies no other. */
+  def reduced: Option[Reduced] =
+    models.get(Structure.Lag).map(lag => Reduced(lag.gain, lag.lagS, lag.deadTimeS))
+
+object ModelFile:
+  /** Within a metre, a lag of AirSim's changes by 0.1 s. */
+  private val SameAltitudeM = 1.0
+
+  /** What is wrong with flying at an altitude by a model of another, if anything. */
+  def mistake(flownAtM: Option[Double], altitudeM: Double): Option[String] =
+    flownAtM
+      .filter(flown => math.abs(flown - altitudeM) > SameAltitudeM)
+      .map(flown =>
+        s"expected a model of flights at ${number(altitudeM)} m altitude, since the vehicles' lag depends on it, came one of ${number(flown)} m"
+      )
+
+  /** Where a fit came from.
+    *
+    * @param altitudeM
+    *   of all flights, if they had the same
+    * @param recordings
+    *   files, each with what was flown
+    */
+  final case class Provenance(
+      recordings: Vector[String],
+      vehicles: Vector[String],
+      horizonS: Double,
+      version: String,
+      altitudeM: Option[Double] = None
+  )
+
+  /** The text of a file. */
+  def render(use: Structure, fits: Vector[Fit], from: Provenance): String =
+    val sections = fits.map: fit =>
+      val found      = fit.identification
+      val parameters = found.parameters.map: parameter =>
+        val bound = if parameter.atBound then "  # at its bound: not identified" else ""
+        s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+      val errors = fit.againstQuadrotor.map: error =>
+        s"    { horizon = ${number(error.horizonS)} s, position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
+      s"""  ${found.structure.label} {
+         |${parameters.mkString("\n")}
+         |    predictions = ${found.predictions}
+         |    velocity-rms-mps = ${number(found.velocityRmsMps)}
+         |    position-rms-m = ${number(found.positionRmsM)}
+         |    against-quadrotor = [
+         |${errors.map("  " + _).mkString("\n")}
+         |    ]
+         |  }""".stripMargin
+    s"""# A reduced model of how horizontal velocity follows its command, fitted by `skein identify`.
+       |# least and most: 95 % intervals by the sandwich estimator over blocks of ${number(
+        Identification.BlockS
+      )} s of flight.
+       |skein.model {
+       |  # Which of the structures below to fly by.
+       |  use = ${use.label}
+       |
+       |  version = ${quoted(from.version)}
+       |  horizon = ${number(from.horizonS)} s
+       |${from.altitudeM.fold("  # The flights had several altitudes.")(metres =>
+        s"  altitude-m = ${number(metres)}"
+      )}
+       |  recordings = [
+       |${from.recordings.map("    " + quoted(_)).mkString("\n")}
+       |  ]
+       |  vehicles = [
+       |${from.vehicles.map("    " + quoted(_)).mkString("\n")}
+       |  ]
+       |
+       |${sections.mkString("\n\n")}
+       |}
+       |""".stripMargin
+
+  /** Reads a file.
+    *
+    * @return
+    *   or what is wrong, with the line
+    */
+  def read(path: String): Either[String, ModelFile] = TextFile.read(path).flatMap(parse(_, path))
+
+  private[skein] def parse(text: String, path: String): Either[String, ModelFile] =
+    try
+      for
+        file <- HoconFile.parse(text, path)
+        section = file.resolve().getConfig("skein.model")
+        use <- Structure.parse(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
+        models = Structure.values.filter(found => section.hasPath(found.label)).map: structure =>
+          structure -> structure.model(values(section.getConfig(structure.label), structure))
+        _ <- Either.cond(
+          models.exists(_._1 == use),
+          (),
+          s"$path: use = ${use.label}, but there is no section ${use.label}"
+        )
+      yield ModelFile(
+        use,
+        models.toMap,
+        Option.when(section.hasPath("altitude-m"))(section.getDouble("altitude-m"))
+      )
+    catch
+      case wrong: ConfigException          => Left(s"$path is no model file: ${wrong.getMessage}")
+      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
+
+  private def values(section: Config, structure: Structure): Array[Double] =
+    structure.parameters
+      .map: name =>
+        val value = section.getDouble(s"$name.value")
+        require(value.isFinite, s"$name: expected a finite number, came $value")
+        value
+      .toArray
+
+  private def number(value: Double): String =
+    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
+
+  private def quoted(text: String): String = com.typesafe.config.ConfigUtil.quoteString(text)
+
+/** A fitted structure and how far it is off over the horizons.
+  *
+  * @param againstQuadrotor
+  *   against the built-in quadrotor under the same commands
+  * @param againstReadings
+  *   against the recordings themselves
+  */
+final case class Fit(
+    identification: Identification,
+    againstQuadrotor: Vector[HorizonError],
+    againstReadings: Vector[HorizonError]
+)

@@ -1,0 +1,142 @@
+package skein.settings
+
+import com.typesafe.config.{Config, ConfigException, ConfigValue}
+import java.util.Locale
+import scala.jdk.CollectionConverters.*
+import scala.util.Try
+import skein.policy.{Policy, PolicyFamily, Role, Scenario}
+
+/** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
+  * how the policy was found) is for people.
+  *
+  * @param parameters
+  *   in the order of the family's axes
+  */
+final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector[Double]):
+  def policy: Policy = family.policy(parameters)
+
+  /** The scenario with this policy for all agents of its role. */
+  def flownIn(scenario: Scenario): Scenario =
+    Scenario(scenario.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
+
+  /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
+  def text: String =
+    (family.name +: family.space.axes.zip(parameters).map((axis, value) => s"${axis.name}=$value")).mkString(
+      " "
+    )
+
+  /** The same with fewer digits. */
+  def label: String =
+    val shown = family.space.axes.zip(parameters).take(PolicyFile.MostShown).map: (axis, value) =>
+      s"${axis.name}=${PolicyFile.brief(value)}"
+    val more = family.space.dimension - shown.size
+    (family.name +: shown).mkString(" ") + (if more > 0 then s" and $more more" else "")
+
+  /** As a file, with remarks for people.
+    *
+    * @param remarks
+    *   HOCON to stand below
+    */
+  def hocon(remarks: String): String =
+    val values = family.space.axes.zip(parameters).map((axis, value) => s"  ${axis.name} = $value")
+    s"""# A policy. ./skein fly --policy FILE flies it.
+       |family = "${family.name}"
+       |role = ${PolicyFile.name(role)}
+       |parameters {
+       |${values.mkString("\n")}
+       |}
+       |""".stripMargin + remarks
+
+object PolicyFile:
+  private val MostShown = 4
+
+  def name(role: Role): String = role.toString.toLowerCase(Locale.ROOT)
+
+  /** A role of the duel. */
+  def role(text: String): Either[String, Role] =
+    Seq(Role.Pursuer, Role.Evader).find(name(_) == text).toRight(s"expected pursuer or evader, came '$text'")
+
+  def ofDefaults(role: Role, family: PolicyFamily): PolicyFile =
+    PolicyFile(role, family, family.space.defaults)
+
+  /** Four significant digits. */
+  def brief(value: Double): String =
+    if value == 0 || !value.isFinite then value.toString
+    else java.math.BigDecimal(value).round(java.math.MathContext(4)).stripTrailingZeros.toPlainString
+
+  /** The role that a family is for, if it is for one alone, or the role asked for.
+    *
+    * @return
+    *   or what was expected
+    */
+  def roleOf(family: PolicyFamily, asked: Option[String]): Either[String, Role] = asked match
+    case Some(text) =>
+      role(text).filterOrElse(
+        family.roles,
+        s"family ${family.name} is for ${family.roles.map(name).mkString(" and ")}, came '$text'"
+      )
+    case None =>
+      family.roles.toSeq match
+        case Seq(one) => Right(one)
+        case several  =>
+          Left(
+            s"family ${family.name} is for ${several.map(name).mkString(" and ")}: expected one of them, came none"
+          )
+
+  /** Reads a file.
+    *
+    * @return
+    *   or what was expected, what came, and where
+    */
+  def read(path: String): Either[String, PolicyFile] =
+    HoconFile.read(path).flatMap: file =>
+      try of(file.resolve(), path)
+      catch case mistake: ConfigException => Left(s"$path: ${mistake.getMessage}")
+
+  private def of(file: Config, path: String): Either[String, PolicyFile] =
+    def at(value: ConfigValue)                    = s"$path, line ${value.origin.lineNumber}"
+    def text(key: String): Either[String, String] =
+      if !file.hasPath(key) then Left(s"$path: expected '$key', which is missing")
+      else Right(file.getString(key))
+    def optional(key: String) = Option.when(file.hasPath(key))(file.getString(key))
+
+    for
+      name   <- text("family")
+      family <- PolicyFamily.parse(name).left.map(mistake => s"${at(file.getValue("family"))}: $mistake")
+      role   <- roleOf(family, optional("role")).left.map(mistake => s"$path: role: $mistake")
+      _      <- Either.cond(file.hasPath("parameters"), (), s"$path: expected 'parameters', which is missing")
+      given_ = file.getObject("parameters").asScala.toMap
+      names  = family.space.axes.map(_.name)
+      _ <- given_.find((key, _) => !names.contains(key)) match
+        case Some((key, value)) =>
+          Left(s"${at(value)}: family ${family.name} has the parameters ${names.mkString(", ")}, came '$key'")
+        case None => Right(())
+      parameters <- names.foldLeft[Either[String, Vector[Double]]](Right(Vector.empty)): (before, name) =>
+        for
+          values <- before
+          value  <- given_
+            .get(name)
+            .toRight(s"$path: parameters: expected ${names.mkString(", ")}; '$name' is missing")
+          number <- value.unwrapped match
+            case number: Number if number.doubleValue.isFinite => Right(number.doubleValue)
+            case other => Left(s"${at(value)}: $name: expected a finite number, came '$other'")
+        yield values :+ number
+      chosen = PolicyFile(role, family, parameters)
+      _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${mistake.getMessage}")
+    yield chosen
+
+  /** Reads [[PolicyFile.text]] back. */
+  def parse(role: Role, text: String): Either[String, PolicyFile] =
+    val words = text.split(' ').toVector
+    for
+      family <- PolicyFamily.parse(words.head)
+      values = words.tail.flatMap: word =>
+        word.split('=') match
+          case Array(name, value) => value.toDoubleOption.filter(_.isFinite).map(name -> _)
+          case _                  => None
+      _ <- Either.cond(
+        values.map(_._1) == family.space.axes.map(_.name),
+        (),
+        s"expected ${family.space.axes.map(axis => s"${axis.name}=NUMBER").mkString(" ")} after ${family.name}, came '$text'"
+      )
+    yield PolicyFile(role, family, values.map(_._2))

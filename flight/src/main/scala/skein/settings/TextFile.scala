@@ -1,0 +1,21 @@
+package skein.settings
+
+import java.io.IOException
+import java.nio.charset.CharacterCodingException
+import java.nio.file.{AccessDeniedException, Files, Path}
+
+/** Text files that users name. */
+object TextFile:
+
+  /** The file's text, or why it cannot be read. */
+  def read(path: String): Either[String, String] =
+    val file = Path.of(path)
+    if path.isEmpty then Left("expected the name of a file, came ''")
+    else if !Files.exists(file) then Left(s"there is no file $path")
+    else if Files.isDirectory(file) then Left(s"expected a file, came the folder $path")
+    else
+      try Right(Files.readString(file))
+      catch
+        case _: CharacterCodingException => Left(s"$path is no text in UTF-8")
+        case _: AccessDeniedException    => Left(s"cannot read $path: access denied")
+        case error: IOException          => Left(s"cannot read $path: ${error.getMessage}")

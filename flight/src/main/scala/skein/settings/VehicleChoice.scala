@@ -1,0 +1,93 @@
+package skein.settings
+
+import java.nio.file.{Files, Path}
+import skein.forward.{Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
+import skein.identify.Structure
+import skein.units.Decimals.fixed
+import skein.vehicle.ReducedModel
+
+/** Models of vehicles by the names that users give: one list for what flies (`--plant`) and, as far as they predict, for
+  * what carries readings forward (`--predictor`, [[PredictionModel]]).
+  *
+  * @param description
+  *   one line that says what flies
+  */
+final case class VehicleChoice(name: String, description: String, response: VelocityResponse)
+
+object VehicleChoice:
+
+  private val reduced = VehicleChoice(
+    "reduced",
+    s"reduced model of AirSim's quadrotor at z = −20 m, gain ${Reduced.AirSim.gain}, lag ${Reduced.AirSim.lagS} s, " +
+      s"dead time ${Reduced.AirSim.deadTimeS} s",
+    Reduced.AirSim
+  )
+
+  private def drag(altitudeM: Double) =
+    val model = ReducedModel.airSimAt(altitudeM)
+    VehicleChoice(
+      "drag",
+      s"reduced model of AirSim's quadrotor at $altitudeM m altitude, lag ${model.lagS.fixed(2)} s, with quadratic drag ${model.dragPerM} /m",
+      ReducedResponse(model)
+    )
+
+  private val quadrotor = VehicleChoice(
+    "quadrotor",
+    "AirSim's quadrotor with its flight controller at 3 ms",
+    VelocityResponses.quadrotor()
+  )
+
+  private val ideal =
+    VehicleChoice("ideal", "ideal kinematics: the velocity is the command", VelocityResponses.Ideal)
+
+  /** Of these names, that of the vehicle itself without a file.
+    *
+    * @param altitudeM
+    *   at which it flies
+    */
+  def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
+
+  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal)
+
+  val forms: String =
+    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE"
+
+  /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the file's model of
+    * three parameters, which flies by lanes.
+    *
+    * @param altitudeM
+    *   at which it will fly: the lag of AirSim's vehicles depends on it
+    * @return
+    *   or what was expected
+    */
+  def parse(text: String, altitudeM: Double): Either[String, VehicleChoice] = named(text, altitudeM) match
+    case Some(known) =>
+      Either.cond(
+        known != reduced || altitudeM == ReducedModel.IdentifiedAtM,
+        known,
+        s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
+      )
+    case None =>
+      text match
+        case s"reduced:$path" =>
+          for
+            file <- read(path, altitudeM)
+            lag  <- file.reduced.toRight(s"$path has no model of three parameters")
+          yield VehicleChoice(text, described(lag, path), lag)
+        case path =>
+          for file <- read(path, altitudeM)
+          yield
+            if file.use == Structure.Lag && file.reduced.isDefined then
+              VehicleChoice(text, described(file.reduced.get, path), file.reduced.get)
+            else VehicleChoice(text, s"reduced model ${file.use.label} of $path", ReducedResponse(file.model))
+
+  private def read(path: String, altitudeM: Double): Either[String, ModelFile] =
+    if Files.isRegularFile(Path.of(path)) then
+      for
+        file <- ModelFile.read(path)
+        _    <- ModelFile.mistake(file.altitudeM, altitudeM).map(mistake => s"$path: $mistake").toLeft(())
+      yield file
+    else Left(s"expected $forms, came '$path'")
+
+  private def described(model: Reduced, path: String) =
+    s"reduced model of $path, gain ${model.gain}, lag ${model.lagS} s, dead time ${model.deadTimeS} s"

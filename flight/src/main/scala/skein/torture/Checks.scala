@@ -1,0 +1,227 @@
+package skein.torture
+
+import skein.loop.{LoopKind, Outcome}
+import skein.record.{Decision, Recording}
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** Judges a flight by its [[Evidence]]. */
+object Checks:
+
+  /** Everything that must not be, a line each. */
+  def violations(seen: Evidence): Vector[String] =
+    Vector(
+      overtaken(seen),
+      outstanding(seen),
+      tooFast(seen),
+      unended(seen),
+      unaccounted(seen),
+      unbounded(seen),
+      outOfControl(seen),
+      restless(seen),
+      standingStill(seen),
+      notToldToHover(seen),
+      notInTheFile(seen),
+      KnowledgeChecks.violations(seen)
+    ).flatten
+
+  /** The moves that arrived must be among those sent, in the order in which they were sent. */
+  private def overtaken(seen: Evidence): Vector[String] =
+    for
+      (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
+      late             <- firstOutOfOrder(
+        seen.arrivals.filter(_.vehicle == vehicle).map(arrival => (arrival.north, arrival.east)),
+        craft.sendings.map(sending => (sending.north, sending.east))
+      )
+    yield s"$vehicle: a command overtook a newer one: arrival $late came after one that was sent later"
+
+  /** The index of the first element of `arrived` that is not in `sent` behind its predecessor's place. */
+  private[torture] def firstOutOfOrder[A](arrived: Vector[A], sent: Vector[A]): Option[Int] =
+    var place = 0
+    arrived.indices.find: index =>
+      val found = sent.indexOf(arrived(index), place)
+      place = found + 1
+      found < 0
+
+  private def outstanding(seen: Evidence): Vector[String] =
+    for (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if craft.commands.most > MostOutstanding
+    yield s"$vehicle: ${craft.commands.most} commands were outstanding at once"
+
+  /** While the simulator stands still no time passes between commands. */
+  private def tooFast(seen: Evidence): Vector[String] =
+    for
+      (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if seen.ordeal.loop != LoopKind.Paused
+      (one, next)      <- craft.sendings.zip(craft.sendings.drop(1)).find: (one, next) =>
+        next.at.since(one.at) < seen.minCommandInterval
+    yield s"$vehicle: two commands within ${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
+
+  private def unended(seen: Evidence): Vector[String] =
+    val calls =
+      for
+        (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
+        (what, count)    <- Seq("read" -> craft.reads, "command" -> craft.commands)
+        if count.begun != count.ended
+      yield s"$vehicle: ${count.begun} $what calls began, ${count.ended} ended"
+    calls ++ Option.when(seen.steps.begun != seen.steps.ended)(
+      s"${seen.steps.begun} calls of the stepper began, ${seen.steps.ended} ended"
+    ) ++ Option.when(
+      seen.stats.pending != 0
+    )(s"the client has ${seen.stats.pending} calls that never ended")
+
+  /** What began is what ended, in the client's books, the crafts' and the recording. */
+  private def unaccounted(seen: Evidence): Vector[String] =
+    val called = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong +
+      seen.steps.begun + seen.callsBeside
+    val stats   = seen.stats
+    val written = stats.sent - stats.sentAgain
+    Vector(
+      Option.when(
+        stats.called != called
+      )(s"the client was to be called $called times, and was ${stats.called} times"),
+      Option.when(written > stats.called)(s"$written calls were written of ${stats.called}"),
+      Option.when(written < stats.answered + stats.refused + stats.lost)(
+        s"${stats.answered} answered, ${stats.refused} refused and ${stats.lost} lost of $written that were written"
+      ),
+      Option.when(seen.arrivals.size > seen.crafts.map(_.sendings.size).sum)(
+        s"${seen.arrivals.size} moves arrived of ${seen.crafts.map(_.sendings.size).sum}"
+      )
+    ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
+
+  private def unrecorded(seen: Evidence): Vector[String] =
+    val recording = seen.recording
+    seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
+      def count[A](rows: Vector[A])(of: A => Boolean) = rows.count(of)
+      val readings                                    = count(recording.readings)(_.vehicle == vehicle)
+      val failed                                      =
+        count(recording.events)(e => e.vehicle.contains(vehicle) && e.detail.matches("reading \\d+: .*"))
+      val commands  = count(recording.commands)(_.vehicle == vehicle)
+      val ended     = count(recording.acknowledgements)(_.vehicle == vehicle)
+      val decisions = count(recording.decisions)(_.vehicle == vehicle)
+      Vector(
+        Option.when(readings + failed != craft.reads.begun)(
+          s"$vehicle: ${craft.reads.begun} readings were asked for; $readings and $failed errors are on record"
+        ),
+        Option.when(commands != craft.sendings.size)(
+          s"$vehicle: ${craft.sendings.size} commands were sent, $commands are on record"
+        ),
+        Option.when(ended != commands)(s"$vehicle: $commands commands are on record, and the ends of $ended"),
+        Option.when(decisions < commands)(s"$vehicle: $decisions decisions led to $commands commands")
+      ).flatten
+
+  /** A recording that failed has the beginning alone. */
+  private def isRecorded(seen: Evidence): Boolean = seen.outcome match
+    case Outcome.Failed(_) => false
+    case _                 => true
+
+  private def unbounded(seen: Evidence): Vector[String] =
+    val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
+    // Where steps take no time, the flight is longer than it took.
+    val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
+    val rows  = Recorded.rows(seen.recording)
+    val each  = if seen.ordeal.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
+    val allowed = seen.vehicles.size * flown * each
+    Vector(
+      Option.when(
+        seen.mostPending > most
+      )(s"${seen.mostPending} calls were under way at once, of $most at most"),
+      Option.when(seen.mostUnanswered > MostUnanswered)(
+        s"the simulator had ${seen.mostUnanswered} unanswered moves of one vehicle"
+      ),
+      Option.when(rows > allowed)(s"$rows rows were recorded; ${allowed.fixed(0)} are many for this flight")
+    ).flatten
+
+  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that goes on. The
+    * paused truth does not: it ends at the first error.
+    */
+  private def outOfControl(seen: Evidence): Vector[String] =
+    val due = seen.calmFrom + Ordeal.ResumesWithin
+    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.ordeal.loop == LoopKind.Paused then
+      Vector.empty
+    else
+      seen.vehicles.flatMap: vehicle =>
+        val decided = seen.recording.decisions.exists(decision =>
+          isFresh(seen, decision, vehicle) && decision.decidedAt < due
+        )
+        val until   = seen.endedAt.min(seen.startedAt + seen.ordeal.duration)
+        val moments =
+          seen.arrivals.filter(_.vehicle == vehicle).map(_.at).filter(at => at >= seen.calmFrom && at < until)
+        val gaps = (due +: moments.filter(_ > due)).zip(moments.filter(_ > due) :+ until).map((from, to) =>
+          to.since(from)
+        )
+        Vector(
+          Option.when(!decided)(
+            s"$vehicle: nothing was decided on a new reading within ${Ordeal.ResumesWithin.toSeconds} s of calm"
+          ),
+          Option.when(
+            !moments.exists(_ < due)
+          )(s"$vehicle: no command came within ${Ordeal.ResumesWithin.toSeconds} s of calm"),
+          gaps.find(_ > LongestGap).map(gap =>
+            s"$vehicle: no command for ${gap.toSeconds.fixed(2)} s in calm"
+          )
+        ).flatten
+
+  private def isFresh(seen: Evidence, decision: Decision, vehicle: String): Boolean =
+    decision.vehicle == vehicle && decision.own.state.sentAt >= seen.calmFrom
+
+  private def restless(seen: Evidence): Vector[String] =
+    for (vehicle, drift) <- seen.vehicles.zip(seen.drifts) if drift.value > Hovering.value
+    yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in ${Evidence.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
+
+  /** A flight that ended in trouble may have told the simulator in vain; it has tried for a while. */
+  private def standingStill(seen: Evidence): Vector[String] =
+    Option
+      .when(seen.leftPaused && seen.endedAt >= seen.calmFrom + Ordeal.ResumesWithin)(
+        s"the simulator was left standing still (${seen.outcome})"
+      )
+      .toVector
+
+  /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of it. */
+  private def notToldToHover(seen: Evidence): Vector[String] =
+    val heeded = seen.endedAt >= seen.calmFrom + Ordeal.ResumesWithin
+    seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
+      val lastMove = seen.arrivals.filter(_.vehicle == vehicle).map(_.at).maxOption
+      val heard    = seen.lastHovers.get(vehicle)
+      Vector(
+        Option.when(!craft.toldToHover)(s"$vehicle was not told to hover at the end (${seen.outcome})"),
+        Option.when(heeded && lastMove.exists(at => !heard.exists(_ >= at)))(
+          s"$vehicle: no command to hover came to the simulator after the last move (${seen.outcome})"
+        )
+      ).flatten
+
+  /** What was offered to the recorder is what it has, and what is read back from its file, row by row. */
+  private def notInTheFile(seen: Evidence): Vector[String] =
+    val offered                                  = Recording(seen.recording.heading, seen.offered)
+    def missing(where: String, found: Recording) = Option.when(found != offered)(
+      s"${Recorded.rows(offered)} rows were offered to the recorder, ${Recorded.rows(found)} are $where" +
+        (if Recorded.rows(offered) == Recorded.rows(found) then ", and they differ" else "")
+    )
+    missing("on record", seen.recording).toVector ++ seen.file.flatMap:
+      case Right(read) => missing("in the file", read)
+      case Left(error) => Some(s"the file cannot be read: ${error.message}")
+
+  private def ms(seen: Evidence, at: Instant): String = s"${at.since(seen.startedAt).toMillis.fixed(1)} ms"
+
+  /** The move that flies and the one that replaces it. */
+  private val MostOutstanding = 2
+
+  /** Asked for when an answer is missed. */
+  private val SignsOfLife = 1
+
+  /** After a connection was lost, its last moves may be at the simulator still when those of the next one come. */
+  private val MostUnanswered = 4
+
+  /** For each vehicle. As published, each decides at every reading of any, and drops most of what it decided. */
+  private val RowsPerSecond = 300.0
+
+  private val LongestGap = Span.ofSeconds(1.5)
+
+  /** After a flight in circles the simulated vehicle, yawed by then, circles around the place that it holds, some 5 m
+    * away; the slowest move would carry it 18 m.
+    */
+  private val Hovering = Metres(14)
+
+private object Recorded:
+  def rows(recording: Recording): Int =
+    recording.readings.size + recording.decisions.size + recording.commands.size +
+      recording.acknowledgements.size + recording.events.size + recording.predictions.size +
+      recording.sightings.size + recording.planned.size

@@ -1,0 +1,67 @@
+package skein.torture
+
+import skein.loop.Outcome
+import skein.record.{Record, RecordError, Recording}
+import skein.rpc.{RpcSettings, RpcStats}
+import skein.units.*
+
+/** What was seen of one flight from outside: enough to judge it.
+  *
+  * @param crafts
+  *   by vehicle
+  * @param arrivals
+  *   at the simulator, in order, of all vehicles
+  * @param mostUnanswered
+  *   moves of one vehicle that the simulator had not answered at one time
+  * @param mostPending
+  *   calls that the client had not ended at one time
+  * @param lastHovers
+  *   when, if ever, the simulator was last told that a vehicle is to hover
+  * @param stats
+  *   after the client was closed
+  * @param offered
+  *   to the recorder, in order, while it could keep it
+  * @param file
+  *   what is read back from the recording's file, or why that is not possible, where a file was written
+  * @param runs
+  *   of the simulator
+  * @param drifts
+  *   how far each vehicle got within [[Evidence.Watched]], some time after the end
+  * @param steps
+  *   calls that let the simulator's time run in steps
+  * @param callsBeside
+  *   how often vehicles were asked for a sign of life
+  * @param leftPaused
+  *   whether the simulator stood still some time after the end
+  */
+final case class Evidence(
+    ordeal: Ordeal,
+    window: Int,
+    minCommandInterval: Span,
+    period: Span,
+    patience: Span,
+    startedAt: Instant,
+    endedAt: Instant,
+    outcome: Outcome,
+    vehicles: Vector[String],
+    crafts: Vector[WatchedVehicle],
+    arrivals: Vector[Arrival],
+    lastHovers: Map[String, Instant],
+    mostUnanswered: Int,
+    mostPending: Long,
+    settings: RpcSettings,
+    stats: RpcStats,
+    recording: Recording,
+    offered: Vector[Record],
+    file: Option[Either[RecordError, Recording]],
+    runs: Vector[Run],
+    drifts: Vector[Metres],
+    steps: CallCount,
+    callsBeside: Int,
+    leftPaused: Boolean
+):
+  def calmFrom: Instant = startedAt + ordeal.calmFrom
+
+object Evidence:
+  /** How long the vehicles are watched after the end. */
+  val Watched: Span = Span.ofSeconds(4)

@@ -1,0 +1,160 @@
+package skein.torture
+
+import skein.loop.LoopKind
+import skein.record.{Decision, Reading}
+import skein.signal.Stamped
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** Judges what decisions were made from: whether it was the newest that the vehicles had told, and as old as was said. */
+private[torture] object KnowledgeChecks:
+
+  def violations(seen: Evidence): Vector[String] =
+    val told = seen.vehicles.zip(seen.crafts.map(_.answers)).toMap
+    Vector(
+      misquoted(seen, told),
+      seen.ordeal.loop match
+        case LoopKind.Paused              => Vector.empty
+        case LoopKind.Futures             => notAtOnce(seen, told)
+        case LoopKind.Sequential          => notAtOnce(seen, told) ++ outdated(seen, told)
+        case _ if seen.ordeal.asPublished => backwards(seen)
+        case _                            => outdated(seen, told) ++ backwards(seen)
+      ,
+      agesWrong(seen)
+    ).flatten
+
+  /** What is on record of a vehicle is what it told, under the number of its question. */
+  private def misquoted(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
+    val states = told.map((vehicle, answers) => vehicle -> answers.map(a => a.question -> a.state).toMap)
+    seen.recording.readings
+      .find(reading => !states(reading.vehicle).get(reading.sequence).contains(reading.state))
+      .map(reading => s"${reading.vehicle}: reading ${reading.sequence} is not what the vehicle answered")
+      .toVector
+
+  /** No answer that the controller had is newer than the one decided upon, but for those that came within the time that
+    * a loop may take to join what belongs together.
+    */
+  private def outdated(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
+    val joins = seen.ordeal.loop match
+      case LoopKind.Sequential => Span.Zero
+      case LoopKind.Stream     => seen.patience
+      case _                   => seen.period
+    val histories = told.map((vehicle, answers) => vehicle -> History(answers))
+    firstOf(seen): (decision, used) =>
+      histories(used.vehicle)
+        .newerThan(used, (decision.decidedAt - joins).max(used.state.receivedAt))
+        .map: newer =>
+          s"used reading ${used.sequence} of ${used.vehicle} and had the newer ${newer.question} since " +
+            s"${decision.decidedAt.since(newer.state.receivedAt).toMillis.fixed(1)} ms"
+
+  /** Nobody decides upon something older than what it has decided upon before. */
+  private def backwards(seen: Evidence): Vector[String] =
+    val newest = scala.collection.mutable.Map.empty[(String, String), Reading]
+    firstOf(seen): (decision, used) =>
+      val before = newest.put((decision.vehicle, used.vehicle), used)
+      before
+        .filter(reading => isNewer(reading.state, used.state))
+        .map(reading =>
+          s"used reading ${used.sequence} of ${used.vehicle} after the newer ${reading.sequence}"
+        )
+
+  /** What is read together is decided upon when the last of it comes. */
+  private def notAtOnce(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
+    val moments = told(seen.vehicles.last).map(_.state.receivedAt).toSet
+    seen.recording.decisions
+      .find(decision => !moments(decision.decidedAt))
+      .map(decision => s"${where(decision)} was made when no round of readings had come")
+      .toVector
+
+  private def agesWrong(seen: Evidence): Vector[String] =
+    val wrong = seen.recording.decisions.iterator.flatMap: decision =>
+      val now                       = decision.decidedAt
+      def arrived(reading: Reading) =
+        if seen.ordeal.loop == LoopKind.Paused then Span.Zero else now.since(reading.state.receivedAt)
+      val observed  = decision.observations
+      val byArrival = Seq(
+        ("its own data", observed.ownAge, arrived(decision.own)),
+        ("its opponent's data", observed.opponentAge, arrived(decision.opponent))
+      ).collect:
+        case (whose, told, since) if told != since =>
+          s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} ms before, told were ${told.toMillis.fixed(3)} ms"
+      byArrival ++ trueAgesWrong(seen, decision)
+    wrong.nextOption().toVector
+
+  private def trueAgesWrong(seen: Evidence, decision: Decision): Seq[String] =
+    for
+      told                  <- decision.trueAge.toSeq
+      offset                <- trueOffset(seen, decision).toSeq
+      (whose, age, reading) <- Seq(
+        ("its own data", told.own, decision.own),
+        ("its opponent's data", told.opponent, decision.opponent)
+      )
+      sampledAt = reading.state.validAt + offset
+      old       = decision.decidedAt.since(sampledAt)
+      off       = age - old
+      if off > told.uncertainty || off < Span.Zero - told.uncertainty
+    yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were ${age.toMillis.fixed(3)} ms" +
+      s" to within ${told.uncertainty.toMillis.fixed(3)} ms"
+
+  /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known yet: all that
+    * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so
+    * near to the one before that no answer shows the difference.
+    */
+  private def trueOffset(seen: Evidence, decision: Decision): Option[Span] =
+    if seen.ordeal.loop == LoopKind.Paused then Some(Span.Zero)
+    else
+      val runs      = seen.runs
+      val unnoticed = runs.zip(runs.drop(1)).exists: (one, next) =>
+        val jump = next.clockOffset - one.clockOffset
+        jump != Span.Zero && jump > Span.Zero - Noticed && jump < Noticed
+      val present = runs.lastIndexWhere(_.from <= decision.decidedAt)
+      if unnoticed || present < 0 then None
+      else if present == 0 then Some(runs.head.clockOffset)
+      else
+        val asked   = runs(present).from + Gone
+        val settled = seen.crafts.forall(
+          _.answers.exists(a => a.state.sentAt >= asked && a.state.receivedAt + Gone <= decision.decidedAt)
+        )
+        val used = Seq(decision.own, decision.opponent).forall(_.state.sentAt >= runs(present).from)
+        Option.when(settled && used)(runs(present).clockOffset)
+
+  private def firstOf(seen: Evidence)(wrong: (Decision, Reading) => Option[String]): Vector[String] =
+    seen.recording.decisions.iterator
+      .flatMap(decision =>
+        Iterator(decision.own, decision.opponent).flatMap(used =>
+          wrong(decision, used).map(what => s"${where(decision)} $what")
+        )
+      )
+      .nextOption()
+      .toVector
+
+  private def where(decision: Decision) = s"decision ${decision.sequence} of ${decision.vehicle}"
+
+  /** Whether one state was sampled after another, said without the loop's own word for it. A simulator that was started
+    * again with another clock can leave neither the newer.
+    */
+  private def isNewer(one: Stamped[?], other: Stamped[?]) =
+    def follows(a: Stamped[?], b: Stamped[?]) = a.validAt > b.validAt || a.sentAt > b.receivedAt
+    follows(one, other) && !follows(other, one)
+
+  /** What one vehicle told, in the order in which it came. */
+  private final class History(answers: Vector[Answer]):
+    private val arrivals = answers.map(_.state.receivedAt)
+
+    /** The first that came before `until`, and is newer than a reading. What is newer by much came lately: only the last
+      * [[Recent]] are looked at.
+      */
+    def newerThan(used: Reading, until: Instant): Option[Answer] =
+      val come = arrivals.search(until).insertionPoint
+      answers.slice(come - Recent, come).find(answer =>
+        answer.state.receivedAt < until && isNewer(answer.state, used.state)
+      )
+
+  /** Answers of one vehicle within some 6 s. */
+  private val Recent = 64
+
+  /** An answer that took longer has timed out, and what it belonged to is joined without it. */
+  private val Gone = Span.ofMillis(700)
+
+  /** A jump of the clock beyond the longest round trip contradicts what was known before. */
+  private val Noticed = Span.ofSeconds(1)

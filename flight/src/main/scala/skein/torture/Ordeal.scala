@@ -1,0 +1,205 @@
+package skein.torture
+
+import skein.link.{Fault, TimedFault}
+import skein.loop.LoopKind
+import skein.signal.{LatencyProfile, SplitMix64}
+import skein.units.*
+
+/** What one flight has to go through; all of it follows from the seed. Times count from the flight's start.
+  *
+  * @param calmFrom
+  *   from here on nothing more goes wrong
+  * @param faults
+  *   of the link between controller and simulator
+  * @param meddling
+  *   what a broken peer does to messages until `calmFrom`
+  * @param restarts
+  *   of the simulator; afterwards an operator prepares the vehicles again
+  * @param stopAt
+  *   when somebody ends the flight before its time
+  * @param clockAhead
+  *   of the simulator against the controller, until it is started again
+  */
+final case class Ordeal(
+    seed: Long,
+    loop: LoopKind,
+    pairs: Int,
+    link: LatencyProfile,
+    cutsSegments: Boolean,
+    asPublished: Boolean,
+    duration: Span,
+    calmFrom: Span,
+    faults: Vector[TimedFault],
+    meddling: Meddling,
+    restarts: Vector[Restart],
+    disk: Disk,
+    stopAt: Option[Span],
+    clockAhead: Span = Span.Zero
+):
+  /** Whether the recording is written to a file and read back, which takes longer than most flights: one in ten. */
+  def isFiled: Boolean = seed % 10 == 0
+
+  /** One line for a person. */
+  override def toString: String =
+    val what = Seq(
+      Some(
+        s"seed $seed: ${loop.label}${if asPublished then " as published" else ""}, ${2 * pairs} vehicles, ${link.name}"
+      ),
+      Option.when(faults.nonEmpty)(
+        faults.map(f => s"${f.fault} at ${f.at.toMillis.round} ms").mkString(", ")
+      ),
+      Option.when(restarts.nonEmpty)(
+        restarts.map(r => s"restart at ${r.at.toMillis.round} ms for ${r.lasts.toMillis.round} ms").mkString(
+          ", "
+        )
+      ),
+      Option.when(meddling != Meddling.None)(meddling.toString),
+      Option.when(disk != Disk.Sound)(disk.toString),
+      stopAt.map(at => s"stopped at ${at.toMillis.round} ms")
+    )
+    what.flatten.mkString("; ")
+
+/** How often a message meets each mischief, as a probability.
+  *
+  * @param late
+  *   an answer is held back for up to `lateBy`, and others overtake it
+  * @param doubled
+  *   an answer comes twice
+  * @param nonsense
+  *   an answer's result is of another type
+  * @param stray
+  *   something is added that is no answer, or the answer to no call
+  * @param garbage
+  *   something is added that is no MessagePack
+  * @param refused
+  *   a move is asked for under a name that the simulator does not know
+  * @param lost
+  *   an answer never comes, though its connection lives
+  */
+final case class Meddling(
+    late: Double = 0,
+    lateBy: Span = Span.Zero,
+    doubled: Double = 0,
+    nonsense: Double = 0,
+    stray: Double = 0,
+    garbage: Double = 0,
+    refused: Double = 0,
+    lost: Double = 0
+)
+
+object Meddling:
+  val None: Meddling = Meddling()
+
+/** The simulator ends at `at` and is there again after `lasts`, its clock then off by `clockJump`. */
+final case class Restart(at: Span, lasts: Span, clockJump: Span)
+
+/** What happens to the recording. */
+enum Disk:
+  case Sound
+
+  /** It writes nothing for a while; then what waits has to fit into the recorder's queue. */
+  case Blocks(at: Span, lasts: Span, capacity: Int)
+
+  case Fails(at: Span)
+
+object Ordeal:
+  /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost on a
+    * connection that lives holds control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
+    */
+  val ResumesWithin: Span = Span.ofSeconds(3)
+
+  /** What each flight has at its end to show that control has resumed, and goes on. */
+  val Calm: Span = Span.ofSeconds(5)
+
+  /** Before this nothing goes wrong. */
+  private val Start = Span.ofMillis(500)
+
+  /** The least that a flight can last. */
+  val Shortest: Span = Start + Calm + Span.ofSeconds(1)
+
+  def of(seed: Long, duration: Span): Ordeal =
+    require(
+      duration >= Shortest,
+      s"a flight of ${duration.toSeconds} s is too short: ${Shortest.toSeconds} s at least"
+    )
+    val drawn = Draw(SplitMix64(SplitMix64.seedOf(seed, 0)), seed, duration).ordeal
+    val added = SplitMix64(SplitMix64.seedOf(seed, 1))
+    val loses = drawn.copy(meddling =
+      if added.nextDouble() < 0.3 then drawn.meddling.copy(lost = 0.2 * added.nextDouble())
+      else drawn.meddling
+    )
+    val looped =
+      if added.nextDouble() < 0.1 then
+        loses.copy(loop = LoopKind.Paused, pairs = drawn.pairs.min(2), asPublished = false)
+      else loses
+    looped.copy(clockAhead = Span.ofSeconds(40 * added.nextDouble() - 20))
+
+  private final class Draw(random: SplitMix64, seed: Long, duration: Span):
+    private val calmFrom = duration - Calm
+    private val trouble  = calmFrom - Start
+
+    def ordeal: Ordeal =
+      val loop =
+        pick(LoopKind.Stream, LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures, LoopKind.Sequential)
+      val link = pick(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
+      // A loop that asks its vehicles in turn needs a round trip for each.
+      val most  = if loop == LoopKind.Sequential || loop == LoopKind.Futures then 3 else 10
+      val pairs = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
+      Ordeal(
+        seed,
+        loop,
+        pairs,
+        link,
+        cutsSegments = chance(0.5),
+        asPublished = loop == LoopKind.Stream && chance(0.2),
+        duration,
+        calmFrom,
+        several(0.6)(fault()),
+        if chance(0.6) then meddling() else Meddling.None,
+        if chance(0.35) then restarts() else Vector.empty,
+        disk(),
+        Option.when(chance(0.1))(Start + upTo(duration - Start))
+      )
+
+    private def fault(): TimedFault =
+      val lasts = upTo(trouble.min(Span.ofSeconds(4)))
+      val at    = Start + upTo(trouble - lasts)
+      TimedFault(at, pick(Fault.Stall(lasts), Fault.Stall(lasts), Fault.Reset, Fault.Silence(lasts)))
+
+    private def meddling(): Meddling =
+      def often(most: Double) = if chance(0.5) then most * random.nextDouble() else 0.0
+      Meddling(
+        often(0.2),
+        upTo(Span.ofSeconds(1.5)),
+        often(0.3),
+        often(0.1),
+        often(0.2),
+        often(0.02),
+        often(0.3)
+      )
+
+    /** One in each of equal parts of the trouble, so that they do not overlap. */
+    private def restarts(): Vector[Restart] =
+      val count = 1 + random.nextInt((trouble.toSeconds / 4).toInt.max(1).min(5))
+      val part  = trouble / count.toLong
+      Vector.tabulate(count): index =>
+        val lasts = upTo((part / 2).min(Span.ofSeconds(3)))
+        val jump  = if chance(0.5) then Span.Zero else upTo(Span.ofSeconds(40)) - Span.ofSeconds(20)
+        Restart(Start + part * index.toLong + upTo(part / 2 - Settling), lasts, jump)
+
+    private def disk(): Disk =
+      if chance(0.85) then Disk.Sound
+      else if chance(0.5) then Disk.Fails(Start + upTo(duration - Start))
+      else
+        val lasts = upTo(trouble)
+        Disk.Blocks(Start + upTo(trouble - lasts), lasts, capacity = 50 + random.nextInt(2000))
+
+    private def several[A](chanceOfMore: Double)(one: => A): Vector[A] =
+      Vector.unfold(0)(count => Option.when(count < 20 && chance(chanceOfMore))((one, count + 1)))
+
+    private def chance(p: Double): Boolean = random.nextDouble() < p
+    private def upTo(most: Span): Span     = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
+    private def pick[A](choices: A*): A    = choices(random.nextInt(choices.size))
+
+  /** That the operator needs before the next thing may go wrong. */
+  private val Settling = Span.ofMillis(200)

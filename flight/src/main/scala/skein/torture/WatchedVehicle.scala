@@ -1,0 +1,69 @@
+package skein.torture
+
+import scala.collection.mutable
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Success
+import skein.policy.Action
+import skein.port.{SteppedTime, VehicleError, VehiclePort}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** A move as the loop sent it. */
+final case class Sending(at: Instant, north: Float, east: Float)
+
+/** Where a vehicle said that it is.
+  *
+  * @param question
+  *   counts what the vehicle was asked
+  */
+final case class Answer(question: Long, state: Stamped[Kinematics])
+
+/** A craft that keeps account of every call: how it began, that it ended, what it told, how many were outstanding. */
+final class WatchedVehicle(craft: VehiclePort, clock: Clock)(using ExecutionContext) extends VehiclePort:
+  private val moves = mutable.ArrayBuffer.empty[Sending]
+  private val told  = mutable.ArrayBuffer.empty[Answer]
+
+  val reads, commands     = CallCount()
+  private var lastIsHover = false
+
+  def sendings: Vector[Sending] = moves.toVector
+
+  /** In the order in which they came. */
+  def answers: Vector[Answer] = told.toVector
+
+  /** Whether the last command was to hover. */
+  def toldToHover: Boolean = lastIsHover
+
+  def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
+    val question = reads.begun.toLong
+    reads
+      .count(craft.read())
+      .andThen:
+        case Success(Right(state)) => told += Answer(question, state)
+
+  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+    for case Action.VelocityAt(north, east, _, _) <- Some(action) do
+      moves += Sending(clock.now(), north.toFloat, east.toFloat)
+    lastIsHover = false
+    commands.count(craft.act(action, lasts))
+
+  def hover(): Future[Either[VehicleError, Boolean]] =
+    lastIsHover = true
+    commands.count(craft.hover())
+
+/** A stepper that counts its calls. */
+final class WatchedTime(stepper: SteppedTime)(using ExecutionContext) extends SteppedTime:
+  val calls = CallCount()
+
+  def pause(): Future[Either[VehicleError, Unit]]                 = calls.count(stepper.pause())
+  def resume(): Future[Either[VehicleError, Unit]]                = calls.count(stepper.resume())
+  def continueFor(span: Span): Future[Either[VehicleError, Unit]] = calls.count(stepper.continueFor(span))
+
+/** Calls begun and ended. */
+final class CallCount:
+  var begun, ended, most = 0
+
+  def count[A](call: Future[A])(using ExecutionContext): Future[A] =
+    begun += 1
+    most = most.max(begun - ended)
+    call.andThen(_ => ended += 1)

@@ -1,0 +1,150 @@
+package skein.torture
+
+import org.apache.pekko.NotUsed
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
+import org.apache.pekko.util.ByteString
+import scala.collection.mutable
+import scala.concurrent.Future
+import skein.link.*
+import skein.rpc.{Framed, Framer, Message}
+import skein.signal.SplitMix64
+import skein.units.*
+import upack.{Arr, Float64, Int32, Msg, Null, Str}
+
+/** A move as it came to the simulator: the velocity as it is on the wire. */
+final case class Arrival(at: Instant, vehicle: String, north: Float, east: Float)
+
+/** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of arrival, and
+  * until `calm` does to messages what the [[Meddling]] says. Connections from `spared` are left alone.
+  */
+final class Wiretap(
+    transport: Transport,
+    meddling: Meddling,
+    spared: String,
+    seed: Long,
+    clock: Clock,
+    calm: Instant
+)(using system: ActorSystem)
+    extends Transport:
+  import Wiretap.*
+  import system.dispatcher
+
+  private val random     = SplitMix64(seed)
+  private val arrived    = mutable.ArrayBuffer.empty[Arrival]
+  private val hovers     = mutable.Map.empty[String, Instant]
+  private val unanswered = mutable.Map.empty[String, Int].withDefaultValue(0)
+  private var most       = 0
+
+  def arrivals: Vector[Arrival] = arrived.toVector
+
+  /** When each vehicle was last told to hover. */
+  def lastHovers: Map[String, Instant] = hovers.toMap
+
+  /** The most moves of one vehicle that the simulator had not answered at one time. */
+  def mostUnanswered: Int = most
+
+  def connect(to: Address): Flow[ByteString, ByteString, Future[org.apache.pekko.Done]] =
+    transport.connect(to)
+
+  def listen(at: Address): Source[Incoming, Future[Listening]] =
+    transport.listen(at).map: incoming =>
+      if incoming.from.host == spared then incoming else incoming.copy(flow = tapped(incoming.flow))
+
+  private def tapped(client: Flow[ByteString, ByteString, NotUsed]): Flow[ByteString, ByteString, NotUsed] =
+    val moves = mutable.LongMap.empty[String]
+    val tap   = Flow.fromFunction[Array[Byte], ByteString](request(moves, _))
+    val ended = Flow[ByteString].watchTermination(): (_, done) =>
+      // Whatever was under way on a connection that is gone has no answer to come.
+      done.onComplete(_ => moves.values.foreach(unanswered(_) -= 1))
+      NotUsed
+    Flow[ByteString].via(replies(moves)).via(client).via(frames).via(tap).via(ended)
+
+  private def request(moves: mutable.LongMap[String], frame: Array[Byte]): ByteString =
+    Message.fromClient(frame) match
+      case Message.Request(id, Move, params @ Float64(north) +: Float64(east) +: _) =>
+        if meddles(meddling.refused) then renamed(frame)
+        else
+          val vehicle = textOf(params.last)
+          arrived += Arrival(clock.now(), vehicle, north.toFloat, east.toFloat)
+          moves(id) = vehicle
+          unanswered(vehicle) += 1
+          most = most.max(unanswered(vehicle))
+          ByteString.fromArrayUnsafe(frame)
+      case Message.Request(_, Hover, params) =>
+        params.lastOption.foreach(vehicle => hovers(textOf(vehicle)) = clock.now())
+        ByteString.fromArrayUnsafe(frame)
+      case _ => ByteString.fromArrayUnsafe(frame)
+
+  private def replies(moves: mutable.LongMap[String]): Flow[ByteString, ByteString, NotUsed] =
+    Flow[ByteString]
+      .via(frames)
+      .mapConcat: frame =>
+        Message.fromServer(frame) match
+          case Message.Reply(id, _, _) =>
+            moves.remove(id).foreach(unanswered(_) -= 1)
+            mischief(id, ByteString.fromArrayUnsafe(frame))
+          case _ => Vector(ByteString.fromArrayUnsafe(frame))
+      .mapAsyncUnordered(HeldBack): frame =>
+        if meddles(meddling.late) then
+          after(upTo(meddling.lateBy).toDuration, system.scheduler)(Future.successful(frame))
+        else Future.successful(frame)
+
+  private def mischief(id: Long, reply: ByteString): Vector[ByteString] =
+    if meddles(meddling.lost) then Vector.empty
+    else if meddles(meddling.doubled) then Vector(reply, reply)
+    else if meddles(meddling.nonsense) then Vector(encoded(Arr(Int32(1), number(id), Null, Str("nonsense"))))
+    else if meddles(meddling.garbage) then Vector(ByteString(0xc1), reply)
+    else if meddles(meddling.stray) then
+      val strays = Vector[Msg](
+        Int32(7),
+        Str("hello"),
+        Arr(Int32(1), Int32(2)),
+        Arr(Int32(1), number(id + 1_000_000), Null, Null)
+      )
+      Vector(encoded(strays(random.nextInt(strays.size))), reply)
+    else Vector(reply)
+
+  private def meddles(probability: Double): Boolean =
+    probability > 0 && clock.now() < calm && random.nextDouble() < probability
+
+  private def upTo(most: Span): Span = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
+
+private object Wiretap:
+  private val Move  = "moveByVelocityZ"
+  private val Hover = "hover"
+
+  /** Answers that one connection may hold back at once. */
+  private val HeldBack = 1024
+
+  /** Cuts a stream of bytes into messages. */
+  private def frames: Flow[ByteString, Array[Byte], NotUsed] =
+    Flow[ByteString].statefulMap(() => new Framer())(
+      (framer, bytes) =>
+        framer.offer(bytes)
+        (
+          framer,
+          Vector.unfold(framer)(framer =>
+            framer.next() match
+              case Framed.Complete(frame)   => Some((frame, framer))
+              case Framed.NeedsMore         => None
+              case Framed.Malformed(reason) => throw IllegalStateException(reason)
+          )
+        )
+      ,
+      _ => None
+    ).mapConcat(identity)
+
+  /** The same request with another last letter in its method's name. */
+  private def renamed(frame: Array[Byte]): ByteString =
+    val at = frame.indexOfSlice(Move.getBytes) + Move.length - 1
+    ByteString.fromArrayUnsafe(frame.updated(at, 'Q'.toByte))
+
+  private def encoded(message: Msg): ByteString = ByteString.fromArrayUnsafe(upack.write(message))
+
+  private def number(id: Long): Msg = upack.Int64(id)
+
+  private def textOf(value: Msg): String = value match
+    case Str(text) => text
+    case other     => other.toString

@@ -1,0 +1,117 @@
+package skein.flight
+
+import java.nio.file.{Files, Path}
+import scala.util.Using
+import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
+import skein.policy.Scenario
+import skein.record.*
+import skein.settings.{FlightPlan, FlySettings, PredictionModel}
+import skein.signal.LatencyProfile
+import skein.units.*
+import skein.vehicle.ReducedModel
+
+/** Run = run = replay, for every loop. */
+class ReplaySimulation extends munit.FunSuite:
+
+  override val munitTimeout: scala.concurrent.duration.Duration =
+    scala.concurrent.duration.Duration(5, "min")
+
+  private val settings = FlySettings(
+    LoopKind.values.toList,
+    List(LatencyProfile.vpn),
+    duration = Span.ofSeconds(3),
+    period = Span.ofMillis(100),
+    seed = 3,
+    pairs = 1,
+    asPublished = false,
+    planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
+  )
+
+  private val predictive =
+    settings.plans.find(_.loop == LoopKind.Predictive).getOrElse(fail("there is no such flight"))
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("replay"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def fly(settings: FlySettings, plan: FlightPlan): MemoryRecorder =
+    VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder
+
+  private def check(settings: FlySettings, folder: Path): Unit =
+    for plan <- settings.plans do
+      val recorder = fly(settings, plan)
+      val file     = plan.file(folder)
+      assert(recorder.writeTo(file).isRight)
+      val replayed = Replayed.of(file).fold(fail(_), identity)
+      assert(replayed.decisions > 10, s"${plan.id}: $replayed")
+      assertEquals(replayed.decidedAgain, None, plan.id)
+      assertEquals(replayed.flownAgain.map(_.again), Some(recorder.digest), plan.id)
+      assert(replayed.isSame, plan.id)
+
+  for loop <- LoopKind.values do
+    folder.test(
+      s"${loop.label} decides the same when it is flown again, and when its recording is decided upon again"
+    ): folder =>
+      check(settings.copy(loops = List(loop)), folder)
+
+  folder.test("so does a predictive flight by a reduced model, which the recording holds"): folder =>
+    check(
+      settings.copy(
+        loops = List(LoopKind.Predictive),
+        movesInFlight = 3,
+        deadline = Some(Span.ofMillis(20)),
+        fallback = Fallback.Hold,
+        predictor = PredictionModel.Fitted(ReducedModel.AirSim.copy(gain = 0.987654321))
+      ),
+      folder
+    )
+
+  folder.test("so does a team of eight, as published, over a link of another kind"): folder =>
+    val link =
+      LatencyProfile.parse("lognormal:40ms,0.8", Left(_)).fold(error => fail(error.message), identity)
+    check(
+      settings.copy(
+        loops = List(LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),
+        links = List(link),
+        pairs = 4,
+        asPublished = true
+      ),
+      folder
+    )
+
+  test("a replay names the first decision whose heading is not what the policy gives, with both values"):
+    val recording = fly(settings, predictive).recording
+    val forged    = recording.decisions(7)
+    val heading   = Radians(forged.heading.value + 1e-12)
+    val changed   = recording.copy(decisions = recording.decisions.updated(7, forged.copy(heading = heading)))
+    val found     = Replay(Scenario.duel(), changed).firstDifference.getOrElse(fail("no difference found"))
+    assertEquals(found.where, s"decision ${forged.sequence} of ${forged.vehicle}")
+    assertEquals(found.column, "headingRad")
+    assertEquals((found.recorded, found.again), (heading.value.toString, forged.heading.value.toString))
+
+  test("a replay notices a reading that was changed after it had been decided upon"):
+    val recording = fly(settings, predictive).recording
+    val forged    = recording.readings.map: reading =>
+      if reading.sequence != 5 then reading
+      else
+        val state = reading.state
+        reading.copy(state =
+          state.map(read => read.copy(velocityNed = read.velocityNed + Vector3(0, 0, 1e-9)))
+        )
+    val found = Replay(Scenario.duel(), recording.copy(readings = forged)).firstDifference
+    assert(found.exists(_.column.endsWith("Sequence")), found.toString)
+
+  folder.test("flying again what was recorded with another seed gives other decisions"): folder =>
+    val plan     = predictive
+    val recorder = fly(settings, plan)
+    val records  = recorder.records
+    val relabel  = recorder.recording.heading
+    val forged   = MemoryRecorder(relabel.copy(flight = relabel.flight.copy(seed = plan.seed + 1)))
+    records.foreach(forged.offer)
+    assert(forged.writeTo(plan.file(folder)).isRight)
+    val replayed = Replayed.of(plan.file(folder)).fold(fail(_), identity)
+    assertEquals(replayed.decidedAgain, None)
+    assert(replayed.flownAgain.exists(again => !again.isSame && again.inDecisions.isDefined))
+    assert(!replayed.isSame)

@@ -1,0 +1,195 @@
+package skein.flight
+
+import scala.collection.mutable.ArrayBuffer
+import scala.concurrent.duration.*
+import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
+import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.{Scenario, TeamScenario}
+import skein.record.Reading
+import skein.settings.{FlightPlan, FlySettings}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last bit: every vehicle
+  * is read at the same nanoseconds at the same places, and is commanded the same headings.
+  */
+class RolloutParitySimulation extends munit.FunSuite:
+  override val munitTimeout = 5.minutes
+
+  private val minute = Span.ofSeconds(60)
+
+  private def settings(
+      loop: LoopKind,
+      link: LatencyProfile,
+      asPublished: Boolean,
+      pairs: Int,
+      altitudeM: Double,
+      scenario: String,
+      duration: Span,
+      crossing: Int
+  ) = FlySettings(
+    List(loop),
+    List(link),
+    duration,
+    Span.ofMillis(100),
+    1,
+    pairs,
+    asPublished,
+    scenario = scenario,
+    crossing = TeamScenario.Crossing(vehicles = crossing),
+    altitudeM = altitudeM
+  )
+
+  /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
+  private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
+    override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: $a, $b"
+
+  private def check(
+      loop: LoopKind,
+      link: LatencyProfile,
+      seed: Long,
+      asPublished: Boolean = false,
+      pairs: Int = 1,
+      altitudeM: Double = Scenario.DuelAltitudeM,
+      team: String = FlySettings.Duel,
+      duration: Span = minute,
+      crossing: Int = 8
+  ): Unit =
+    val asked  = settings(loop, link, asPublished, pairs, altitudeM, team, duration, crossing)
+    val flown  = TappedFlight.fly(asked, FlightPlan("parity", loop, link, seed))
+    val every  = LoopSettings.every(Span.ofMillis(100))
+    val timing =
+      LoopTimings
+        .of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
+        .getOrElse(fail(s"${loop.label} has no timing"))
+    val scenario = asked.agents
+    val vehicles = scenario.agents.map(_.name)
+    val clue     = s"${loop.label} over ${link.name}, seed $seed"
+
+    val readings, commands = ArrayBuffer.empty[Note]
+    val observer           = new LoopObserver:
+      override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit =
+        readings += Note(vehicle, number, Span.ofNanos(atNs), x, y)
+      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
+        val velocity = scenario.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
+        commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
+    val model   = VelocityResponses.quadrotor(hoveredS = flown.hovered.toSeconds)
+    val rollout = Rollout(Engagement.of(scenario, duration.toSeconds), timing, flown.delays, model)
+    val _       = rollout.fly(0, observer = observer)
+
+    def same(what: String, recorded: Seq[Note], again: Seq[Note]): Unit =
+      val (expected, actual) = (sorted(recorded, duration), sorted(again, duration))
+      assert(expected.nonEmpty, s"$clue: no $what")
+      for (e, a) <- expected.zip(actual) do
+        assert(e == a, s"$clue: $what\nflown   $e\nrollout $a")
+      assertEquals(actual.size, expected.size, s"$clue: $what")
+
+    val startS = if loop == LoopKind.Paused then recordedStart(flown) else flown.startedAt
+    val read   = flown.recording.readings.map: (reading: Reading) =>
+      val place = reading.state.value.positionNed
+      Note(
+        vehicles.indexOf(reading.vehicle),
+        reading.sequence.toInt,
+        reading.state.validAt.since(startS),
+        place.x,
+        place.y
+      )
+    // A recorded command bears the number of its decision, and not every decision is sent.
+    val sent = flown.recording.commands
+      .groupBy(_.vehicle)
+      .toSeq
+      .flatMap: (vehicle, commands) =>
+        for (command, number) <- commands.sortBy(_.sentAt.toNanos).zipWithIndex
+        yield Note(
+          vehicles.indexOf(vehicle),
+          number,
+          command.sentAt.since(startS),
+          command.velocityNorth.value,
+          command.velocityEast.value
+        )
+    same("readings", read, readings.toSeq)
+    if loop != LoopKind.Paused then same("commands", sent, commands.toSeq)
+
+  /** In the order of time, those of the last moments left out. */
+  private def sorted(notes: Seq[Note], duration: Span): Seq[Note] =
+    notes.filter(_.at < duration - Span.ofMillis(1)).sortBy(note =>
+      (note.vehicle, note.at.toNanos, note.number)
+    )
+
+  private def recordedStart(flown: TappedFlight): Instant = flown.recording.readings.head.state.validAt
+
+  test("paused, which meets no delays"):
+    check(LoopKind.Paused, LatencyProfile.none, 1)
+
+  for
+    (loop, link, seed) <- Seq(
+      (LoopKind.Sequential, "direct", 1),
+      (LoopKind.Sequential, "vpn", 2),
+      (LoopKind.Futures, "direct", 1),
+      (LoopKind.Futures, "vpn", 2),
+      (LoopKind.Stream, "direct", 1),
+      (LoopKind.Stream, "vpn", 2),
+      (LoopKind.Stream, "vpn-mixed", 3),
+      // Answers overtake one another, come too late, and questions are missed.
+      (LoopKind.Stream, "lognormal:150ms,0.8", 1),
+      (LoopKind.Predictive, "direct", 1),
+      (LoopKind.Predictive, "vpn", 2),
+      (LoopKind.Predictive, "lognormal:150ms,0.8", 1)
+    )
+  do
+    test(s"${loop.label} over $link"):
+      check(loop, profile(link), seed)
+
+  test("stream over vpn, lower, where vehicles answer faster"):
+    check(LoopKind.Stream, profile("vpn"), 4, altitudeM = 6)
+
+  for (team, loop) <- Seq(
+      "surround"  -> LoopKind.Paused,
+      "surround"  -> LoopKind.Stream,
+      "formation" -> LoopKind.Stream,
+      "crossing"  -> LoopKind.Stream,
+      "crossing"  -> LoopKind.Futures,
+      "formation" -> LoopKind.Predictive
+    )
+  do
+    test(s"${loop.label} over vpn, the team of $team, whose policies regard all and choose their speed"):
+      val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
+      check(loop, link, 5, team = team, duration = Span.ofSeconds(15))
+
+  test(
+    "futures over direct, twenty vehicles that cross: eighty tasks overlap, each with a reading of every vehicle"
+  ):
+    check(
+      LoopKind.Futures,
+      LatencyProfile.direct,
+      1,
+      team = "crossing",
+      duration = Span.ofSeconds(8),
+      crossing = 20
+    )
+
+  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
+  // futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams say who decides
+  // first, and sequential over 500 ms, where no answer comes in time.
+  private val ties = Seq(
+    LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms"),
+    LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),
+    LoopKind.Stream     -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
+    LoopKind.Predictive -> Seq("none", "constant:500ms")
+  )
+  for
+    (loop, links) <- ties
+    link          <- links
+  do
+    test(s"${loop.label} over $link, where times tie"):
+      check(loop, profile(link), 1)
+
+  for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
+    test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
+      check(loop, LatencyProfile.vpn, 1, pairs = 2)
+
+  test("stream over vpn as published: spread questions, answers in order, a decision at each"):
+    check(LoopKind.Stream, LatencyProfile.vpn, 3, asPublished = true)
+
+  private def profile(name: String): LatencyProfile =
+    LatencyProfile.parse(name, Left(_)).fold(error => fail(error.message), identity)

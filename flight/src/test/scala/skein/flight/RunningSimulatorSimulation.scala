@@ -1,0 +1,242 @@
+package skein.flight
+
+import java.nio.charset.StandardCharsets.ISO_8859_1
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.Future
+import scala.concurrent.duration.*
+import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
+import skein.link.*
+import skein.loop.{LoopKind, Outcome}
+import skein.record.{EventKind, MemoryRecorder, Recording}
+import skein.rpc.RpcClient
+import skein.settings.{FlightPlan, FlySettings}
+import skein.signal.{Kinematics, LatencyProfile}
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Flights against a simulator that runs already and goes on running, as AirSim does. */
+class RunningSimulatorSimulation extends munit.FunSuite:
+  private val settings = FlySettings(
+    List(LoopKind.Stream, LoopKind.Paused, LoopKind.Predictive),
+    List(LatencyProfile.direct),
+    duration = Span.ofSeconds(8),
+    period = Span.ofMillis(100),
+    seed = 1,
+    pairs = 1,
+    asPublished = false
+  )
+
+  /** One short flight. */
+  private val brief = settings.copy(loops = List(LoopKind.Stream), duration = Span.ofSeconds(2))
+
+  private val duel = Vector(
+    VehicleSettings("Evader", Vector3(0, 0, 0), Radians(0)),
+    VehicleSettings("Pursuer", Vector3(-20, 5, 0), Radians(0))
+  )
+
+  /** A simulator that runs, in virtual time, and whoever flies it. */
+  private final class Bench(vehicles: Vector[VehicleSettings], losesCancel: () => Boolean)(using
+      val system: ActorSystem
+  ):
+    import system.dispatcher
+    private val clock   = Clock.ofNanos(VirtualTime.clock(system))
+    private val network = MemoryNetwork(NetworkPlan(), 1, clock).host("localhost")
+    private val world   = SimulatorSettings(
+      WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+      Address("127.0.0.1", 0),
+      losesCancel = losesCancel
+    )
+    val server: Future[SimulatorServer] = SimulatorServer.start(world, Tapped(network), clock)
+
+    /** Calls by which clients took what a vehicle did not have. */
+    var taken = Vector.empty[String]
+
+    private final class Tapped(transport: Transport) extends Transport:
+      def connect(to: Address) = transport.connect(to)
+      def listen(at: Address)  = transport.listen(at).map: incoming =>
+        incoming.copy(flow = incoming.flow.map: bytes =>
+          val text = bytes.decodeString(ISO_8859_1)
+          taken ++= Seq("enableApiControl", "armDisarm", "takeoff").filter(text.contains)
+          bytes)
+
+    /** Flies plans one after another, as one command does. */
+    def command(
+        settings: FlySettings,
+        onStart: () => Unit = () => ()
+    ): Future[Either[String, Vector[Recording]]] =
+      server.flatMap: server =>
+        val rigs = FlightRigs(network, clock, settings, Some(server.address))
+        settings.plans.foldLeft(Future.successful[Either[String, Vector[Recording]]](Right(Vector.empty))):
+          (before, plan) =>
+            before.flatMap:
+              case Left(reason)      => Future.successful(Left(reason))
+              case Right(recordings) => fly(rigs, plan, onStart).map(_.map(recordings :+ _))
+
+    private def fly(
+        rigs: FlightRigs,
+        plan: FlightPlan,
+        onStart: () => Unit
+    ): Future[Either[String, Recording]] =
+      val recorder = MemoryRecorder(rigs.heading(plan, "virtual"))
+      rigs
+        .start(plan, recorder)
+        .flatMap:
+          case Left(reason) => Future.successful(Left(s"${plan.id}: $reason"))
+          case Right(rig)   =>
+            onStart()
+            rig.landed.map(landed =>
+              Either.cond(
+                landed.outcome == Outcome.Completed,
+                recorder.recording,
+                s"${plan.id}: ${landed.outcome}"
+              )
+            )
+
+    /** Every vehicle as it is, each in its own frame, at every tick until `done`. */
+    def watch(done: Future[?]): Future[Vector[Vector[Kinematics]]] = operate: client =>
+      val watched = vehicles.map(vehicle => Multirotor(client, vehicle.name))
+      def more(seen: Vector[Vector[Kinematics]]): Future[Vector[Vector[Kinematics]]] =
+        Future
+          .traverse(watched)(_.groundTruth().map(_.fold(e => fail(e.message), identity)))
+          .flatMap: now =>
+            if done.isCompleted then Future.successful(seen :+ now) else after(50.millis)(more(seen :+ now))
+      more(Vector.empty)
+
+    /** By a client of its own. */
+    def operate[A](act: AirSimClient => Future[A]): Future[A] =
+      server.flatMap: server =>
+        val client = AirSimClient(RpcClient(network, server.address, clock))
+        act(client).flatMap(done => client.close().map(_ => done))
+
+  private def on[A](vehicles: Vector[VehicleSettings], losesCancel: () => Boolean = () => false)(
+      use: Bench => Future[A]
+  ): A = VirtualTime
+    .run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val bench = Bench(vehicles, losesCancel)
+      for
+        result <- use(bench)
+        server <- bench.server
+        _      <- server.close()
+      yield result
+    .value
+
+  private def firstSeen(recording: Recording, vehicle: String): Kinematics =
+    recording.readings.filter(_.vehicle == vehicle).minBy(_.sequence).state.value
+
+  private def assertBeginsAtRest(recording: Recording): Unit =
+    for vehicle <- recording.heading.vehicles do
+      val first = firstSeen(recording, vehicle.name)
+      val off   = (first.positionNed - vehicle.startNed).norm
+      assert(off <= 0.3, s"${recording.flight.id}, ${vehicle.name}: $off m off its start")
+      assert(first.velocityNed.norm <= 0.1, s"${recording.flight.id}, ${vehicle.name}: $first")
+
+  private def orFail[A](result: Either[String, A]): A = result.fold(fail(_), identity)
+
+  test(
+    "flights of one command and of several begin at rest at the starts, and nothing that flies falls between them"
+  ):
+    val (recordings, seen, atFirst, inAll) = on(duel): bench =>
+      import bench.system.dispatcher
+      for
+        first <- bench.command(settings.copy(loops = settings.loops.take(1))).map(orFail)
+        atFirst = bench.taken
+        later   = bench.command(settings.copy(seed = 2)).map(orFail)
+        seen   <- bench.watch(later)
+        second <- later
+      yield (first ++ second, seen, atFirst, bench.taken)
+    assertEquals(recordings.size, 4)
+    recordings.foreach(assertBeginsAtRest)
+    val lowest = seen.flatten.map(_.positionNed.z).max
+    assert(lowest < -16, s"a vehicle came down to $lowest m")
+    assertEquals(
+      atFirst.sorted,
+      Vector("armDisarm", "enableApiControl", "takeoff").flatMap(Vector.fill(2)(_))
+    )
+    assertEquals(inAll, atFirst, "taken of vehicles that flew under api control")
+
+  test("vehicles that look elsewhere are turned to the north before they hover at their starts"):
+    val turned = duel.zip(Seq(99.0, -150.0)).map((one, deg) => one.copy(yaw = Radians(math.toRadians(deg))))
+    for recording <- orFail(on(turned)(_.command(brief))) do
+      assertBeginsAtRest(recording)
+      for vehicle <- duel do
+        val q = firstSeen(recording, vehicle.name).orientation
+        assert(math.abs(2 * math.atan2(q.z, q.w)) < math.toRadians(4), s"$vehicle: $q")
+
+  test("a vehicle that falls, and one whose last move still flies, are caught and brought to their starts"):
+    val recordings = on(duel): bench =>
+      import bench.system.dispatcher
+      for
+        first <- bench.command(brief).map(orFail)
+        _     <- bench.operate(Multirotor(_, "Evader").enableApiControl(false))
+        _ = bench.operate(Multirotor(_, "Pursuer").moveByVelocity(Vector3(3, -4, -1), Span.ofSeconds(8)))
+        _      <- after(300.millis)(Future.unit)(using bench.system)
+        second <- bench.command(brief.copy(seed = 2)).map(orFail)
+      yield first ++ second
+    assertEquals(recordings.size, 2)
+    recordings.foreach(assertBeginsAtRest)
+
+  test("altitudes count from where each vehicle starts, wherever its frame has its origin"):
+    val truth            = settings.copy(loops = List(LoopKind.Paused))
+    def flown(z: Double) = on(duel.map(one => one.copy(startNed = one.startNed.copy(z = z)))): bench =>
+      import bench.system.dispatcher
+      for
+        recordings <- bench.command(truth).map(orFail)
+        own        <- bench.watch(Future.unit)
+      yield (recordings.head, own.head)
+    val (level, _)    = flown(0)
+    val (raised, own) = flown(-2)
+    assertBeginsAtRest(raised)
+    for state <- own do assertEqualsDouble(state.positionNed.z, -20, 1.5)
+    def apartM(recording: Recording) =
+      val last = recording.decisions.last
+      last.own.state.value.positionNed.horizontalDistance(last.opponent.state.value.positionNed)
+    assertEqualsDouble(apartM(raised), apartM(level), 0.1)
+
+  test("a simulator that was left standing still is let run"):
+    val recordings = on(duel): bench =>
+      import bench.system.dispatcher
+      bench.operate(_.pause()).flatMap(_ => bench.command(brief))
+    orFail(recordings).foreach(assertBeginsAtRest)
+
+  for loop <- Seq(LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures) do
+    test(s"${loop.label}: after one lost cancel moves are answered in time again within a second"):
+      var lost    = 0
+      var mayLose = false
+      def loses() =
+        val now = mayLose && lost == 0
+        if now then lost += 1
+        now
+      val flown = orFail(on(duel, () => loses()): bench =>
+        import bench.system.dispatcher
+        def soon() = bench.system.scheduler.scheduleOnce(5.seconds)({ mayLose = true }): Unit
+        bench.command(settings.copy(loops = List(loop), duration = Span.ofSeconds(20)), () => soon())).head
+      assertEquals(lost, 1)
+      val late = answeredLate(flown)
+      assert(late.nonEmpty, "nothing was late: was the cancel lost?")
+      assert(
+        late.max.since(late.min) < Span.ofSeconds(1),
+        s"${late.size} late, from ${late.min} to ${late.max}"
+      )
+      val told =
+        flown.events.filter(event => event.kind == EventKind.TimedOut && event.detail.contains("cancel"))
+      assertEquals(told.size, 1, told.toString)
+
+  /** When moves were sent whose predecessors were answered more than 300 ms later. */
+  private def answeredLate(recording: Recording): Vector[Instant] =
+    val ended = recording.acknowledgements.map(ack => (ack.vehicle, ack.command) -> ack.endedAt).toMap
+    for
+      vehicle <- recording.heading.vehicles.toVector
+      commands = recording.commands.filter(_.vehicle == vehicle.name)
+      (one, next) <- commands.zip(commands.drop(1))
+      if ended.get((one.vehicle, one.sequence)).exists(_.since(next.sentAt) > Span.ofMillis(300))
+    yield next.sentAt
+
+  test("without one of the vehicles a flight is refused, with the names of those that are there"):
+    assertEquals(
+      on(duel.take(1))(_.command(settings)).left.map(_.replaceFirst("^[^:]*: ", "")),
+      Left("the simulator has no vehicle 'Pursuer'; it has 'Evader'")
+    )

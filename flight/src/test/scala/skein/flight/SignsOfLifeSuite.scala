@@ -1,0 +1,29 @@
+package skein.flight
+
+import skein.flight.SignsOfLife.Sign
+import skein.units.*
+
+class SignsOfLifeSuite extends munit.FunSuite:
+  private val within = Span.ofMillis(700)
+
+  private def at(millis: Double) = Instant.Epoch + Span.ofMillis(millis)
+
+  test("silence is told once, when an answer is overdue, and its end once, when one has come"):
+    val looks = Vector[(heardAt: Double, now: Double, sign: Option[Sign])](
+      (heardAt = 0.0, now = 700.0, sign = None),
+      (heardAt = 0.0, now = 701.0, sign = Some(Sign.Silent(Span.ofMillis(701)))),
+      (heardAt = 0.0, now = 5000.0, sign = None),
+      (heardAt = 5100.0, now = 5150.0, sign = Some(Sign.Back(Span.ofMillis(5100)))),
+      (heardAt = 5100.0, now = 5800.0, sign = None),
+      (heardAt = 5100.0, now = 5801.0, sign = Some(Sign.Silent(Span.ofMillis(701))))
+    )
+    val _ = looks.foldLeft(SignsOfLife()): (life, look) =>
+      val (next, sign) = life.look(at(look.heardAt), at(look.now), within)
+      assertEquals(sign, look.sign, s"at ${look.now} ms")
+      next
+
+  test("a simulator that answers within a flight's period is never silent, however long that is"):
+    assert(Vigil.within(Span.ofMillis(100), FlightRigs.askTimeout) < Span.ofMillis(850))
+    for seconds <- Seq(0.1, 1.0, 10.0) do
+      val period = Span.ofSeconds(seconds)
+      assert(Vigil.within(period, FlightRigs.askTimeout) > period + FlightRigs.askTimeout)

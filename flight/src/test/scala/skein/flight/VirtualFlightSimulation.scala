@@ -1,0 +1,58 @@
+package skein.flight
+
+import java.util.concurrent.Executors
+import skein.loop.{LoopKind, Outcome}
+import skein.record.Digest
+import skein.settings.{FlightPlan, FlySettings}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Whole flights in virtual time repeat exactly. */
+class VirtualFlightSimulation extends munit.FunSuite:
+
+  private val settings = FlySettings(
+    List(LoopKind.Sequential, LoopKind.Stream),
+    List(LatencyProfile.vpn),
+    duration = Span.ofSeconds(3),
+    period = Span.ofMillis(100),
+    seed = 7,
+    pairs = 1,
+    asPublished = false
+  )
+
+  private def digest(plan: FlightPlan): Digest =
+    val flown = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
+    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assert(flown.recorder.records.size > 50)
+    flown.recorder.digest
+
+  test("the same flight leaves the same recording, again and beside another flight in another thread"):
+    val plans   = settings.plans
+    val alone   = plans.map(digest)
+    val threads = Executors.newFixedThreadPool(2)
+    val beside  =
+      try plans.map(plan => threads.submit(() => digest(plan))).map(_.get())
+      finally threads.shutdown()
+    assertEquals(beside, alone)
+    assertEquals(digest(plans.last), alone.last)
+
+  test("another seed leaves another recording"):
+    val plan = settings.plans.last
+    assertNotEquals(digest(plan.copy(seed = plan.seed + 1)), digest(plan))
+
+  test("a flight that ends in whatever error is told with its seed, and the others are flown"):
+    val plan  = settings.plans.head
+    val plans = Vector.tabulate(6)(number => plan.copy(seed = number.toLong))
+    val flown = VirtualFlights.eachInParallel(plans): plan =>
+      plan.seed match
+        case 1 => Left("no link")
+        case 3 => throw StackOverflowError("too deep")
+        case 4 => throw InterruptedException("cut")
+        case _ => Right(plan.seed)
+    val (missing, landed) = flown.partitionMap(identity)
+    assertEquals(landed, Vector(0L, 2L, 5L))
+    assertEquals(missing.map(_.plan.seed), Vector(1L, 3L, 4L))
+    val message = NotFlown.message(missing, plans.size)
+    assert(message.startsWith("3 of 6 flights could not be flown"), message)
+    for told <- Seq("seed 1: no link", "seed 3: java.lang.StackOverflowError: too deep", "seed 4: ") do
+      assert(message.contains(told), message)

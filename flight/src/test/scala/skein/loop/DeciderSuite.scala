@@ -1,0 +1,74 @@
+package skein.loop
+
+import skein.policy.Scenario
+import skein.record.Reading
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.units.*
+
+class DeciderSuite extends munit.FunSuite:
+
+  private val scenario = Scenario.duel()
+  private val evader   = Decider(scenario, 0)
+  private val pursuer  = Decider(scenario, 1)
+
+  private def millis(n: Double) = Instant.Epoch + Span.ofMillis(n)
+
+  private def reading(
+      vehicle: Int,
+      x: Double,
+      y: Double,
+      validMs: Double,
+      sentMs: Double,
+      receivedMs: Double
+  ) =
+    val state = Kinematics(Vector3(x, y, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+    Reading(
+      0,
+      scenario.agents(vehicle).name,
+      Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs))
+    )
+
+  private val picture = Picture
+    .empty(2)
+    .withReading(0, reading(0, 21, 4, 1010, 100, 120))
+    .withReading(1, reading(1, 1, 2, 1040, 130, 160))
+
+  test("the pursuer integrates its turn over the time since its last decision"):
+    val (first, _)  = pursuer.decide(pursuer.start, picture, millis(200))
+    val (_, second) = pursuer.decide(first, picture, millis(350))
+    assertEquals(first.headingRad, 0.0)
+    assertEqualsDouble(second.heading.value, 0.15, 1e-12)
+    assertEquals(second.elapsed, Span.ofMillis(150))
+    assertEquals(second.sequence, 1L)
+
+  test("both deciders see the evader in the pursuer's frame"):
+    val heading       = math.Pi / 2
+    val (_, ofEvader) =
+      evader.decide(evader.start, picture.withMove(Move(1, 0, heading, millis(150))), millis(200))
+    assertEqualsDouble(ofEvader.relativeX.value, 2, 1e-12)
+    assertEqualsDouble(ofEvader.relativeY.value, -20, 1e-12)
+    val (_, ofPursuer) = pursuer.decide(pursuer.start.copy(headingRad = heading), picture, millis(200))
+    assertEqualsDouble(ofPursuer.relativeX.value, 2, 1e-12)
+    assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
+
+  test("the four observations count from arrival and from the moves sent"):
+    val moved         = picture.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
+    val (_, decision) = evader.decide(evader.start, moved, millis(200))
+    assertEquals(decision.observations.ownAge, Span.ofMillis(80))
+    assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
+    assertEquals(decision.observations.sinceOwnMove, Some(Span.ofMillis(50)))
+    assertEquals(decision.observations.sinceOpponentMove, Some(Span.ofMillis(30)))
+
+  test("the true age counts from the moment of sampling, within the stated uncertainty"):
+    val (_, decision) = evader.decide(evader.start, picture, millis(200))
+    val age           = decision.trueAge.get
+    // The offset lies in [-910, -890] by the first reading and in [-910, -880] by the second.
+    val driftMs = 40 * ClockAlignment.MaxDrift
+    assertEqualsDouble(age.clockOffset.toMillis, -900, driftMs)
+    assertEqualsDouble(age.uncertainty.toMillis, 10, driftMs)
+    assertEqualsDouble(age.own.toMillis, 90, driftMs)
+    assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
+
+  test("no decision is made before every vehicle was seen"):
+    assert(!Picture.empty(2).withReading(0, reading(0, 0, 0, 0, 0, 0)).isComplete)
+    assert(picture.isComplete)

@@ -1,0 +1,103 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.{ExecutionContext, Future}
+import skein.policy.{Action, Policy, Role, Scenario}
+import skein.port.{VehicleError, VehiclePort}
+import skein.record.{MemoryRecorder, Recording, Samples}
+import skein.signal.{Kinematics, LatencyProfile, Stamped}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** What becomes of the vehicles when a stage of the loop fails, here by a policy that throws. */
+class FailedFlightSuite extends munit.FunSuite:
+  private val lost = Left(VehicleError.TimedOut("hover: no answer within 500 ms"))
+
+  /** Counts what is outstanding; its first hovers are lost, and moves end by themselves, too. */
+  private final class Counted(craft: VehiclePort, lostHovers: Int)(using system: ActorSystem)
+      extends VehiclePort:
+    import system.dispatcher
+    private var outstanding, hovers = 0
+    var mostOutstanding             = 0
+    var hovering                    = false
+
+    def isAnswered: Boolean = outstanding == 0
+
+    private def counted[A](call: => Future[A]): Future[A] =
+      outstanding += 1
+      mostOutstanding = mostOutstanding.max(outstanding)
+      call.andThen(_ => outstanding -= 1)
+
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = craft.read()
+
+    def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+      hovering = false
+      val flown = after(lasts.toDuration, system.scheduler)(Future.successful(Right(true)))
+      counted(Future.firstCompletedOf(Seq(craft.act(action, lasts), flown)))
+
+    def hover(): Future[Either[VehicleError, Boolean]] =
+      hovers += 1
+      if hovers <= lostHovers then Future.successful(lost)
+      else
+        hovering = true
+        counted(craft.hover())
+
+  private final case class Landed(outcome: Outcome, crafts: Vector[Counted], recording: Recording)
+
+  /** Both vehicles decide some 20 times, then the pursuer's policy throws. */
+  private def fly(
+      kind: LoopKind,
+      error: => Throwable,
+      lostHovers: Int = 0,
+      link: LatencyProfile = LatencyProfile.vpn
+  ): Landed = VirtualTime
+    .run(seed = 1): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val duel               = Scenario.duel()
+      var decisions          = 0
+      val failing: Policy    = (_, _, _, _, own, _, _) =>
+        decisions += 1
+        if decisions > 20 then throw error else own
+      val scenario = duel.copy(agents = duel.agents.map: agent =>
+        if agent.role == Role.Pursuer then agent.copy(policy = failing) else agent)
+      val world    = FarQuadrotors(scenario, link, 1, clock)
+      val crafts   = world.crafts.map(Counted(_, lostHovers))
+      val recorder = MemoryRecorder(Samples.heading)
+      val team     = Team(scenario, crafts, clock, recorder, LoopSettings())
+      Flight
+        .start(kind, team, world, Span.ofSeconds(30), clock, recorder)
+        .outcome
+        .map(Landed(_, crafts, recorder.recording))
+    .value
+
+  for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
+    test(
+      s"${kind.label}: when a policy throws, vehicles are told to hover until they say so, and every call ends"
+    ):
+      val landed = fly(kind, IllegalStateException("no idea"), lostHovers = 3)
+      assertEquals(landed.outcome, Outcome.Failed("no idea"))
+      for craft <- landed.crafts do
+        assert(craft.hovering, "a vehicle flies on")
+        assert(craft.isAnswered, "a call was outstanding at the end")
+        assert(craft.mostOutstanding <= 2, s"${craft.mostOutstanding} commands were outstanding at once")
+
+  test("an exception without a message is named by its class"):
+    assertEquals(
+      fly(LoopKind.Stream, ArithmeticException()).outcome,
+      Outcome.Failed("java.lang.ArithmeticException")
+    )
+
+  test("vehicles that never say that they hover are given up and noted"):
+    val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), lostHovers = 999)
+    val noted  = landed.recording.events.filter(_.detail.startsWith("not known to hover"))
+    assertEquals(noted.flatMap(_.vehicle).toSet, Set("Pursuer", "Evader"))
+
+  test("where two moves are outstanding when a flight fails, hovering waits until one of them has ended"):
+    val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), link = VirtualDuel.constant(400))
+    assertEquals(
+      landed.crafts.map(craft => (craft.hovering, craft.mostOutstanding)),
+      Vector.fill(2)((true, 2))
+    )

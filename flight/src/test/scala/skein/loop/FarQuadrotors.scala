@@ -1,0 +1,112 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.{Future, Promise}
+import skein.policy.{Action, Scenario}
+import skein.port.{SteppedTime, VehicleError, VehiclePort}
+import skein.signal.*
+import skein.units.*
+import skein.vehicle.{Quadrotor, QuadrotorState, Setpoint}
+
+/** Quadrotors in AirSim's physics behind a link, without wire or server: each direction of each vehicle delays by half
+  * of a sampled round trip and keeps the order. Their clock is not the controller's. A move answers when it is
+  * replaced; none ends by itself.
+  */
+final class FarQuadrotors(scenario: Scenario, link: LatencyProfile, seed: Long, clock: Clock)(using
+    system: ActorSystem
+) extends SteppedTime:
+  import system.dispatcher
+
+  private val quadrotor = Quadrotor.AirSim
+  private val step      = Span.ofSeconds(quadrotor.stepS)
+  private val start     = clock.now()
+  private val states    = scenario.agents.map(agent => quadrotor.hovering(agent.startPositionNed))
+  private val setpoints = scenario.agents.map(agent => Setpoint.hold(agent.startPositionNed)).toArray
+  private val seeds     = SplitMix64(seed)
+  private val linkSeed  = seeds.nextLong()
+  private var steps     = 0L
+  private var running   = true
+  private var ranFrom   = (start, 0L)
+
+  /** After every step of physics: the simulator's time and the states. */
+  var watch: (Span, Vector[QuadrotorState]) => Unit = (_, _) => ()
+
+  val crafts: Vector[VehiclePort] = scenario.agents.indices.map(FarQuadrotor(_)).toVector
+
+  def pause(): Future[Either[VehicleError, Unit]] =
+    catchUp()
+    running = false
+    done
+
+  def resume(): Future[Either[VehicleError, Unit]] =
+    running = true
+    ranFrom = (clock.now(), steps)
+    done
+
+  /** Not all lengths are whole steps: the remainder is made up for in the next one. */
+  def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
+    heldFor = heldFor + span
+    while step * (steps + 1) <= heldFor do stepOnce()
+    done
+
+  private var heldFor = Span.Zero
+
+  private def done = Future.successful(Right(()))
+
+  private def validAt: Instant =
+    Instant.Epoch + Span.ofSeconds(1000) + (if running then step * steps else heldFor)
+
+  private def catchUp(): Unit =
+    if running then
+      val due = ranFrom._2 + clock.now().since(ranFrom._1).toNanos / step.toNanos
+      while steps < due do stepOnce()
+
+  private def stepOnce(): Unit =
+    steps += 1
+    for (state, setpoint) <- states.zip(setpoints) do quadrotor.step(state, setpoint)
+    watch(step * steps, states)
+
+  private final class Line:
+    private val sampler       = LatencySampler(link, linkSeed, seeds.nextLong())
+    private var arrivesAt     = start
+    def cross(): Future[Unit] =
+      val now = clock.now()
+      arrivesAt = arrivesAt.max(now + sampler.oneWay(now.since(start)))
+      if arrivesAt <= now then Future.unit
+      else after(arrivesAt.since(now).toDuration, system.scheduler)(Future.unit)
+
+  private final class FarQuadrotor(vehicle: Int) extends VehiclePort:
+    private val there                            = Line()
+    private val back                             = Line()
+    private var flying: Option[Promise[Boolean]] = None
+
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
+      val sentAt = clock.now()
+      for
+        _ <- there.cross()
+        sampled = { catchUp(); (states(vehicle).kinematics, validAt) }
+        _ <- back.cross()
+      yield Right(Stamped(sampled._1, sampled._2, sentAt, clock.now()))
+
+    def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+      val ended = Promise[Boolean]()
+      for
+        _ <- there.cross()
+        _ = replaceBy(Acting.setpoint(action), Some(ended))
+        finished <- ended.future
+        _        <- back.cross()
+      yield Right(finished)
+
+    def hover(): Future[Either[VehicleError, Boolean]] =
+      for
+        _ <- there.cross()
+        _ = replaceBy(Setpoint.hold(states(vehicle).positionNed), None)
+        _ <- back.cross()
+      yield Right(true)
+
+    private def replaceBy(setpoint: Setpoint, next: Option[Promise[Boolean]]): Unit =
+      catchUp()
+      setpoints(vehicle) = setpoint
+      flying.foreach(_.success(false))
+      flying = next

@@ -1,0 +1,72 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import scala.concurrent.{ExecutionContext, Future}
+import skein.policy.{Action, Scenario}
+import skein.port.{VehicleError, VehiclePort}
+import skein.record.{EventKind, MemoryRecorder, Reading, Samples}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** No overtaking: what a late answer tells never takes the place of something newer. */
+class PictureSuite extends munit.FunSuite:
+
+  private object Silent extends VehiclePort:
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]]               = Future.never
+    def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+      Future.never
+    def hover(): Future[Either[VehicleError, Boolean]] = Future.never
+
+  private def millis(n: Double) = Instant.Epoch + Span.ofMillis(n)
+
+  private def reading(vehicle: Int, sequence: Long, validMs: Double, sentMs: Double, receivedMs: Double) =
+    val state =
+      Kinematics(Vector3(sequence.toDouble, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+    val name = Scenario.duel().agents(vehicle).name
+    Reading(sequence, name, Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs)))
+
+  private val first = reading(0, 0, 10, 0, 30)
+  private val later = reading(0, 1, 110, 100, 130)
+  // Asked for between the two, sampled before the later, come after it.
+  private val late  = reading(0, 2, 90, 80, 150)
+  private val other = reading(1, 0, 10, 0, 20)
+
+  /** What is decided upon, and which readings are noted as stale. */
+  private def seen(percepts: Percept*): (Vector[Sight], Vector[String]) = VirtualTime
+    .run(seed = 1): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val recorder           = MemoryRecorder(Samples.heading)
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val team               = Team(Scenario.duel(), Vector(Silent, Silent), clock, recorder, LoopSettings())
+      Source(percepts).via(team.picture).runWith(Sink.seq).map: sights =>
+        val stale = recorder.recording.events.filter(_.kind == EventKind.Dropped).map(_.detail)
+        (sights.toVector, stale)
+    .value
+
+  test("a reading is news where it tells of a later moment, or was asked for when the other had come"):
+    val picture = Picture.empty(2).withReading(0, later)
+    assert(Picture.empty(2).isNews(0, late))
+    assert(!picture.isNews(0, late))
+    assert(!picture.isNews(0, later))
+    assert(picture.isNews(0, reading(0, 3, 111, 90, 160)))
+    assert(picture.isNews(0, reading(0, 3, 50, 131, 160)), "a simulator that was started again")
+
+  test("a late reading is dropped and noted, and decided is upon the newer one"):
+    val (sights, stale) = seen(
+      Percept.Read(0, first),
+      Percept.Read(1, other),
+      Percept.Read(0, later),
+      Percept.Read(0, late),
+      Percept.Due(Set(0, 1))
+    )
+    assertEquals(sights.map(_.picture.readings), Vector(Vector(Some(later), Some(other))))
+    assertEquals(sights.map(_.deciders), Vector(Set(0, 1)))
+    assertEquals(stale, Vector("reading 2 is stale"))
+
+  test("nobody decides before everybody was seen"):
+    assertEquals(seen(Percept.Read(0, first), Percept.Due(Set(0, 1)))._1, Vector.empty)
+    assertEquals(seen(Percept.Seen(Map(0 -> first), Set(0)))._1, Vector.empty)
+    assertEquals(seen(Percept.Seen(Map(0 -> first, 1 -> other), Set(1)))._1.map(_.deciders), Vector(Set(1)))

@@ -1,0 +1,82 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.ExecutionContext
+import skein.policy.*
+import skein.record.{MemoryRecorder, Recording, Samples}
+import skein.signal.LatencyProfile
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Policies in three dimensions, with memories and actions of their own, through whole loops in virtual time. */
+class PolicyInSpaceSimulation extends munit.FunSuite:
+
+  /** Climbs to an altitude, remembers that it was there, and sinks to another. */
+  private final case class UpAndDown(topM: Double, bottomM: Double) extends AgentPolicy:
+    type Memory = Boolean
+    def start: Boolean                                                  = false
+    def choose(seen: Observation, wasAtTop: Boolean): (Action, Boolean) =
+      val altitudeM = -seen.own.kinematics.positionNed.z
+      val atTop     = wasAtTop || altitudeM >= topM
+      val goalM     = if atTop then bottomM else topM + 1
+      if atTop && (altitudeM - bottomM).abs < 0.3 then (Action.Hover, atTop)
+      else (Action.Velocity(Vector3(0, 0, if altitudeM < goalM then -2 else 2)), atTop)
+
+  /** Stays where it is and looks at the other. */
+  private object LookAtTheOther extends AgentPolicy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      val to = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
+      (Action.Turn(Yaw.Towards(Radians(StrictMath.atan2(to.y, to.x)))), ())
+
+  private def agent(name: String, north: Double, east: Double, policy: AgentPolicy) =
+    Agent(name, Role.Traveller, MetresPerSecond(2), Vector3(north, east, -20), Radians(0), policy)
+
+  private val both = Scenario(Vector(
+    agent("Evader", 0, 0, UpAndDown(topM = 26, bottomM = 15)),
+    agent("Pursuer", 10, 10, LookAtTheOther)
+  ))
+
+  private def fly(kind: LoopKind, scenario: Scenario = both): Recording = VirtualTime
+    .run(seed = 3): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val world              = FarQuadrotors(scenario, LatencyProfile.vpn, 3, clock)
+      val heading            = Samples.heading.copy(flight = Samples.heading.flight.copy(loop = kind.label))
+      val recorder           = MemoryRecorder(heading)
+      val team               = Team(scenario, world.crafts, clock, recorder, LoopSettings())
+      Flight.start(kind, team, world, Span.ofSeconds(30), clock, recorder).outcome.map(_ =>
+        recorder.recording
+      )
+    .value
+
+  private def downs(recording: Recording, vehicle: String) =
+    recording.readings.filter(_.vehicle == vehicle).map(reading => -reading.state.value.positionNed.z)
+
+  for kind <-
+      Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive)
+  do
+    test(s"${kind.label}: a policy climbs, remembers, sinks and hovers; another turns to look at it"):
+      val recording = fly(kind)
+      val altitudes = downs(recording, "Evader")
+      assert(altitudes.max >= 26 && altitudes.max < 29, s"the top was ${altitudes.max} m")
+      assertEqualsDouble(altitudes.last, 15, 1)
+      val looking = recording.readings.filter(_.vehicle == "Pursuer").last.state.value
+      val q       = looking.orientation
+      val yaw     = math.toDegrees(math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)))
+      assertEqualsDouble(yaw, -135, 3)
+      assert(recording.decisions.exists(_.action.contains(Action.Hover)))
+
+  for kind <- Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream) do
+    test(s"${kind.label}: what they decided is decided again from the recording, to the last bit"):
+      val recording = fly(kind)
+      assert(recording.decisions.size > 150, s"${recording.decisions.size} decisions")
+      assertEquals(Replay(both, recording).firstDifference, None)
+
+  test("a vehicle may fly alone"):
+    val alone     = Scenario(Vector(both.agents.head))
+    val altitudes = downs(fly(LoopKind.Stream, alone), "Evader")
+    assert(altitudes.max >= 26)
+    assertEqualsDouble(altitudes.last, 15, 1)

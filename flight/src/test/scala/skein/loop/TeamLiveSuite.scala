@@ -1,0 +1,52 @@
+package skein.loop
+
+import java.util.concurrent.{CountDownLatch, Executors}
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, ExecutionContext, Future}
+import skein.port.{VehicleError, VehiclePort}
+import skein.units.Clock
+import skein.policy.{Action, Scenario}
+import skein.record.{MemoryRecorder, Samples}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** Real threads: virtual time has only one. */
+class TeamLiveSuite extends munit.FunSuite:
+
+  /** Answers once it is told to, and until then never. */
+  private final class Slow extends VehiclePort:
+    @volatile var answers = false
+    private val here      = Kinematics(Vector3.Zero, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
+      if answers then Future.successful(Right(Stamped(here, Instant.Epoch, Instant.Epoch, Instant.Epoch)))
+      else Future.never
+    def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+      Future.successful(Right(true))
+    def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
+
+  test("of the readings of one vehicle that several threads ask for at once each has a number of its own"):
+    // So many that on a busy machine, too, threads ask at the same instant.
+    val (threads, each)    = (4, 3_000_000)
+    val pool               = Executors.newFixedThreadPool(threads)
+    given ExecutionContext = ExecutionContext.fromExecutor(pool)
+    val craft              = Slow()
+    val team               = Team(
+      Scenario.duel(),
+      Vector(craft, craft),
+      Clock.system,
+      MemoryRecorder(Samples.heading),
+      LoopSettings()
+    )
+    val together = CountDownLatch(threads)
+    try
+      val asking = Future.traverse(Vector.range(0, threads)): _ =>
+        Future:
+          together.countDown()
+          together.await()
+          for _ <- 1 to each do team.read(vehicle = 1): Unit
+      Await.result(asking, 60.seconds): Unit
+      craft.answers = true
+      val next = Await.result(team.read(vehicle = 1), 60.seconds)
+      assertEquals(next.map(_.sequence), Right(threads * each.toLong))
+    finally pool.shutdown()

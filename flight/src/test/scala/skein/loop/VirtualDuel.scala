@@ -1,0 +1,66 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.ExecutionContext
+import skein.loop.planning.CountedPlanWorkers
+import skein.policy.Scenario
+import skein.record.{MemoryRecorder, Prediction, Recording, Samples}
+import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** The paper's duel in virtual time, on [[FarQuadrotors]].
+  *
+  * @param distanceM
+  *   between the vehicles where they truly are, horizontally: mean over the last 10 s of physics
+  */
+final case class VirtualDuel(distanceM: Double, outcome: Outcome, recording: Recording):
+
+  /** Ascending, m.
+    *
+    * @param own
+    *   of the deciding vehicle itself, or of its opponent
+    */
+  def predictionErrors(own: Boolean): Vector[Double] =
+    recording.predictions
+      .filter((prediction: Prediction) => (prediction.decider == prediction.vehicle) == own)
+      .map(_.error.value)
+      .sorted
+
+object VirtualDuel:
+  private val duration = Span.ofSeconds(60)
+  private val measured = Span.ofSeconds(10)
+
+  def fly(
+      kind: LoopKind,
+      link: LatencyProfile,
+      seed: Long,
+      settings: LoopSettings = LoopSettings(),
+      slices: Int = LoopSettings().planning.slices
+  ): VirtualDuel =
+    var sum   = 0.0
+    var steps = 0
+    val run   = VirtualTime.run(seed): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val scenario           = Scenario.duel()
+      val world              = FarQuadrotors(scenario, link, seed, clock)
+      world.watch = (at, states) =>
+        if at > duration - measured && at <= duration then
+          sum += states(0).positionNed.horizontalDistance(states(1).positionNed)
+          steps += 1
+      val recorder = MemoryRecorder(Samples.heading)
+      val workers  = CountedPlanWorkers(settings.planning.searches, slices)
+      val team     = Team(scenario, world.crafts, clock, recorder, settings, workers)
+      Flight.start(kind, team, world, duration, clock, recorder).outcome.map((_, recorder.recording))
+    VirtualDuel(sum / steps, run.value._1, run.value._2)
+
+  lazy val truth: VirtualDuel = fly(LoopKind.Paused, LatencyProfile.none, 1)
+
+  /** A link that always takes half of `roundTripMs` each way. */
+  def constant(roundTripMs: Double): LatencyProfile =
+    LatencyProfile.Steady(
+      s"constant:${roundTripMs}ms",
+      LatencyDistribution.Constant(Span.ofMillis(roundTripMs))
+    )

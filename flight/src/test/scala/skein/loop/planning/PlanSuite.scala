@@ -1,0 +1,68 @@
+package skein.loop.planning
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.duration.*
+import skein.planning.{Plan as _, *}
+import skein.units.*
+import skein.vehicle.ReducedModel
+import skein.vtime.VirtualTime
+
+class PlanSuite extends munit.FunSuite:
+  private val settings  = PlannerSettings(blocksPerSlice = 1)
+  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+  private val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
+
+  private def situation(headingRad: Double): Situation =
+    Situation(Motion(0, 0, 5, 0), headingRad, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
+
+  /** Each answer's time in ms and first turn, with the heading as memory. */
+  private def planned(workers: PlanWorkers, ticks: Int): Seq[(Long, Plan.Answer)] =
+    VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      val clock         = Clock.ofNanos(VirtualTime.clock(system))
+      val start         = clock.now()
+      Source
+        .tick(0.millis, 100.millis, ())
+        .zipWithIndex
+        .map(_._2)
+        .take(ticks)
+        .via(Plan.within(Span.ofMillis(60), workers, settings, 0.0)(
+          (headingRad, tick: Long) => Vector(Part(objective, situation(headingRad), tick)),
+          (headingRad, _, parts, answer: Plan.Answer) =>
+            val action = Action.of(answer.best.plans(0), parts(0).situation, objective, settings.dtS)
+            (headingRad + action.turned, answer)
+        ))
+        .map(answer => (clock.now().since(start).toNanos / 1_000_000, answer))
+        .runWith(Sink.seq)
+    .value
+
+  test("a plan leaves at its deadline, with the slices that were set"):
+    val answers = planned(CountedPlanWorkers(searches = 2, slices = 3), ticks = 4)
+    assertEquals(answers.map(_._1), Seq(60L, 160L, 260L, 360L))
+    assertEquals(answers.map(_._2.slices).distinct, Seq(Vector(3, 3)))
+    assert(answers.forall(!_._2.isMissed(0)))
+
+  test("equal slices give equal plans, to the last bit"):
+    def turns = planned(CountedPlanWorkers(2, 3), ticks = 3).map(_._2.best.plans(0).manoeuvre.turnRates.toSeq)
+    assertEquals(turns, turns)
+
+  test("a plan goes on from what is left of the one before: without a slice it is flown to its end"):
+    val workers = new PlanWorkers:
+      private val first                                            = CountedPlanWorkers(1, 5)
+      private val none                                             = CountedPlanWorkers(1, 0)
+      private var begun                                            = 0
+      def begin(problem: PlanProblem, warm: JointPlan): PlanSearch =
+        begun += 1
+        if begun == 1 then first.begin(problem, warm) else none.begin(problem, warm)
+      def close(): Unit = ()
+    val Seq(best, next, last) = planned(workers, ticks = 3).map(_._2): @unchecked
+    assert(!best.isMissed(0) && next.isMissed(0) && last.isMissed(0))
+    assertEquals(
+      next.best.plans(0).manoeuvre.turnRates.toSeq,
+      best.best.plans(0).manoeuvre.shifted(0.1, settings.dtS).turnRates.toSeq
+    )
+    assertEquals(
+      last.best.plans(0).manoeuvre.turnRates.toSeq,
+      next.best.plans(0).manoeuvre.shifted(0.1, settings.dtS).turnRates.toSeq
+    )

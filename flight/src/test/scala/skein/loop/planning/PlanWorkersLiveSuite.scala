@@ -1,0 +1,64 @@
+package skein.loop.planning
+
+import skein.planning.*
+import skein.vehicle.ReducedModel
+
+/** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
+class PlanWorkersLiveSuite extends munit.FunSuite:
+  private val settings  = PlannerSettings(blocksPerSlice = 1)
+  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+
+  private def problem(stream: Long): PlanProblem =
+    val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
+    val situation = Situation(Motion(0, 0, 5, 0), 0, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
+    // Two vehicles, of which one finds the other in its way.
+    val meeting = Motion(8, 8, -2, -2)
+    PlanProblem(
+      settings,
+      Vector(
+        Part(objective, situation, stream),
+        Part(
+          objective.copy(separation = Separation(2)),
+          situation.copy(own = meeting, headingRad = math.Pi),
+          stream + 100
+        )
+      )
+    )
+
+  private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
+
+  private val workers = FunFixture[ThreadedPlanWorkers](_ => ThreadedPlanWorkers(2), _.close())
+
+  /** Polls until all searches have come so far. */
+  private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
+    val search   = workers.begin(problem, warm(problem))
+    val deadline = System.nanoTime() + 60_000_000_000L
+    while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.onSpinWait()
+    search.finish()
+
+  workers.test("what threads find in so many slices is found again by counting them"): workers =>
+    for stream <- 1 to 3 do
+      val found   = finished(workers, problem(stream))
+      val planner = JointPlanner()
+      assert(found.forall(_.slices > 3), found.map(_.slices).toString)
+      for (plan, search) <- found.zipWithIndex do
+        val again = planner.searched(problem(stream), warm(problem(stream)), search, plan.slices)
+        assertEquals(
+          again.plans.map(_.manoeuvre.turnRates.toSeq),
+          plan.plans.map(_.manoeuvre.turnRates.toSeq)
+        )
+        assertEquals(again.plans.map(_.cost), plan.plans.map(_.cost))
+
+  workers.test("several problems take turns"): workers =>
+    val searches = Vector.tabulate(5)(stream => workers.begin(problem(stream), warm(problem(stream))))
+    val deadline = System.nanoTime() + 60_000_000_000L
+    while System.nanoTime() < deadline && !searches.forall(_.found.forall(_.slices > 3)) do
+      Thread.onSpinWait()
+    assert(searches.flatMap(_.finish()).forall(_.slices > 3))
+
+  workers.test("a search that was ended finds nothing more"): workers =>
+    val search = workers.begin(problem(1), warm(problem(1)))
+    val found  = search.finish()
+    val later  = finished(workers, problem(2))
+    assert(later.forall(_.slices > 3))
+    assertEquals(search.finish().map(_.slices), found.map(_.slices))

@@ -1,0 +1,35 @@
+package skein.measure
+
+import scala.util.Random
+
+class KolmogorovSmirnovSuite extends munit.FunSuite:
+  private def distance(one: Double*)(other: Double*): Double =
+    KolmogorovSmirnov.distance(Distribution.of(one).get, Distribution.of(other).get)
+
+  test("equal samples are 0 apart, however often each value occurs"):
+    assertEquals(distance(1, 2, 3)(3, 1, 2), 0.0)
+    assertEquals(distance(0, 0, 0)(0), 0.0)
+    assertEquals(distance(1, 2)(1, 1, 2, 2), 0.0)
+
+  test("samples that lie wholly apart are 1 apart"):
+    assertEquals(distance(1, 2, 3)(4, 5), 1.0)
+    assertEquals(distance(7)(6.999), 1.0)
+
+  test("between them it is the largest gap of the cumulative shares"):
+    // By hand: after 2, half of the one and none of the other.
+    assertEqualsDouble(distance(1, 2, 3, 4)(3, 4, 5, 6), 0.5, 1e-12)
+    // After 1: 3/4 against 1/4; ties are counted on both sides before the gap is taken.
+    assertEqualsDouble(distance(1, 1, 1, 2)(1, 2, 2, 2), 0.5, 1e-12)
+    // After 2: 2/3 against 0; after 4: 1 against 1/2.
+    assertEqualsDouble(distance(1, 2, 4)(3, 4, 5, 6), 2 / 3.0, 1e-12)
+
+  test("it is symmetric, does not depend on the scale, and is what a search over all values gives"):
+    val random = Random(11)
+    for _ <- 1 to 50 do
+      val one   = Vector.fill(1 + random.nextInt(30))(random.nextInt(20).toDouble)
+      val other = Vector.fill(1 + random.nextInt(30))(random.nextInt(20).toDouble + 3)
+      def share(samples: Vector[Double], value: Double) = samples.count(_ <= value) / samples.size.toDouble
+      val searched = (one ++ other).map(value => math.abs(share(one, value) - share(other, value))).max
+      assertEqualsDouble(distance(one*)(other*), searched, 1e-12)
+      assertEqualsDouble(distance(other*)(one*), searched, 1e-12)
+      assertEqualsDouble(distance(one.map(_ * 7)*)(other.map(_ * 7)*), searched, 1e-12)

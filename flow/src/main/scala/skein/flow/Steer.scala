@@ -1,0 +1,171 @@
+package skein.flow
+
+import org.apache.pekko.stream.stage.*
+import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
+import scala.collection.immutable.Queue
+import scala.concurrent.Future
+import scala.util.Try
+import scala.util.control.NonFatal
+import skein.units.*
+
+/** What became of a command: every one is `Sent` and later `Ended`, once each. */
+enum Steered[+C, +R]:
+  /** The command left. */
+  case Sent(command: C, at: Instant)
+
+  /** The vehicle's answer, or the failure of the call. */
+  case Ended(command: C, at: Instant, result: Try[R])
+
+/** Commands one vehicle without ever overloading its simulator.
+  *
+  * AirSim's move calls answer when the move ends, and each holds one of the server's workers until then; a burst of
+  * moves freezes the server, and executes out of order. So at most two are outstanding, the one that flies and the one
+  * that replaces it. The next is *asked for* only when the oldest has answered and the rate cap allows it: upstream
+  * then decides with what it knows at that moment ([[Pace]] keeps it the newest), instead of a decision growing old
+  * here.
+  *
+  * A command whose answer is lost with its connection may fly on, and is not counted any more: with the next two it
+  * would be three at the simulator. So the vehicle is parked first, and again until it says so; then it is known what
+  * flies. What is on its way from upstream meanwhile is the first to be sent.
+  *
+  * '''Emits when''' a command is sent or has ended, and downstream demands.
+  * '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while an answer is
+  * lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for downstream.
+  * '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it failed, and every
+  * call has ended.
+  * '''Cancels when''' downstream cancels.
+  *
+  * @param minInterval
+  *   between two commands sent: the rate cap
+  * @param mostOutstanding
+  *   commands that may be unanswered. More than [[Steer.MostOutstanding]] let a link of a long round trip carry more
+  *   commands than one a round trip; only for links that never deliver several at once
+  * @param send
+  *   one command; the future ends when the move ends
+  * @param park
+  *   makes the vehicle hover, so that the outstanding moves are answered; sent at the end, as the last command, and
+  *   where an answer was lost
+  * @param isCertain
+  *   whether a result says that its command neither flies nor is on its way: the vehicle's own answer, or that it was
+  *   never sent. A future that fails never says so
+  * @param onUnsent
+  *   told of a command that waited for the vehicle to be parked when upstream completed
+  */
+final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Steer.MostOutstanding)(
+    send: C => Future[R],
+    park: () => Future[R],
+    isCertain: R => Boolean = (_: R) => true,
+    onUnsent: C => Unit = (_: C) => ()
+) extends GraphStage[FlowShape[C, Steered[C, R]]]:
+  import Steered.*
+
+  private val in  = Inlet[C]("Steer.in")
+  private val out = Outlet[Steered[C, R]]("Steer.out")
+
+  val shape: FlowShape[C, Steered[C, R]] = FlowShape(in, out)
+
+  def createLogic(attributes: Attributes): GraphStageLogic =
+    new TimerGraphStageLogic(shape) with InHandler with OutHandler:
+      private var outstanding                  = 0
+      private var nextAt                       = Instant.Epoch
+      private var parkAt                       = Instant.Epoch
+      private var held: Option[C]              = None
+      private var doubtful                     = false
+      private var parking                      = false
+      private var lastAttempts                 = 0
+      private var parked                       = false
+      private var events: Queue[Steered[C, R]] = Queue.empty
+
+      private val ended = getAsyncCallback[(C, Try[R])]: (command, result) =>
+        outstanding -= 1
+        if !result.toOption.exists(isCertain) then doubtful = true
+        if outstanding > 0 then
+          nextAt = nextAt.max(clock.now() + Steer.Handover)
+          parkAt = parkAt.max(clock.now() + Steer.Handover)
+        report(Ended(command, clock.now(), result))
+
+      private val parkEnded = getAsyncCallback[(Boolean, Try[R])]: (last, result) =>
+        outstanding -= 1
+        parking = false
+        val certain = result.toOption.exists(isCertain)
+        if certain then doubtful = false else parkAt = clock.now() + Steer.ParkAgain
+        if last then parked = certain || lastAttempts == Steer.LastAttempts
+        goOn()
+
+      override def preStart(): Unit = pull(in)
+
+      def onPush(): Unit =
+        held = Some(grab(in))
+        goOn()
+
+      def onPull(): Unit = goOn()
+
+      override def onUpstreamFinish(): Unit = goOn()
+
+      override protected def onTimer(key: Any): Unit = goOn()
+
+      private def report(event: Steered[C, R]): Unit =
+        events = events.enqueue(event)
+        goOn()
+
+      private def goOn(): Unit =
+        if isAvailable(out) then
+          for (event, rest) <- events.dequeueOption do
+            events = rest
+            push(out, event)
+        if parked then
+          held.foreach(onUnsent)
+          held = None
+          if outstanding == 0 && events.isEmpty then completeStage()
+        else if outstanding < mostOutstanding && !parking then
+          if doubtful || isClosed(in) && held.isEmpty then from(parkAt)(parkNow(last = isClosed(in)))
+          else if held.isDefined then held.foreach(sendNow)
+          else if !hasBeenPulled(in) && events.size < Steer.EventLimit then from(nextAt)(pull(in))
+
+      /** Acts now, or sees to it that it is tried again when it is time. */
+      private def from(time: Instant)(act: => Unit): Unit =
+        val now = clock.now()
+        if now >= time then act
+        else if !isTimerActive(Steer.Later) then scheduleOnce(Steer.Later, time.since(now).toDuration)
+
+      private def sendNow(command: C): Unit =
+        val now = clock.now()
+        held = None
+        nextAt = now + minInterval
+        outstanding += 1
+        attempt(send(command))(result => ended.invoke((command, result)))
+        report(Sent(command, now))
+
+      private def parkNow(last: Boolean): Unit =
+        parking = true
+        outstanding += 1
+        if last then lastAttempts += 1
+        attempt(park())(result => parkEnded.invoke((last, result)))
+
+      private def attempt(call: => Future[R])(onEnd: Try[R] => Unit): Unit =
+        val running =
+          try call
+          catch case NonFatal(error) => Future.failed(error)
+        running.onComplete(onEnd)(using materializer.executionContext)
+
+      setHandlers(in, out, this)
+
+object Steer:
+  /** The move that flies and the one that replaces it. */
+  val MostOutstanding = 2
+
+  /** Events that may wait for downstream before no more commands are taken. */
+  val EventLimit = 64
+
+  /** Time that a simulator has, after it answered a move, to let the next one begin. AirSim takes up to 0.3 ms, and a
+    * third move that comes within does not replace the second but waits for its end.
+    */
+  val Handover: Span = Span.ofMillis(0.5)
+
+  /** Pause before a vehicle that could not be parked is told again. */
+  val ParkAgain: Span = Span.ofMillis(100)
+
+  /** How often a vehicle is told to park at the end, at most. */
+  val LastAttempts = 10
+
+  private case object Later

@@ -1,0 +1,68 @@
+package skein.flow
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+import scala.concurrent.duration.*
+import skein.units.*
+import skein.vtime.VirtualTime
+
+class DecideSuite extends munit.FunSuite:
+  private val failure = RuntimeException("no plan")
+
+  /** Each decision with its time in ms, of a policy that answers observation n with 10 n and how
+    * many decisions came before, after its delay; a negative one makes it throw.
+    */
+  private def decided(otherwise: Otherwise[Int, Int, Int], delaysMs: Int*): Seq[(Long, Timely[Int])] =
+    VirtualTime.run(seed = 1): system =>
+      given ActorSystem                                  = system
+      val clock                                          = Clock.ofNanos(VirtualTime.clock(system))
+      val start                                          = clock.now()
+      def policy(count: Int, n: Int): Future[(Int, Int)] =
+        if delaysMs(n) < 0 then throw failure
+        else after(delaysMs(n).millis)(Future.successful((count + 1, 10 * n + count)))
+      Source
+        .tick(0.millis, 100.millis, ())
+        .zipWithIndex
+        .map(_._2.toInt)
+        .take(delaysMs.size)
+        .via(Decide.within(Span.ofMillis(40), otherwise, start = 0)(policy))
+        .map(timely => (clock.now().since(start).toNanos / 1_000_000, timely))
+        .runWith(Sink.seq)
+    .value
+
+  import Timely.*
+
+  test("a policy that answers in time decides"):
+    assertEquals(decided(Otherwise.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
+
+  test("a late policy is not waited for, nor asked again until it has answered; its late answer is not used"):
+    assertEquals(
+      decided(Otherwise.Hold(), 10, 250, 10, 10, 10),
+      Seq(
+        10L  -> Decided(0),
+        140L -> Missed(Miss.Late, None),
+        200L -> Missed(Miss.Busy, None),
+        300L -> Missed(Miss.Busy, None),
+        410L -> Decided(41)
+      )
+    )
+
+  test("the last decision is repeated; before the first there is none"):
+    assertEquals(
+      decided(Otherwise.Repeat(), 50, 10, 50, 10).map(_._2),
+      Seq(Missed(Miss.Late, None), Decided(10), Missed(Miss.Late, Some(10)), Decided(31))
+    )
+
+  test("the other policy decides on the observation that was missed, with the same memory"):
+    assertEquals(
+      decided(Otherwise.Ask((count, n) => (count + 1, -n)), 10, 150, 10, 10).map(_._2),
+      Seq(Decided(0), Missed(Miss.Late, Some(-1)), Missed(Miss.Busy, Some(-2)), Decided(33))
+    )
+
+  test("a policy that fails, or throws, has missed too, and the flow goes on"):
+    assertEquals(
+      decided(Otherwise.Repeat(), 10, -1, 10),
+      Seq(10L -> Decided(0), 100L -> Missed(Miss.Failed(failure), Some(0)), 210L -> Decided(21))
+    )

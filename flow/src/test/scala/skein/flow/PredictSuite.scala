@@ -1,0 +1,75 @@
+package skein.flow
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.duration.*
+import skein.forecast.*
+import skein.signal.*
+import skein.units.*
+import skein.vehicle.ConstantVelocity
+import skein.vtime.VirtualTime
+
+class PredictSuite extends munit.FunSuite:
+  private val skew   = Span.ofSeconds(-77)
+  private val oneWay = Span.ofMillis(30)
+
+  /** Of a vehicle on an accelerating course north, 2 m/s²; the other one rests. */
+  private def north(t: Span) =
+    Kinematics(
+      Vector3(t.toSeconds * t.toSeconds, 0, 0),
+      Vector3(2 * t.toSeconds, 0, 0),
+      Quaternion.Identity,
+      Vector3.Zero
+    )
+
+  /** Estimates made upon readings every 100 ms, and what became of them. */
+  private def predicted(): (Seq[Vector[Estimate]], Seq[Verified]) =
+    var verified = Vector.empty[Verified]
+    val run      = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      val clock         = Clock.ofNanos(VirtualTime.clock(system))
+      val start         = clock.now()
+      def seen(n: Long) =
+        val sampled = Span.ofMillis(100.0 * n - 30)
+        val stamps  = Stamped((), start + sampled + skew, start + sampled - oneWay, start + sampled + oneWay)
+        Vector(
+          Evidence.Seen(0, stamps.map(_ => north(sampled))),
+          Evidence.Seen(1, stamps.map(_ => north(Span.Zero)))
+        )
+      Source
+        .tick(100.millis, 100.millis, ())
+        .zipWithIndex
+        .take(10)
+        .map((_, n) => seen(n + 1))
+        .scan(Forecast(Vector(ConstantVelocity, ConstantVelocity)))((forecast, evidence) =>
+          evidence.foldLeft(forecast)(_.withEvidence(_))
+        )
+        .map(forecast => ((), forecast))
+        .via(Predict.whenActing(clock)(verified :+= _))
+        .map(_._2)
+        .runWith(Sink.seq)
+    (run.value, verified)
+
+  test("every vehicle is carried over both ways of the link, once all were seen"):
+    val (estimates, _) = predicted()
+    assertEquals(estimates.size, 10)
+    for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))
+
+  test("each prediction is held against the readings around its moment, and its error told"):
+    val (_, verified)     = predicted()
+    val (moving, resting) = verified.partition(_.vehicle == 0)
+    // Constant velocity is off by ½ a t² = ½ · 2 m/s² · (60 ms)².
+    for one <- moving do assertEqualsDouble(one.error.value, 0.0036, 1e-9)
+    for one <- resting do assertEquals(one.error.value, 0.0)
+    // The last one's moment was never read.
+    assertEquals((moving.size, resting.size), (9, 9))
+
+  test("of the predictions that wait to be held against readings the newest are kept, so many of each vehicle"):
+    val here     = north(Span.Zero)
+    val start    = Instant.Epoch
+    val estimate = Estimate(here, start, start)
+    val waiting  = (1 to 100).foldLeft(Unverified.none): (made, n) =>
+      made.withMade(start + Span.ofMillis(n.toDouble), Vector(estimate, estimate, estimate), of = _ != 1)
+    assertEquals(waiting.made.size, Unverified.Limit * 3)
+    assertEquals(waiting.made.map(_.vehicle).toSet, Set(0, 2))
+    assertEquals(waiting.made.last.at, start + Span.ofMillis(100))

@@ -1,0 +1,178 @@
+package skein.flow
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.duration.*
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.{Success, Try}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+class SteerSuite extends munit.FunSuite:
+  import Steered.*
+
+  /** A vehicle behind a link: a command arrives after `oneWay` and ends the one before, whose answer takes as long. */
+  private final class FarVehicle(oneWay: FiniteDuration)(using system: ActorSystem):
+    private given ExecutionContext              = system.dispatcher
+    private var flying: Option[Promise[String]] = None
+    private var outstanding                     = 0
+    var mostOutstanding                         = 0
+
+    def send(command: Int): Future[String] =
+      outstanding += 1
+      mostOutstanding = mostOutstanding.max(outstanding)
+      val ended = Promise[String]()
+      val _     = after(oneWay)(Future.successful(replaceWith(Some(ended))))
+      ended.future
+        .flatMap(result => after(oneWay)(Future.successful(s"$command $result")))
+        .andThen(_ => outstanding -= 1)
+
+    def hover(): Future[String] =
+      after(oneWay)(Future.successful(replaceWith(None))).flatMap(_ =>
+        after(oneWay)(Future.successful("hovering"))
+      )
+
+    private def replaceWith(next: Option[Promise[String]]): Unit =
+      flying.foreach(_.success("superseded"))
+      flying = next
+
+  /** What came of ten commands over a link: events in order, with their times in ms from the start; how many calls were
+    * outstanding at most; and which commands were replaced before they were sent.
+    */
+  private def steered(oneWay: FiniteDuration, every: FiniteDuration, minInterval: Span) =
+    var replaced = Vector.empty[Int]
+    val run      = VirtualTime.run(seed = 1): system =>
+      given ActorSystem      = system
+      given ExecutionContext = system.dispatcher
+      val clock              = Clock.ofNanos(VirtualTime.clock(system))
+      val start              = clock.now()
+      val vehicle            = FarVehicle(oneWay)
+      Source
+        .tick(0.millis, every, ())
+        .zipWithIndex
+        .map(_._2.toInt)
+        .take(10)
+        .via(Newest(replaced :+= _))
+        .via(Steer(minInterval, clock)(vehicle.send, () => vehicle.hover(), _ => true, _ => ()))
+        .map(event => (clock.now().since(start).toNanos / 1_000_000, event))
+        .runWith(Sink.seq)
+        .map((_, vehicle.mostOutstanding))
+    (run.value._1, run.value._2, replaced)
+
+  private def endsOnce(events: Seq[(Long, Steered[Int, String])], replaced: Seq[Int]): Unit =
+    val ended = events.collect { case (_, Ended(command, _, _)) => command }
+    assertEquals((ended ++ replaced).sorted, (0 until 10).toSeq)
+
+  test("over a fast link every command is sent at once and ends when the next arrives"):
+    val (events, most, replaced) = steered(oneWay = 18.millis, every = 100.millis, minInterval = Span.Zero)
+    assertEquals(
+      events.collect { case (at, Sent(command, _)) => (at, command) },
+      (0 until 10).map(n => (n * 100L, n))
+    )
+    assertEquals(
+      events.collect { case (at, Ended(command, _, Success(_))) => (at, command) }.take(2),
+      Seq(136L -> 0, 236L -> 1)
+    )
+    assertEquals(most, 2)
+    endsOnce(events, replaced)
+
+  test("over a slow link never more than two are outstanding, and the newest waiting command wins"):
+    val (events, most, replaced) = steered(oneWay = 190.millis, every = 100.millis, minInterval = Span.Zero)
+    assertEquals(most, 2)
+    assertEquals(
+      events.collect { case (at, Sent(command, _)) => (at, command) },
+      Seq(0L -> 0, 100L -> 1, 480L -> 4, 861L -> 8, 1241L -> 9)
+    )
+    assertEquals(replaced, Vector(2, 3, 5, 6, 7))
+    endsOnce(events, replaced)
+
+  test("the rate cap holds back a burst, and the newest of it is sent"):
+    val (events, _, replaced) = steered(oneWay = 1.milli, every = 10.millis, minInterval = Span.ofMillis(55))
+    assertEquals(
+      events.collect { case (at, Sent(command, _)) => (at, command) },
+      Seq(0L -> 0, 55L -> 5, 110L -> 9)
+    )
+    endsOnce(events, replaced)
+
+  test("at the end the vehicle is parked, so that the last move is answered too"):
+    val (events, _, _) = steered(oneWay = 18.millis, every = 100.millis, minInterval = Span.Zero)
+    val last           = events.collect { case (at, Ended(9, _, result)) => (at, result) }
+    assertEquals(last, Seq(972L -> Success("9 superseded")))
+
+  /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures` times. */
+  private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
+    afterLossUs(failures, every).map((us, what) => (us / 1000, what))
+
+  /** The same with times in µs. */
+  private def afterLossUs(failures: Int, every: FiniteDuration): Vector[(Long, String)] =
+    VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem                        = system
+        given ExecutionContext                   = system.dispatcher
+        val clock                                = Clock.ofNanos(VirtualTime.clock(system))
+        val start                                = clock.now()
+        var heard                                = Vector.empty[(Long, String)]
+        var flying: Option[Promise[Try[String]]] = None
+        var hovers                               = 0
+        def hear(what: String) = heard :+= (clock.now().since(start).toNanos / 1000, what)
+        def send(command: Int) =
+          hear(s"move $command")
+          flying.foreach(_.trySuccess(Success("superseded")))
+          val ended = Promise[Try[String]]()
+          flying = Some(ended)
+          if command == 0 then after(150.millis)(Future.successful("lost"))
+          else ended.future.map(_.get)
+        def hover() =
+          hovers += 1
+          hear("hover")
+          if hovers <= failures then Future.successful("lost")
+          else
+            flying.foreach(_.trySuccess(Success("superseded")))
+            flying = None
+            after(10.millis)(Future.successful("hovering"))
+        Source
+          .tick(0.millis, every, ())
+          .zipWithIndex
+          .map(_._2.toInt)
+          .takeWithin(700.millis)
+          .via(Steer(Span.Zero, clock)(send, () => hover(), _ != "lost", command => hear(s"unsent $command")))
+          .runWith(Sink.ignore)
+          .map(_ => heard)
+      .value
+
+  test("when an answer is lost the vehicle is parked before the next command"):
+    assertEquals(
+      afterLoss(failures = 0),
+      Vector(
+        0L   -> "move 0",
+        150L -> "hover",
+        200L -> "move 1",
+        400L -> "move 2",
+        600L -> "move 3",
+        700L -> "hover"
+      )
+    )
+
+  test("it is told again until it answers, and what came meanwhile is sent then"):
+    assertEquals(
+      afterLoss(failures = 2).take(6),
+      Vector(
+        0L   -> "move 0",
+        150L -> "hover",
+        250L -> "hover",
+        350L -> "hover",
+        360L -> "move 1",
+        400L -> "move 2"
+      )
+    )
+
+  test("at the end a vehicle that cannot be parked is told ten times, and then given up"):
+    val heard = afterLoss(failures = 99)
+    assertEquals(heard.filter(_._1 >= 700).map(_._2), Vector.fill(10)("hover") :+ "unsent 1")
+
+  test("while another move is outstanding, the vehicle has a moment to let it begin before it is parked"):
+    assertEquals(
+      afterLossUs(failures = 0, every = 100.millis).take(4),
+      Vector(0L -> "move 0", 100_000L -> "move 1", 150_500L -> "hover", 200_000L -> "move 2")
+    )

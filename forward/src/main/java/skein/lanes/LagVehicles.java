@@ -1,0 +1,351 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.LOG2_E;
+import static skein.simd.LaneMath.ONE;
+import static skein.simd.LaneMath.POWER_1;
+import static skein.simd.LaneMath.POWER_2;
+import static skein.simd.LaneMath.POWER_3;
+import static skein.simd.LaneMath.POWER_4;
+import static skein.simd.LaneMath.POWER_5;
+import static skein.simd.LaneMath.ROUND;
+import static skein.simd.LaneMath.SPECIES;
+import static skein.simd.LaneMath.ZERO;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
+import skein.forward.Duelist;
+import skein.forward.Reduced;
+
+/**
+ * The vehicles of one role in many worlds, with first-order lag, and the commands on their way to
+ * them, which act at times of their own in each world. Positions are those at a row's question;
+ * readings show them at times of their own, through the commands that act before.
+ *
+ * <p>The response to commanded velocities is linear: position and velocity are those without the
+ * commands under way, plus each such command's change times its step response, s(t) = t − lag·(1 −
+ * r(t)) and 1 − r(t), where r(t) = exp(−t / lag), from the time on at which it acts. With r(end − at)
+ * = exp(−end / lag) · growth(at) one exponential serves all commands. What a world computes depends
+ * on its own commands alone, to the bit: those of others only decide whether zeros are added.
+ */
+final class LagVehicles {
+  private static final int WORLDS = LanePolicy.WORLDS;
+  private static final float FUTURE = 1e9f;
+
+  private final double periodS;
+  private final float lagS, earliestS, startX, startY;
+  private final float periodGain, periodDecay;
+
+  /**
+   * All that is known of the vehicles, in one array, since passes over many arrays spend their time
+   * on their addresses: at the row's question position, the velocity asked for, and what the
+   * velocity lacks of it; position and velocity as read last.
+   */
+  final float[] state = new float[12 * WORLDS];
+
+  static final int X = 0, Y = WORLDS, SEEN_X = 2 * WORLDS, SEEN_Y = 3 * WORLDS;
+  static final int SEEN_VX = 4 * WORLDS, SEEN_VY = 5 * WORLDS;
+  private static final int WANTED_X = 6 * WORLDS,
+      WANTED_Y = 7 * WORLDS,
+      LACK_X = 8 * WORLDS,
+      LACK_Y = 9 * WORLDS;
+
+  /** When the readings are taken, and what remains of an error then. */
+  private static final int END = 10 * WORLDS, DECAY = 11 * WORLDS;
+
+  private final float[] kept = new float[4 * WORLDS];
+
+  /**
+   * By slot: when the command acts, from its own row's question, s; e to that time over the lag; and
+   * by how much it changes the velocity asked for.
+   */
+  float[] commands;
+
+  static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
+  private static final int SLOT = 4 * WORLDS;
+
+  // Commands by the beat in which they were decided, modulo slots: the oldest that an early reading
+  // may be without, the first that some world has yet to feel, the next; and of each the row, and the
+  // times between which it acts.
+  private int slots;
+  private int oldest, first, next;
+  private int[] rowOf;
+  private float[] soonest, latest;
+
+  // Those that act before the readings: where they are, how old they are, how old they were when
+  // the vehicles were flown last, and what remains of an error after their age.
+  private int near;
+  private int[] nearFrom;
+  private float[] nearAge, nearYounger, nearAged;
+
+  /** So many rows in seconds, and what remains of an error after them. */
+  private final float[] rowsS, remains;
+
+  /**
+   * @param model lag above 0
+   * @param mostRows how many rows a command is under way at most
+   * @param earliestS no reading is taken so long before its row's question
+   */
+  LagVehicles(
+      Duelist duelist, Reduced model, double periodS, int mostRows, double earliestS) {
+    this.periodS = periodS;
+    this.earliestS = (float) earliestS;
+    allocate(8);
+    double lagSeconds = model.lagS();
+    lagS = (float) lagSeconds;
+    startX = (float) duelist.startX();
+    startY = (float) duelist.startY();
+    double left = StrictMath.exp(-periodS / lagSeconds);
+    periodDecay = (float) left;
+    periodGain = (float) (lagSeconds * (1 - left));
+    rowsS = new float[mostRows + 3 + (int) Math.ceil(earliestS / periodS)];
+    remains = new float[rowsS.length];
+    for (int i = 0; i < remains.length; i++) {
+      rowsS[i] = (float) (i * periodS);
+      remains[i] = (float) StrictMath.exp(-i * periodS / lagSeconds);
+    }
+  }
+
+  /** Back to the start of an episode. */
+  void start() {
+    Arrays.fill(state, 0f);
+    Arrays.fill(state, X, X + WORLDS, startX);
+    Arrays.fill(state, Y, Y + WORLDS, startY);
+    oldest = 0;
+    first = 0;
+    next = 0;
+  }
+
+  /** Where the commands of a row's beat go, in {@link #commands}. */
+  int slotOf(int row) {
+    if (next - oldest == slots) makeRoom();
+    rowOf[next & slots - 1] = row;
+    return (next & slots - 1) * SLOT;
+  }
+
+  /** The commands in the slot are on their way; they act between these times, s. */
+  void send(float soonestS, float latestS) {
+    // A little wider than floats are exact.
+    soonest[next & slots - 1] = soonestS * 0.999f;
+    latest[next & slots - 1] = latestS * 1.001f;
+    next++;
+  }
+
+  private void makeRoom() {
+    int[] rows = rowOf;
+    float[] from = soonest, upTo = latest, before = commands;
+    int mask = slots - 1;
+    allocate(2 * slots);
+    for (int number = oldest; number < next; number++) {
+      int old = number & mask, slot = number & slots - 1;
+      rowOf[slot] = rows[old];
+      soonest[slot] = from[old];
+      latest[slot] = upTo[old];
+      System.arraycopy(before, old * SLOT, commands, slot * SLOT, SLOT);
+    }
+  }
+
+  private void allocate(int count) {
+    slots = count;
+    commands = new float[count * SLOT];
+    rowOf = new int[count];
+    soonest = new float[count];
+    latest = new float[count];
+    nearFrom = new int[count];
+    nearAge = new float[count];
+    nearYounger = new float[count];
+    nearAged = new float[count];
+  }
+
+  /**
+   * Flies on from the row before and reads the vehicles.
+   *
+   * @param sampledAt when, from the row's question, {@link DelayTable#GrainNs}
+   * @param latestSampleS not before the last of these
+   */
+  void flyTo(int row, int[] sampledAt, float latestSampleS) {
+    findNear(row, latestSampleS, true);
+    fly((float) periodS, periodGain, periodDecay, sampledAt);
+    while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
+    while (oldest < first
+        && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
+  }
+
+  /** Reads the vehicles again, without flying on. */
+  void lookAgain(int row, int[] sampledAt, float latestSampleS) {
+    findNear(row, latestSampleS, false);
+    fly(0, 0, 1, sampledAt);
+  }
+
+  private float ageS(int slot, int row) {
+    return rowsS[row - rowOf[slot]];
+  }
+
+  private void findNear(int row, float latestSampleS, boolean fliesOn) {
+    near = 0;
+    for (int number = first; number < next; number++) {
+      int slot = number & slots - 1, rows = row - rowOf[slot];
+      float age = ageS(slot, row);
+      if (soonest[slot] - age < Math.max(latestSampleS, 0f) || soonest[slot] <= age) {
+        nearFrom[near] = slot * SLOT;
+        nearAge[near] = age;
+        nearAged[near] = remains[rows];
+        nearYounger[near] = !fliesOn ? age : rows == 1 ? -FUTURE : ageS(slot, row - 1);
+        near++;
+      }
+    }
+  }
+
+  /** Flies for so long, with the commands that begin to act in this time, and reads the vehicles. */
+  private void fly(float dtS, float gainS, float keepShare, int[] sampledAt) {
+    float[] state = this.state, commands = this.commands;
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
+        minusGain = FloatVector.broadcast(SPECIES, -gainS),
+        keep = FloatVector.broadcast(SPECIES, keepShare),
+        lag = FloatVector.broadcast(SPECIES, lagS),
+        minusLag = FloatVector.broadcast(SPECIES, -lagS),
+        halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
+        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector end =
+          ((FloatVector)
+                  IntVector.fromArray(INTS, sampledAt, i)
+                      .convertShape(VectorOperators.I2F, SPECIES, 0))
+              .mul(grainS);
+      FloatVector exponent = end.mul(halvings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
+      FloatVector decay =
+          rest.fma(power5, power4)
+              .fma(square, rest.fma(power3, power2))
+              .fma(square, rest.fma(power1, one))
+              .reinterpretAsInts()
+              .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
+              .reinterpretAsFloats();
+      FloatVector wantedX = FloatVector.fromArray(SPECIES, state, WANTED_X + i),
+          wantedY = FloatVector.fromArray(SPECIES, state, WANTED_Y + i),
+          lackX = FloatVector.fromArray(SPECIES, state, LACK_X + i),
+          lackY = FloatVector.fromArray(SPECIES, state, LACK_Y + i);
+      FloatVector
+          x = lackX.fma(minusGain, wantedX.fma(dt, FloatVector.fromArray(SPECIES, state, X + i))),
+          y = lackY.fma(minusGain, wantedY.fma(dt, FloatVector.fromArray(SPECIES, state, Y + i)));
+      lackX = lackX.mul(keep);
+      lackY = lackY.mul(keep);
+      FloatVector lagDecay = lag.mul(decay);
+      FloatVector died = lagDecay.sub(lag);
+      FloatVector seenX = lackX.fma(died, wantedX.fma(end, x)),
+          seenY = lackY.fma(died, wantedY.fma(end, y));
+      // Of commands that begin to act, an earlier reading shows an effect that lookBack takes back.
+      FloatVector horizon = end.max(zero);
+      for (int k = 0; k < near; k++) {
+        int from = nearFrom[k] + i;
+        FloatVector age = FloatVector.broadcast(SPECIES, nearAge[k]),
+            younger = FloatVector.broadcast(SPECIES, nearYounger[k]),
+            aged = FloatVector.broadcast(SPECIES, nearAged[k]);
+        FloatVector acts = FloatVector.fromArray(SPECIES, commands, from + AT);
+        FloatVector wait = acts.sub(age);
+        VectorMask<Float> isNew = acts.compare(GT, younger);
+        VectorMask<Float> begins = acts.compare(LE, age, isNew);
+        VectorMask<Float> isSeen = wait.compare(LE, horizon, isNew);
+        FloatVector left =
+            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(aged);
+        FloatVector late = minusLag.sub(wait);
+        FloatVector response = left.fma(lag, late);
+        FloatVector seen = left.fma(lagDecay, late.add(end));
+        FloatVector allX = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X),
+            allY = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y),
+            changeX = zero.blend(allX, begins),
+            changeY = zero.blend(allY, begins);
+        x = changeX.fma(response, x);
+        y = changeY.fma(response, y);
+        lackX = changeX.fma(left, lackX);
+        lackY = changeY.fma(left, lackY);
+        wantedX = wantedX.add(changeX);
+        wantedY = wantedY.add(changeY);
+        seenX = zero.blend(allX, isSeen).fma(seen, seenX);
+        seenY = zero.blend(allY, isSeen).fma(seen, seenY);
+      }
+      x.intoArray(state, X + i);
+      y.intoArray(state, Y + i);
+      lackX.intoArray(state, LACK_X + i);
+      lackY.intoArray(state, LACK_Y + i);
+      wantedX.intoArray(state, WANTED_X + i);
+      wantedY.intoArray(state, WANTED_Y + i);
+      seenX.intoArray(state, SEEN_X + i);
+      seenY.intoArray(state, SEEN_Y + i);
+      end.intoArray(state, END + i);
+      decay.intoArray(state, DECAY + i);
+    }
+  }
+
+  /** How fast the vehicles fly where they were read. */
+  void readVelocities() {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector end = FloatVector.fromArray(SPECIES, state, END + i),
+          decay = FloatVector.fromArray(SPECIES, state, DECAY + i);
+      FloatVector vx =
+          FloatVector.fromArray(SPECIES, state, LACK_X + i)
+              .neg()
+              .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_X + i));
+      FloatVector vy =
+          FloatVector.fromArray(SPECIES, state, LACK_Y + i)
+              .neg()
+              .fma(decay, FloatVector.fromArray(SPECIES, state, WANTED_Y + i));
+      for (int k = 0; k < near; k++) {
+        int from = nearFrom[k] + i;
+        FloatVector wait = FloatVector.fromArray(SPECIES, commands, from + AT).sub(nearAge[k]);
+        VectorMask<Float> isSeen = wait.compare(GT, ZERO).and(wait.compare(LT, end));
+        FloatVector left =
+            FloatVector.fromArray(SPECIES, commands, from + GROWTH).mul(nearAged[k]).mul(decay);
+        FloatVector caughtUp = ZERO.blend(ONE.sub(left), isSeen);
+        vx = FloatVector.fromArray(SPECIES, commands, from + CHANGE_X).fma(caughtUp, vx);
+        vy = FloatVector.fromArray(SPECIES, commands, from + CHANGE_Y).fma(caughtUp, vy);
+      }
+      vx.intoArray(state, SEEN_VX + i);
+      vy.intoArray(state, SEEN_VY + i);
+    }
+  }
+
+  /** Takes commands back that had not acted when an early reading of a world was taken. */
+  void lookBack(int world, int row, int sampledAt) {
+    float end = sampledAt * LanePictures.GRAIN_S;
+    for (int number = next - 1; number >= oldest; number--) {
+      int slot = number & slots - 1, from = slot * SLOT + world;
+      float wait = commands[from + AT] - ageS(slot, row), acted = end - wait;
+      if (wait <= 0 && acted < 0 && rowOf[slot] < row) {
+        float caughtUp = (float) -StrictMath.expm1(-acted / lagS),
+            response = acted - lagS * caughtUp;
+        float changeX = commands[from + CHANGE_X], changeY = commands[from + CHANGE_Y];
+        state[SEEN_X + world] -= changeX * response;
+        state[SEEN_Y + world] -= changeY * response;
+        state[SEEN_VX + world] -= changeX * caughtUp;
+        state[SEEN_VY + world] -= changeY * caughtUp;
+      }
+    }
+  }
+
+  /** Keeps what was read last. */
+  void keepSeen() {
+    System.arraycopy(state, SEEN_X, kept, 0, kept.length);
+  }
+
+  /** Puts back what was kept of a world. */
+  void restoreSeen(int world) {
+    for (int i = world; i < kept.length; i += WORLDS) state[SEEN_X + i] = kept[i];
+  }
+}

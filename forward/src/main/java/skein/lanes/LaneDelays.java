@@ -1,0 +1,56 @@
+package skein.lanes;
+
+import java.util.Arrays;
+import skein.forward.DelayTable;
+import skein.forward.Rollout;
+import skein.simd.WorldRandom;
+
+/**
+ * The delays of many worlds' links, as {@link DelayTable} has them, in {@link DelayTable#GrainNs}.
+ * Passes draw from them by {@link WorldRandom}'s hash: a look into a table takes as long as a dozen
+ * other operations, which go on meanwhile.
+ */
+final class LaneDelays {
+  private static final int WORLDS = LanePolicy.WORLDS;
+  /** Of a hash but for its last step, which does not change the upper bits, these are left out. */
+  static final int DROP = DelayTable.Drop();
+
+  /** {@link WorldRandom#key} of each world. */
+  int[] keys;
+
+  /** The delays of all links, one table after the other; and where each world's begins. */
+  int[] delays = new int[DelayTable.Size()];
+
+  final int[] tableOf = new int[WORLDS];
+  private final DelayTable[] tables = new DelayTable[WORLDS];
+  private int tableCount = 0;
+
+  /** Longest delay of any link, s. */
+  float maxS;
+
+  void start(int[] worldKeys, DelayTable[] links) {
+    keys = worldKeys;
+    int count = 0;
+    maxS = 0;
+    for (int i = 0; i < WORLDS; i++) {
+      int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
+      if (table == count) {
+        if (count >= tableCount || tables[count] != links[i]) {
+          int end = (count + 1) * DelayTable.Size();
+          if (delays.length < end) delays = Arrays.copyOf(delays, 2 * end);
+          links[i].copyGrains(delays, count * DelayTable.Size());
+          tables[count] = links[i];
+        }
+        maxS = Math.max(maxS, links[i].maxS());
+        count++;
+      }
+      tableOf[i] = table * DelayTable.Size();
+    }
+    tableCount = Math.max(tableCount, count);
+  }
+
+  /** Where the random numbers of a step begin. */
+  static int placeOf(int step) {
+    return step * Rollout.Places() * WorldRandom.STRIDE;
+  }
+}

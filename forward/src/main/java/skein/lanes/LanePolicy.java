@@ -1,0 +1,145 @@
+package skein.lanes;
+
+import java.util.Arrays;
+import skein.policy.Policy;
+import skein.simd.LaneFunction;
+
+/**
+ * Policies of one form in many worlds, each with parameters of its own, compiled from the policy
+ * itself ({@link PolicyLanes}); {@code LanePolicySuite} holds them to it. Mutable: one per kernel
+ * and role.
+ */
+class LanePolicy {
+  /** Worlds that decide together. */
+  static final int WORLDS = LaneSight.WORLDS;
+
+  private final PolicyLanes form;
+  private final LaneFunction function;
+  private final float[] parameters, scratch;
+  private final float[][] arrays;
+  private final int[] offsets;
+
+  /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
+  private final float[] initial, memory, newMemory;
+
+  /** How far each world's decided heading is from the one before, by the shorter way, rad. */
+  final float[] turned = new float[WORLDS];
+
+  /** The heading commanded last, rad, for policies that turn from it, and the one decided. */
+  final float[] heading = new float[WORLDS], newHeading = new float[WORLDS];
+
+  LanePolicy(PolicyLanes form) {
+    this.form = form;
+    function = form.function();
+    parameters = new float[form.parameters() * WORLDS];
+    scratch = new float[function.scratch()];
+    // The outputs: three numbers, what is remembered, and the heading.
+    arrays = new float[form.inputs() + 3 + form.memories() + 1][];
+    offsets = new int[arrays.length];
+    initial = new float[form.memories() * WORLDS];
+    memory = new float[initial.length];
+    newMemory = new float[initial.length];
+  }
+
+  /** Lanes that fly policies of this policy's form, which must be a formula. */
+  static LanePolicy of(Policy policy) {
+    return new LanePolicy(PolicyLanes.get(policy));
+  }
+
+  /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
+  void take(int world, Policy policy) {
+    if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
+    double[] values = form.parametersOf(policy);
+    for (int i = 0; i < values.length; i++) parameters[i * WORLDS + world] = (float) values[i];
+    double[] remembered = form.initialOf(policy);
+    for (int i = 0; i < remembered.length; i++)
+      initial[i * WORLDS + world] = (float) remembered[i];
+  }
+
+  /** Whether it looks at the velocities of the sight. */
+  boolean needsVelocity() {
+    return form.needsVelocity();
+  }
+
+  /** Whether it asks how old the sight's readings are. */
+  boolean needsAges() {
+    return form.needsAges();
+  }
+
+  /**
+   * Decides in all worlds. {@code own} are the directions commanded last, {@code known} those of the
+   * opponent; the decided ones go to {@code into}. Each begins at its offset. {@link #turned} is
+   * what they differ by from the own.
+   */
+  void decide(
+      LaneSight sight,
+      Directions own,
+      int ownAt,
+      Directions known,
+      int knownAt,
+      Directions into,
+      int intoAt) {
+    // In the order of PolicyLanes.In, then of the outputs.
+    set(0, sight.dx, 0);
+    set(1, sight.dy, 0);
+    set(2, sight.dvx, 0);
+    set(3, sight.dvy, 0);
+    set(4, sight.elapsed, 0);
+    set(5, own.cos, ownAt);
+    set(6, own.sin, ownAt);
+    set(7, known.cos, knownAt);
+    set(8, known.sin, knownAt);
+    set(9, heading, 0);
+    set(10, sight.ownAge, 0);
+    set(11, sight.opponentAge, 0);
+    int outputs = form.inputs(), memories = form.memories();
+    for (int i = 0; i < memories; i++) {
+      set(12 + i, memory, i * WORLDS);
+      set(outputs + 3 + i, newMemory, i * WORLDS);
+    }
+    set(outputs, into.cos, intoAt);
+    set(outputs + 1, into.sin, intoAt);
+    set(outputs + 2, turned, 0);
+    set(outputs + 3 + memories, newHeading, 0);
+    function.apply(arrays, offsets, parameters, scratch);
+  }
+
+  /** What the last decision was made from, by input, as {@link PolicyLanes} numbers them. */
+  final scala.collection.immutable.Vector<float[]> lastInputs() {
+    return copies(0, form.inputs());
+  }
+
+  /** What it came to, by output. */
+  final scala.collection.immutable.Vector<float[]> lastOutputs() {
+    return copies(form.inputs(), form.inputs() + 3);
+  }
+
+  private scala.collection.immutable.Vector<float[]> copies(int from, int until) {
+    var all = scala.collection.immutable.Vector$.MODULE$.<float[]>newBuilder();
+    for (int i = from; i < until; i++)
+      all.addOne(Arrays.copyOfRange(arrays[i], offsets[i], offsets[i] + WORLDS));
+    return all.result();
+  }
+
+  private void set(int place, float[] array, int offset) {
+    arrays[place] = array;
+    offsets[place] = offset;
+  }
+
+  void start(float headingRad) {
+    Arrays.fill(heading, headingRad);
+    System.arraycopy(initial, 0, memory, 0, initial.length);
+  }
+
+  /** All worlds' decisions become commands. */
+  void commit() {
+    System.arraycopy(newHeading, 0, heading, 0, WORLDS);
+    System.arraycopy(newMemory, 0, memory, 0, memory.length);
+  }
+
+  /** What was decided is remembered in the worlds whose time, from a place on, comes before another. */
+  void rememberBefore(int[] times, int from, int before) {
+    for (int i = 0; i < memory.length; i++)
+      if (times[from + i % WORLDS] < before) memory[i] = newMemory[i];
+  }
+}

@@ -1,0 +1,226 @@
+package skein.lanes;
+
+import skein.forward.DelayTable;
+import skein.forward.Delays;
+import skein.forward.LoopTiming;
+
+/**
+ * The pictures of one world of two vehicles under the {@code stream} loop, one after the other, with
+ * all that can happen to questions: overtaken, late, failed, held back by a full window. No picture
+ * depends on what is decided, so they can be told ahead. {@code StreamRun} is the reference; of
+ * things that happen in the same nanosecond answers come first here.
+ *
+ * <p>{@link LanePictures} tells pictures in which nothing of this happens, many worlds at a time,
+ * and asks here for the others.
+ */
+final class PictureSource {
+  /** Questions of one vehicle that may be under way: more than any window allows. */
+  private static final int RING = 32;
+
+  private static final int VEHICLES = 2;
+  static final long NEVER = Long.MAX_VALUE;
+
+  private final long periodNs, timeoutNs, patienceNs, endNs;
+  private final int window, ahead;
+  private int key;
+  private DelayTable link;
+
+  // Of each vehicle: the next tick, whether a question waits, how many were asked, how many of them
+  // are under way, none older than which, the newest that was answered.
+  private final int[] tick = new int[VEHICLES],
+      asked = new int[VEHICLES],
+      oldest = new int[VEHICLES],
+      underWay = new int[VEHICLES],
+      newest = new int[VEHICLES],
+      told = new int[VEHICLES];
+  private final boolean[] waits = new boolean[VEHICLES];
+
+  // Of each vehicle's questions: when they end (NEVER: they have), whether with an answer, the tick
+  // that they belong to, when they were sent and when they reach the vehicle.
+  private final long[][] endsAt = new long[VEHICLES][RING],
+      sentAt = new long[VEHICLES][RING],
+      reachesAt = new long[VEHICLES][RING];
+  private final boolean[][] succeeds = new boolean[VEHICLES][RING];
+  private final int[][] tickOf = new int[VEHICLES][RING];
+
+  // Of each vehicle: the reading held.
+  private final boolean[] known = new boolean[VEHICLES], renewed = new boolean[VEHICLES];
+  private final long[] toldAt = new long[VEHICLES];
+  private final long[] validAt = new long[VEHICLES], receivedAt = new long[VEHICLES];
+  private long patienceEnds;
+
+  // The picture told last: when, of which questions, asked at which ticks, which reached the vehicles
+  // when; ns.
+  long joinedAt;
+  final int[] question = new int[VEHICLES], askedAtTick = new int[VEHICLES];
+  final long[] sampledAt = new long[VEHICLES];
+
+  /** Whether the picture before had another reading of the vehicle. */
+  final boolean[] isFresh = new boolean[VEHICLES];
+
+  /**
+   * Whether the picture told last is that of its row's questions, and nothing older is left behind
+   * it.
+   */
+  boolean isRegular;
+
+  /**
+   * The later of the ticks at which the picture's questions were asked, or that of the picture
+   * before.
+   */
+  int row;
+
+  /**
+   * @param ahead rows within which the questions of a regular picture are answered
+   */
+  PictureSource(LoopTiming.Stream timing, double durationS, int ahead) {
+    this.ahead = ahead;
+    periodNs = nanos(timing.periodS());
+    timeoutNs = nanos(timing.asking().timeoutS());
+    patienceNs = nanos(timing.patienceS());
+    window = timing.asking().window();
+    endNs = nanos(durationS);
+  }
+
+  private static long nanos(double seconds) {
+    return Math.round(seconds * 1e9);
+  }
+
+  /** Begins at a question when all questions before are answered and joined, if there were any. */
+  void begin(int worldKey, DelayTable worldLink, int first) {
+    key = worldKey;
+    link = worldLink;
+    patienceEnds = NEVER;
+    row = first - 1;
+    isRegular = false;
+    for (int v = 0; v < VEHICLES; v++) {
+      tick[v] = first;
+      asked[v] = first;
+      oldest[v] = first;
+      underWay[v] = 0;
+      newest[v] = first - 1;
+      told[v] = first - 1;
+      toldAt[v] = Long.MIN_VALUE;
+      waits[v] = false;
+      known[v] = first > 0;
+      renewed[v] = false;
+      validAt[v] = Long.MIN_VALUE;
+      receivedAt[v] = Long.MIN_VALUE;
+      question[v] = first - 1;
+      askedAtTick[v] = first - 1;
+      java.util.Arrays.fill(endsAt[v], NEVER);
+    }
+  }
+
+  /** Goes on to the next picture; {@link #joinedAt} is {@link #NEVER} if the flight ends before. */
+  void next() {
+    boolean joined = false;
+    while (!joined) {
+      int vehicle = -1, number = -1;
+      long end = NEVER;
+      for (int v = 0; v < VEHICLES; v++)
+        if (underWay[v] > 0)
+          for (int q = oldest[v]; q < asked[v]; q++)
+            if (endsAt[v][q % RING] < end) {
+              end = endsAt[v][q % RING];
+              vehicle = v;
+              number = q;
+            }
+      int ticking = tick[1] < tick[0] ? 1 : 0;
+      long tickAt = tick[ticking] * periodNs;
+      long now = Math.min(end, Math.min(patienceEnds, tickAt));
+      if (now > endNs) {
+        joinedAt = NEVER;
+        row = Integer.MAX_VALUE;
+        isRegular = false;
+        return;
+      }
+      if (end == now) {
+        endsAt[vehicle][number % RING] = NEVER;
+        underWay[vehicle]--;
+        while (oldest[vehicle] < asked[vehicle] && endsAt[vehicle][oldest[vehicle] % RING] == NEVER)
+          oldest[vehicle]++;
+        boolean answered =
+            succeeds[vehicle][number % RING]
+                && (number > newest[vehicle] || isLater(vehicle, number));
+        ask(vehicle, now);
+        if (answered) {
+          newest[vehicle] = Math.max(newest[vehicle], number);
+          told[vehicle] = number;
+          toldAt[vehicle] = now;
+          joined = seen(vehicle, number, now);
+        }
+      } else if (patienceEnds == now) {
+        joined = true;
+      } else {
+        tick[ticking]++;
+        waits[ticking] = true;
+        ask(ticking, now);
+      }
+      if (joined) join(now);
+    }
+  }
+
+  private void ask(int vehicle, long now) {
+    if (waits[vehicle] && underWay[vehicle] < window) {
+      int number = asked[vehicle], at = number % RING;
+      waits[vehicle] = false;
+      underWay[vehicle]++;
+      asked[vehicle]++;
+      tickOf[vehicle][at] = tick[vehicle] - 1;
+      sentAt[vehicle][at] = now;
+      long there = link.delayNs(key, Delays.question(0, vehicle), number, number, now);
+      long back = link.delayNs(key, Delays.answer(0, vehicle), number, number, now);
+      reachesAt[vehicle][at] = now + there;
+      succeeds[vehicle][at] = there <= timeoutNs && there + back <= timeoutNs;
+      endsAt[vehicle][at] = now + (succeeds[vehicle][at] ? there + back : timeoutNs);
+    }
+  }
+
+  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
+  private boolean isLater(int vehicle, int number) {
+    int at = number % RING;
+    return reachesAt[vehicle][at] > reachesAt[vehicle][told[vehicle] % RING]
+        || sentAt[vehicle][at] > toldAt[vehicle];
+  }
+
+  private boolean seen(int vehicle, int number, long now) {
+    int at = number % RING;
+    boolean isNewer =
+        !known[vehicle]
+            || reachesAt[vehicle][at] > validAt[vehicle]
+            || sentAt[vehicle][at] > receivedAt[vehicle];
+    if (!isNewer) return false;
+    known[vehicle] = true;
+    renewed[vehicle] = true;
+    validAt[vehicle] = reachesAt[vehicle][at];
+    receivedAt[vehicle] = now;
+    question[vehicle] = number;
+    askedAtTick[vehicle] = tickOf[vehicle][at];
+    if (!known[0] || !known[1]) return false;
+    if (renewed[0] && renewed[1]) return true;
+    if (patienceEnds == NEVER) patienceEnds = now + patienceNs;
+    return false;
+  }
+
+  private void join(long now) {
+    patienceEnds = NEVER;
+    joinedAt = now;
+    row = Math.max(row, Math.max(askedAtTick[0], askedAtTick[1]));
+    isRegular = now < (row + ahead) * periodNs;
+    for (int v = 0; v < VEHICLES; v++) {
+      isFresh[v] = renewed[v];
+      renewed[v] = false;
+      sampledAt[v] = validAt[v];
+      isRegular &=
+          question[v] == row
+              && askedAtTick[v] == row
+              && newest[v] == row
+              && told[v] == row
+              && oldest[v] > row
+              && !waits[v]
+              && asked[v] == tick[v]
+              && validAt[v] < (row + 1) * periodNs;
+    }
+  }
+}

@@ -1,0 +1,191 @@
+package skein.lanes;
+
+import skein.forward.DelayTable;
+import skein.forward.Duel;
+import skein.forward.LoopTiming;
+import skein.forward.Reduced;
+import skein.forward.Rollout;
+
+/**
+ * Duels under the full event timing of the {@code stream} loop, many worlds at a time, each with
+ * delays of its own: questions, answers, commands and acknowledgements with sampled delays,
+ * overtaking, time-outs, patience, pacing, skipping; vehicles with first-order lag and dead time,
+ * exactly integrated between commands. {@link Rollout} with {@code LoopTiming.Stream} and a {@code
+ * Reduced} model is its scalar reference: both draw the same delays from a world's key, and every
+ * event happens at the same nanosecond in both.
+ *
+ * <p>All worlds go through row m, from question m to the next, together; when its events happen
+ * differs by lane. What the questions bring is told by {@link LanePictures}, who decides when by
+ * {@link LaneControllers}, where the vehicles are by {@link LagVehicles}. Nothing is allocated after
+ * construction but where links need more room than any before; one instance per thread.
+ */
+final class StreamDuelKernel extends DuelKernel {
+  private static final int COMMANDS = Rollout.CommandPlace();
+
+  private final LoopTiming.Stream timing;
+  private final Reduced model;
+  private final int steps, periodGrains;
+  private final LanePictures pictures;
+  private final LagVehicles evaders, pursuers;
+  private final LaneControllers evading, pursuing;
+  private final boolean withVelocity;
+  private final LaneScores scores;
+
+  /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
+  static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
+    return refusal(timing, link.maxS(), model) == null;
+  }
+
+  /**
+   * Why the kernel cannot fly this model over a link, for a person; null where it can.
+   *
+   * @param maxDelayS the longest one-way delay of the link
+   */
+  static String refusal(LoopTiming.Stream timing, double maxDelayS, Reduced model) {
+    double longest = longestS(timing, maxDelayS, model);
+    double rows = longest / timing.periodS();
+    if (!(model.lagS() > 0)) return "the lanes need vehicles that lag";
+    if (timing.decideThenPace()) return "the lanes pace before they decide, and this loop decides first";
+    if (timing.asking().inOrder()) return "the lanes take answers as they come, and this loop in order";
+    if (timing.asking().spreadS() != 0)
+      return "the lanes ask all vehicles at once, and this loop spreads its questions";
+    if (!(timing.patienceS() > 0)) return "the lanes wait for the other vehicle's reading, and this loop does not";
+    if (timing.steering().mostOutstanding() != LoopTiming.MostOutstanding())
+      return "the lanes know " + LoopTiming.MostOutstanding() + " moves in flight, and this loop has "
+          + timing.steering().mostOutstanding();
+    if (rows > MOST_ROWS)
+      return "a command may act " + (long) Math.ceil(rows) + " periods after its question, and the lanes know "
+          + MOST_ROWS;
+    if (longest > MOST_LAGS * model.lagS()
+        || longest + timing.steering().minIntervalS() + maxDelayS > MOST_S)
+      return "a command may act later than the lanes can count";
+    boolean whole =
+        LanePictures.isWhole(timing.periodS())
+            && LanePictures.isWhole(timing.toleranceS())
+            && LanePictures.isWhole(timing.patienceS())
+            && LanePictures.isWhole(timing.asking().timeoutS())
+            && LanePictures.isWhole(timing.steering().minIntervalS())
+            && LanePictures.isWhole(timing.steering().handoverS());
+    return whole ? null : "the lanes count time in grains of 4 ns, and this loop's times are none";
+  }
+
+  /** The powers of e that a command's response needs stay within what floats can hold. */
+  private static final double MOST_LAGS = 40;
+
+  /** Times stay within what integers can hold. */
+  private static final double MOST_S = 7;
+
+  private static final int MOST_ROWS = 64;
+
+  /** From a question to a picture that it is the newest of. */
+  private static double pictureS(LoopTiming.Stream timing) {
+    return timing.asking().timeoutS() + timing.patienceS() + timing.periodS();
+  }
+
+  /**
+   * From a question to the time when the command acts that was decided on its picture: a decision
+   * waits for the acknowledgement of the command before at most.
+   */
+  private static double longestS(LoopTiming.Stream timing, double maxDelayS, Reduced model) {
+    return pictureS(timing)
+        + 2 * maxDelayS
+        + timing.steering().handoverS()
+        + maxDelayS
+        + model.deadTimeS();
+  }
+
+  /**
+   * @param duel start, speeds and duration; its policies are not used
+   * @param timing period, interval and steering
+   * @param model lag above 0
+   * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
+   * @param shortCut whether regular stretches are told by lanes; without, the same is told world by
+   *     world
+   */
+  StreamDuelKernel(
+      Duel duel,
+      LoopTiming.Stream timing,
+      Reduced model,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy,
+      boolean shortCut) {
+    if (!(model.lagS() > 0))
+      throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
+    this.timing = timing;
+    this.model = model;
+    steps = (int) Math.round(duel.durationS() / timing.periodS());
+    periodGrains = LanePictures.grains(timing.periodS());
+    pictures = new LanePictures(timing, duel.durationS(), shortCut);
+    evaders = new LagVehicles(duel.evader(), model, timing.periodS(), MOST_ROWS, pictureS(timing));
+    pursuers = new LagVehicles(duel.pursuer(), model, timing.periodS(), MOST_ROWS, pictureS(timing));
+    evading =
+        new LaneControllers(duel.evader(), timing, model, evaders, evaderPolicy, evaderEffortRad);
+    pursuing =
+        new LaneControllers(
+            duel.pursuer(), timing, model, pursuers, pursuerPolicy, pursuerEffortRad);
+    withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
+    scores = new LaneScores(duel.durationS(), timing.periodS(), this);
+  }
+
+  /**
+   * Flies one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
+   *
+   * @param worldKeys {@link WorldRandom#key} of each world
+   * @param links of each world; {@link #canFly} must hold
+   * @param captureRadiusM a distance of at most this is a capture
+   */
+  void fly(int[] worldKeys, DelayTable[] links, float captureRadiusM) {
+    pictures.start(worldKeys, links);
+    evaders.start();
+    pursuers.start();
+    evading.start();
+    pursuing.start();
+    scores.start(captureRadiusM);
+    for (int row = 0; row < steps; row++) {
+      pictures.startRow(row);
+      read(evaders, 0, row, true);
+      read(pursuers, 1, row, true);
+      if (row > 0) scores.add(row, evaders, pursuers);
+      decide(row);
+      while (pictures.nextBeat()) {
+        read(evaders, 0, row, false);
+        read(pursuers, 1, row, false);
+        decide(row);
+      }
+    }
+    evaders.flyTo(steps, pictures.sampledAt[0], 0);
+    pursuers.flyTo(steps, pictures.sampledAt[1], 0);
+    scores.add(steps, evaders, pursuers);
+    scores.finish();
+  }
+
+  /** Flies on to a row's question, and takes the readings of the beat's pictures. */
+  private void read(LagVehicles vehicles, int role, int row, boolean isFirst) {
+    int[] sampledAt = pictures.sampledAt[role];
+    if (pictures.hasOld) vehicles.keepSeen();
+    if (isFirst && row > 0) vehicles.flyTo(row, sampledAt, pictures.latestSampleS);
+    else vehicles.lookAgain(row, sampledAt, pictures.latestSampleS);
+    if (withVelocity) vehicles.readVelocities();
+    for (int i = 0; i < pictures.oddCount; i++) {
+      int world = pictures.odd[i];
+      if (pictures.isFresh[role][world] == 0) vehicles.restoreSeen(world);
+      else if (sampledAt[world] < 0) vehicles.lookBack(world, row, sampledAt[world]);
+    }
+  }
+
+  /** Both decide, where it is their turn. */
+  private void decide(int row) {
+    pursuing.decide(evading, pictures);
+    evading.decide(pursuing, pictures);
+    int end = grainsToEnd(row);
+    boolean isLast = pictures.isLastBeat();
+    pursuing.command(row, pictures.delays, COMMANDS + 2, pictures.place[1], end, isLast);
+    evading.command(row, pictures.delays, COMMANDS, pictures.place[0], end, isLast);
+  }
+
+  /** From a row's question to the end of the episode, as far as integers count. */
+  private int grainsToEnd(int row) {
+    double seconds = (steps - row) * timing.periodS();
+    return seconds < MOST_S ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
+  }
+}

@@ -1,0 +1,47 @@
+package skein.lanes;
+
+/**
+ * The vehicles of one role in many worlds, flown by a {@link Timetable}: what happens to them
+ * happens in all worlds at once, so that all that depends on time alone is a number of the
+ * timetable, told by a {@link VehicleClock} of the same kind.
+ */
+abstract class TimetableVehicles {
+  static final int WORLDS = LanePolicy.WORLDS;
+
+  /** How the vehicles answered, by place: positions, m, and velocities, m/s, north and east. */
+  float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
+
+  /**
+   * Back to the start of an episode.
+   *
+   * @param readings places that its timetable needs
+   * @param worlds those that count are the first
+   */
+  final void start(int readings, int worlds) {
+    if (seenX.length < readings * WORLDS) {
+      seenX = new float[readings * WORLDS];
+      seenY = new float[readings * WORLDS];
+      seenVx = new float[readings * WORLDS];
+      seenVy = new float[readings * WORLDS];
+    }
+    start(worlds);
+  }
+
+  abstract void start(int worlds);
+
+  /**
+   * Reads the vehicles.
+   *
+   * @param times from {@code at} on, what the clock tells of this moment
+   * @param into the index of the reading's first world
+   * @param withVelocity whether velocities are read too
+   */
+  abstract void look(float[] times, int at, int into, boolean withVelocity);
+
+  /**
+   * Lets commands act from this moment on.
+   *
+   * @param from the index of the first world's commanded direction
+   */
+  abstract void act(float[] times, int at, Directions commanded, int from);
+}

@@ -1,0 +1,486 @@
+package skein.planning;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LSHR;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.simd.LaneMath;
+import skein.simd.LaneRandom;
+import skein.vehicle.ReducedModel;
+
+/**
+ * Flies many candidate manoeuvres of one vehicle at once and says what each costs; {@link
+ * ManoeuvreRollout} is its scalar reference, {@code PlanKernelSuite} holds the two together. The
+ * vehicle's own way does not depend on what its opponent does, so it is flown once and every
+ * behaviour of the opponent is flown against it.
+ *
+ * <p>Positions are counted from where the vehicle starts, so that floats resolve them. Results do
+ * not depend on the lane count. Nothing is allocated after {@link #situate}; one instance per
+ * thread.
+ */
+final class PlanKernel implements CandidateBlock {
+  private static final float SIN_3 = -1f / 6, SIN_5 = 1f / 120, SIN_7 = -1f / 5040;
+  private static final float COS_2 = -0.5f, COS_4 = 1f / 24, COS_6 = -1f / 720;
+
+  // (1 − e^(−a)) / a = 1 − a/2 + a²/6 − …, whose next term is below 7e-6 for a up to 0.5.
+  private static final float GLIDE_1 = -1f / 2, GLIDE_2 = 1f / 6, GLIDE_3 = -1f / 24;
+  private static final float GLIDE_4 = 1f / 120, GLIDE_5 = -1f / 720;
+
+  private static final float TINY = (float) ManoeuvreRollout.Tiny();
+  private static final float BREACH = (float) ManoeuvreRollout.Breach();
+  private static final float GUARD = (float) ManoeuvreRollout.Guard();
+  private static final float FAR = 1e9f;
+  private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
+
+  // The sum of the four bytes of a hash: nearly normal, with mean 510 and this deviation.
+  private static final float NORMAL_SCALE = Draws.Scale();
+  private static final int BYTES = 0x00ff00ff;
+  private static final int LOWER = 0xffff;
+
+  /** The bits of 2²³, whose lowest ones count up from there: an integer becomes a float by them. */
+  private static final int FLOAT_BITS = 0x4b000000;
+
+  private static final float FLOAT_BASE = 8388608f + 510f;
+
+  private static final int SIZE = CandidateBlock.Size();
+
+  private final int steps;
+  private final float[] turnRates, speeds;
+  private final float[] costs = new float[SIZE];
+  private final float[] weights = new float[SIZE];
+  private final float[] turnSums, speedSums, weightSums = new float[SIZE];
+  private final int[] bits = new int[SIZE];
+  private final float[] turnNoise = new float[SIZE], speedNoise = new float[SIZE];
+
+  // The way of each candidate: where it is at the end of each step, and where it headed before.
+  private final float[] x, y, cos, sin;
+  private final float[] endVx = new float[SIZE], endVy = new float[SIZE];
+  private final float[] targetX, targetY;
+  private final float[] targetEndVx = new float[SIZE], targetEndVy = new float[SIZE];
+
+  private Situation situation;
+  private Objective objective;
+  private double originX, originY;
+  private float dtS;
+
+  /** The other vehicles' places at the end of each step, one vehicle after the other. */
+  private float[] othersX, othersY;
+
+  PlanKernel(int steps) {
+    this.steps = steps;
+    turnRates = new float[steps * SIZE];
+    speeds = new float[steps * SIZE];
+    turnSums = new float[steps * SIZE];
+    speedSums = new float[steps * SIZE];
+    x = new float[steps * SIZE];
+    y = new float[steps * SIZE];
+    cos = new float[steps * SIZE];
+    sin = new float[steps * SIZE];
+    targetX = new float[steps * SIZE];
+    targetY = new float[steps * SIZE];
+  }
+
+  @Override
+  public float[] turnRates() {
+    return turnRates;
+  }
+
+  @Override
+  public float[] speeds() {
+    return speeds;
+  }
+
+  @Override
+  public float[] costs() {
+    return costs;
+  }
+
+  @Override
+  public float[] turnSums() {
+    return turnSums;
+  }
+
+  @Override
+  public float[] speedSums() {
+    return speedSums;
+  }
+
+  @Override
+  public float[] weightSums() {
+    return weightSums;
+  }
+
+  @Override
+  public void situate(Situation situation, Objective objective, double dtS) {
+    this.situation = situation;
+    this.objective = objective;
+    this.dtS = (float) dtS;
+    originX = situation.own().x();
+    originY = situation.own().y();
+    int others = situation.others().size();
+    othersX = new float[others * steps];
+    othersY = new float[others * steps];
+    for (int other = 0; other < others; other++) {
+      PredictedTrack track = situation.others().apply(other);
+      for (int step = 0; step < steps; step++) {
+        othersX[other * steps + step] = (float) (track.x(step) - originX);
+        othersY[other * steps + step] = (float) (track.y(step) - originY);
+      }
+    }
+  }
+
+  @Override
+  public void draw(int[] keys, Search search, int stepsPerKnot) {
+    for (int step = 0, knot = 0; step < steps; step += stepsPerKnot, knot++) {
+      noise(keys, 2 * knot, turnNoise);
+      noise(keys, 2 * knot + 1, speedNoise);
+      int end = Math.min(steps, step + stepsPerKnot);
+      for (int each = step; each < end; each++) perturb(each, search);
+    }
+  }
+
+  private void noise(int[] keys, int place, float[] into) {
+    LaneRandom.upperBits(keys, place, 0, bits, SIZE);
+    IntVector bytes = IntVector.broadcast(INTS, BYTES),
+        lower = IntVector.broadcast(INTS, LOWER),
+        floatBits = IntVector.broadcast(INTS, FLOAT_BITS);
+    FloatVector base = FloatVector.broadcast(SPECIES, FLOAT_BASE),
+        scale = FloatVector.broadcast(SPECIES, NORMAL_SCALE);
+    for (int i = 0; i < SIZE; i += LANES) {
+      IntVector drawn = IntVector.fromArray(INTS, bits, i);
+      IntVector pairs = drawn.and(bytes).add(drawn.lanewise(LSHR, 8).and(bytes));
+      IntVector sum = pairs.and(lower).add(pairs.lanewise(LSHR, 16));
+      sum.or(floatBits)
+          .reinterpretAsFloats()
+          .sub(base)
+          .mul(scale)
+          .intoArray(into, i);
+    }
+  }
+
+  private void perturb(int step, Search search) {
+    Limits limits = objective.limits();
+    FloatVector slowest = FloatVector.broadcast(SPECIES, (float) limits.minSpeed());
+    FloatVector fastest = FloatVector.broadcast(SPECIES, (float) limits.maxSpeed());
+    FloatVector steepest = FloatVector.broadcast(SPECIES, (float) limits.maxTurnRate());
+    FloatVector curvature = FloatVector.broadcast(SPECIES, (float) limits.curvature());
+    FloatVector turnMean = FloatVector.broadcast(SPECIES, search.turnMeans()[step]);
+    FloatVector turnSd = FloatVector.broadcast(SPECIES, search.turnSds()[step]);
+    FloatVector speedMean = FloatVector.broadcast(SPECIES, search.speedMeans()[step]);
+    FloatVector speedSd = FloatVector.broadcast(SPECIES, search.speedSds()[step]);
+    for (int i = 0, at = step * SIZE; i < SIZE; i += LANES, at += LANES) {
+      FloatVector speed =
+          FloatVector.fromArray(SPECIES, speedNoise, i)
+              .fma(speedSd, speedMean)
+              .max(slowest)
+              .min(fastest);
+      FloatVector limit = speed.mul(curvature).min(steepest);
+      FloatVector turn = FloatVector.fromArray(SPECIES, turnNoise, i).fma(turnSd, turnMean);
+      turn.max(limit.neg()).min(limit).intoArray(turnRates, at);
+      speed.intoArray(speeds, at);
+    }
+  }
+
+  @Override
+  public void fly() {
+    steer();
+    bound();
+    if (situation.others().nonEmpty()) keepApart();
+    for (int each = 0; each < situation.behaviours().size(); each++) {
+      Behaviour behaviour = situation.behaviours().apply(each);
+      if (behaviour.target() instanceof Target.Evader evader) evade(evader);
+      else follow((Target.Along) behaviour.target());
+      score((float) behaviour.weight());
+    }
+  }
+
+  /**
+   * Flies the vehicle itself: {@link ManoeuvreRollout} has the formulas. Its velocity decays by
+   * e^(−a) in a step, a = (1 / lag + drag · speed) · dt.
+   */
+  private void steer() {
+    Motion own = situation.own();
+    ReducedModel model = situation.response();
+    float lag = (float) model.lagS();
+    FloatVector gain = FloatVector.broadcast(SPECIES, (float) model.gain());
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
+    FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
+    FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) own.vx());
+    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) own.vy());
+    FloatVector startCos =
+        FloatVector.broadcast(SPECIES, (float) StrictMath.cos(situation.headingRad()));
+    FloatVector startSin =
+        FloatVector.broadcast(SPECIES, (float) StrictMath.sin(situation.headingRad()));
+    float firstTurnS = (float) situation.sinceDecisionS();
+    FloatVector sin3 = FloatVector.broadcast(SPECIES, SIN_3),
+        sin5 = FloatVector.broadcast(SPECIES, SIN_5),
+        sin7 = FloatVector.broadcast(SPECIES, SIN_7),
+        cos2 = FloatVector.broadcast(SPECIES, COS_2),
+        cos4 = FloatVector.broadcast(SPECIES, COS_4),
+        cos6 = FloatVector.broadcast(SPECIES, COS_6),
+        half = FloatVector.broadcast(SPECIES, 0.5f),
+        oneAndAHalf = FloatVector.broadcast(SPECIES, 1.5f);
+    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
+        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
+        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
+        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
+        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector px = zero, py = zero, vx = startVx, vy = startVy, c = startCos, s = startSin;
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        c.intoArray(cos, at);
+        s.intoArray(sin, at);
+        FloatVector angle =
+            FloatVector.fromArray(SPECIES, turnRates, at).mul(step == 0 ? firstTurnS : dtS);
+        FloatVector square = angle.mul(angle);
+        FloatVector sinTurn =
+            square.fma(sin7, sin5).fma(square, sin3).mul(square).fma(angle, angle);
+        FloatVector cosTurn = square.fma(cos6, cos4).fma(square, cos2).fma(square, one);
+        FloatVector turned = c.mul(cosTurn).sub(s.mul(sinTurn));
+        s = s.mul(cosTurn).add(c.mul(sinTurn));
+        // One step of Newton's method keeps the length at 1.
+        FloatVector length = turned.fma(turned, s.mul(s)).mul(half);
+        FloatVector unit = oneAndAHalf.sub(length);
+        c = turned.mul(unit);
+        s = s.mul(unit);
+        FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
+        FloatVector a = pace.fma(drag, perLag);
+        FloatVector slide = a.fma(glide5, glide4).fma(a, glide3).fma(a, glide2).fma(a, glide1);
+        FloatVector glided = slide.fma(a, one);
+        FloatVector decay = one.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector speed =
+            FloatVector.fromArray(SPECIES, speeds, at).mul(gain).div(pace.fma(brake, one));
+        FloatVector wantedX = speed.mul(c), wantedY = speed.mul(s);
+        FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
+        px = offX.fma(glide, wantedX.fma(dt, px));
+        py = offY.fma(glide, wantedY.fma(dt, py));
+        vx = offX.fma(decay, wantedX);
+        vy = offY.fma(decay, wantedY);
+        px.intoArray(x, at);
+        py.intoArray(y, at);
+      }
+      // Where the momentum still carries it, if nothing more is commanded.
+      vx.mul(lag).intoArray(endVx, i);
+      vy.mul(lag).intoArray(endVy, i);
+    }
+  }
+
+  /** What the manoeuvre costs by itself: effort, and leaving the geofence. */
+  private void bound() {
+    Geofence fence = objective.geofence();
+    FloatVector south = FloatVector.broadcast(SPECIES, within(fence.minNorth() - originX));
+    FloatVector north = FloatVector.broadcast(SPECIES, within(fence.maxNorth() - originX));
+    FloatVector west = FloatVector.broadcast(SPECIES, within(fence.minEast() - originY));
+    FloatVector east = FloatVector.broadcast(SPECIES, within(fence.maxEast() - originY));
+    FloatVector turning = FloatVector.broadcast(SPECIES, (float) objective.turning() * dtS);
+    FloatVector hurry = FloatVector.broadcast(SPECIES, (float) objective.speedChange() * dtS);
+    FloatVector cruise = FloatVector.broadcast(SPECIES, (float) objective.cruiseSpeed());
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        guard = FloatVector.broadcast(SPECIES, GUARD),
+        breach = FloatVector.broadcast(SPECIES, BREACH);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector cost = zero;
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        FloatVector turn = FloatVector.fromArray(SPECIES, turnRates, at);
+        FloatVector speed = FloatVector.fromArray(SPECIES, speeds, at);
+        FloatVector aside = turn.mul(speed), slow = speed.sub(cruise);
+        cost = aside.mul(aside).fma(turning, slow.mul(slow).fma(hurry, cost));
+        FloatVector px = FloatVector.fromArray(SPECIES, x, at);
+        FloatVector py = FloatVector.fromArray(SPECIES, y, at);
+        FloatVector beyond =
+            south.sub(px).max(px.sub(north)).max(west.sub(py)).max(py.sub(east)).add(guard);
+        VectorMask<Float> outside = beyond.compare(GT, zero);
+        cost = cost.add(zero.blend(beyond.add(one).mul(breach), outside));
+      }
+      cost.intoArray(costs, i);
+    }
+  }
+
+  private static float within(double bound) {
+    return (float) Math.max(-1e6, Math.min(1e6, bound));
+  }
+
+  /** What it costs to come near the other vehicles. */
+  private void keepApart() {
+    Separation separation = objective.separation();
+    FloatVector least =
+        FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
+    FloatVector price = FloatVector.broadcast(SPECIES, (float) separation.price() * dtS);
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        tiny = FloatVector.broadcast(SPECIES, TINY),
+        breach = FloatVector.broadcast(SPECIES, BREACH);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        FloatVector px = FloatVector.fromArray(SPECIES, x, at);
+        FloatVector py = FloatVector.fromArray(SPECIES, y, at);
+        float clearance = (float) separation.clearance((step + 1) * dtS);
+        for (int other = step; other < othersX.length; other += steps) {
+          FloatVector dx = px.sub(othersX[other]), dy = py.sub(othersY[other]);
+          FloatVector distance = dx.fma(dx, dy.fma(dy, tiny)).sqrt();
+          FloatVector missing = distance.neg().add(clearance).max(zero);
+          VectorMask<Float> breached = distance.compare(LT, least);
+          cost =
+              missing
+                  .mul(missing)
+                  .fma(price, cost)
+                  .add(zero.blend(least.sub(distance).add(one).mul(breach), breached));
+        }
+      }
+      cost.intoArray(costs, i);
+    }
+  }
+
+  /** The paper's evader, which knows the heading commanded before this step's. */
+  private void evade(Target.Evader evader) {
+    ReducedModel model = evader.response();
+    FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
+    FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
+    FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
+    FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
+    FloatVector commanded = FloatVector.broadcast(SPECIES, (float) (evader.speed() * model.gain()));
+    FloatVector radius = FloatVector.broadcast(SPECIES, (float) evader.turningRadius());
+    FloatVector circle = radius.mul(radius), near = circle.mul(4f);
+    FloatVector startX = FloatVector.broadcast(SPECIES, (float) (evader.motion().x() - originX));
+    FloatVector startY = FloatVector.broadcast(SPECIES, (float) (evader.motion().y() - originY));
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) evader.motion().vx());
+    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) evader.motion().vy());
+    float lag = (float) model.lagS();
+    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
+        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
+        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
+        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
+        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f);
+    FloatVector tiny = FloatVector.broadcast(SPECIES, TINY);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector tx = startX, ty = startY, vx = startVx, vy = startVy, px = zero, py = zero;
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        FloatVector c = FloatVector.fromArray(SPECIES, cos, at);
+        FloatVector s = FloatVector.fromArray(SPECIES, sin, at);
+        FloatVector dx = tx.sub(px), dy = ty.sub(py);
+        FloatVector ahead = dx.fma(c, dy.mul(s)), right = dy.mul(c).sub(dx.mul(s));
+        FloatVector square = ahead.mul(ahead);
+        FloatVector inner = right.sub(radius), outer = right.add(radius);
+        VectorMask<Float> inRight = inner.fma(inner, square).compare(LT, circle);
+        VectorMask<Float> inLeft = outer.fma(outer, square).compare(LT, circle);
+        VectorMask<Float> isNear = right.fma(right, square).compare(LT, near);
+        FloatVector u = ahead.blend(right.neg(), isNear).blend(ahead, inLeft).blend(ahead, inRight);
+        FloatVector w = right.blend(ahead, isNear).blend(inner, inLeft).blend(outer, inRight);
+        FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
+        FloatVector a = pace.fma(drag, perLag);
+        FloatVector slide = a.fma(glide5, glide4).fma(a, glide3).fma(a, glide2).fma(a, glide1);
+        FloatVector glided = slide.fma(a, one);
+        FloatVector decay = one.sub(glided.mul(a)), glide = glided.mul(dt);
+        FloatVector length = u.fma(u, w.fma(w, tiny)).sqrt();
+        FloatVector scale = commanded.div(length.mul(pace.fma(brake, one)));
+        FloatVector wantedX = u.mul(c).sub(w.mul(s)).mul(scale);
+        FloatVector wantedY = u.mul(s).add(w.mul(c)).mul(scale);
+        FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
+        tx = offX.fma(glide, wantedX.fma(dt, tx));
+        ty = offY.fma(glide, wantedY.fma(dt, ty));
+        vx = offX.fma(decay, wantedX);
+        vy = offY.fma(decay, wantedY);
+        tx.intoArray(targetX, at);
+        ty.intoArray(targetY, at);
+        px = FloatVector.fromArray(SPECIES, x, at);
+        py = FloatVector.fromArray(SPECIES, y, at);
+      }
+      vx.mul(lag).intoArray(targetEndVx, i);
+      vy.mul(lag).intoArray(targetEndVy, i);
+    }
+  }
+
+  private void follow(Target.Along along) {
+    for (int step = 0, at = 0; step < steps; step++, at += SIZE) {
+      Arrays.fill(targetX, at, at + SIZE, (float) (along.track().x(step) - originX));
+      Arrays.fill(targetY, at, at + SIZE, (float) (along.track().y(step) - originY));
+    }
+    Arrays.fill(targetEndVx, (float) along.track().carriedX(situation.response().lagS(), dtS));
+    Arrays.fill(targetEndVy, (float) along.track().carriedY(situation.response().lagS(), dtS));
+  }
+
+  /** What the distance to the target costs, times the weight of the behaviour. */
+  private void score(float weight) {
+    float each = (float) objective.distance() * dtS;
+    FloatVector nearest = FloatVector.broadcast(SPECIES, (float) objective.closest());
+    FloatVector carried = FloatVector.broadcast(SPECIES, (float) objective.carried());
+    FloatVector radius = FloatVector.broadcast(SPECIES, (float) objective.captureRadius());
+    FloatVector bonus = FloatVector.broadcast(SPECIES, (float) objective.capture());
+    double softness = objective.softness();
+    FloatVector soft =
+        FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        far = FloatVector.broadcast(SPECIES, FAR);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector sum = zero, least = far, dx = zero, dy = zero;
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        dx =
+            FloatVector.fromArray(SPECIES, targetX, at)
+                .sub(FloatVector.fromArray(SPECIES, x, at));
+        dy =
+            FloatVector.fromArray(SPECIES, targetY, at)
+                .sub(FloatVector.fromArray(SPECIES, y, at));
+        FloatVector distance = dx.fma(dx, dy.fma(dy, soft)).sqrt();
+        sum = sum.add(distance);
+        least = least.min(distance);
+      }
+      FloatVector endX =
+          dx.add(FloatVector.fromArray(SPECIES, targetEndVx, i))
+              .sub(FloatVector.fromArray(SPECIES, endVx, i));
+      FloatVector endY =
+          dy.add(FloatVector.fromArray(SPECIES, targetEndVy, i))
+              .sub(FloatVector.fromArray(SPECIES, endVy, i));
+      FloatVector end = endX.fma(endX, endY.fma(endY, soft)).sqrt();
+      FloatVector captured = zero.blend(bonus, least.compare(LT, radius));
+      FloatVector cost = sum.mul(each).add(least.mul(nearest)).add(end.mul(carried)).sub(captured);
+      cost.mul(weight).add(FloatVector.fromArray(SPECIES, costs, i)).intoArray(costs, i);
+    }
+  }
+
+  @Override
+  public void forget() {
+    Arrays.fill(turnSums, 0f);
+    Arrays.fill(speedSums, 0f);
+    Arrays.fill(weightSums, 0f);
+  }
+
+  @Override
+  public void weigh(float base, float temperature) {
+    float coldness = -1 / temperature;
+    for (int i = 0; i < SIZE; i += LANES)
+      FloatVector.fromArray(SPECIES, costs, i)
+          .sub(base)
+          .mul(coldness)
+          .max(LEAST_EXPONENT)
+          .min(MOST_EXPONENT)
+          .intoArray(weights, i);
+    LaneMath.exp(weights, 0, SIZE);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector weight = FloatVector.fromArray(SPECIES, weights, i);
+      FloatVector.fromArray(SPECIES, weightSums, i).add(weight).intoArray(weightSums, i);
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+        FloatVector.fromArray(SPECIES, turnRates, at)
+            .fma(weight, FloatVector.fromArray(SPECIES, turnSums, at))
+            .intoArray(turnSums, at);
+        FloatVector.fromArray(SPECIES, speeds, at)
+            .fma(weight, FloatVector.fromArray(SPECIES, speedSums, at))
+            .intoArray(speedSums, at);
+      }
+    }
+  }
+}

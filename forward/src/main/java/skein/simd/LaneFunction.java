@@ -1,0 +1,22 @@
+package skein.simd;
+
+/**
+ * A compiled formula: the same arithmetic in {@link #COUNT} worlds, several at a time. Made by {@link
+ * LaneCompiler}. It keeps nothing between calls.
+ */
+public abstract class LaneFunction {
+  /** Worlds computed by one call: a multiple of every lane count, few enough for the first-level cache. */
+  public static final int COUNT = 128;
+
+  /** How many numbers {@link #apply} needs to lay results by. */
+  public abstract int scratch();
+
+  /**
+   * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
+   *     output must not lie where an input does.
+   * @param offsets where in its array each begins
+   * @param parameters by parameter, then by world
+   * @param scratch of {@link #scratch()} numbers
+   */
+  public abstract void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch);
+}

@@ -1,0 +1,41 @@
+package skein.simd;
+
+/**
+ * Random numbers without state: the number at a place of a world's sequence is a hash of the
+ * world's key and the place. So it depends on seed, candidate and episode alone, whatever the
+ * order, the batch or the number of threads.
+ *
+ * <p>The hash is the two-round 32-bit mixer {@code lowbias32} (Chris Wellons, public domain; bias
+ * 0.17). It serves simulation, not secrets.
+ */
+public final class WorldRandom {
+  private WorldRandom() {}
+
+  public static final int MULTIPLIER_1 = 0x7feb352d;
+  public static final int MULTIPLIER_2 = 0x846ca68b;
+
+  /** Steps from one place to the next; odd, so that all places differ. */
+  public static final int STRIDE = 0x9e3779b9;
+
+  /** The key of the world that flies a candidate's episode. */
+  public static int key(long seed, long candidate, long episode) {
+    long mixed = mix64(mix64(mix64(seed) + candidate) + episode);
+    return (int) (mixed >>> 32);
+  }
+
+  /** 32 random bits at a place of a world's sequence. */
+  public static int bits(int key, int place) {
+    int x = key + place * STRIDE;
+    x = (x ^ x >>> 16) * MULTIPLIER_1;
+    x = (x ^ x >>> 15) * MULTIPLIER_2;
+    return x ^ x >>> 16;
+  }
+
+  // SplitMix64's finaliser (Steele, Lea, Flood 2014).
+  private static long mix64(long value) {
+    long z = value + 0x9e3779b97f4a7c15L;
+    z = (z ^ z >>> 30) * 0xbf58476d1ce4e5b9L;
+    z = (z ^ z >>> 27) * 0x94d049bb133111ebL;
+    return z ^ z >>> 31;
+  }
+}

@@ -1,0 +1,202 @@
+package skein.forward
+
+import skein.forecast.Forecast
+import skein.policy.{PlanarObservation, ObservingPolicy, Policy, TeamPolicy, TeamSight}
+import skein.units.Instant
+
+/** What a decision is made from: a reading of each vehicle, and the headings sent to them until then. Mutable.
+  *
+  * @see
+  *   `skein.loop.Picture`, which the live loops hold
+  */
+private[skein] final class DuelSight(count: Int):
+  val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
+
+  /** Headings sent last, rad. */
+  val sent: Array[Double] = Array.ofDim[Double](count)
+
+  /** The step of the loop that each vehicle's reading belongs to; what a delay is drawn by. */
+  val step: Array[Int] = Array.ofDim[Int](count)
+
+  /** When each reading was made, ns. */
+  val validAtNs: Array[Long] = Array.ofDim[Long](count)
+
+  /** What the readings are to be replaced by when it is decided. */
+  var forecast: Option[Forecast] = None
+
+  def copyFrom(other: DuelSight): Unit =
+    for vehicle <- 0 until count do
+      x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
+      vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
+      sent(vehicle) = other.sent(vehicle); step(vehicle) = other.step(vehicle)
+      validAtNs(vehicle) = other.validAtNs(vehicle)
+    forecast = other.forecast
+
+  def take(world: DuelWorld, vehicle: Int, question: Int): Unit =
+    val slot = world.slot(vehicle, question)
+    x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
+    vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
+    step(vehicle) = world.stepOf(vehicle, question)
+    validAtNs(vehicle) = world.validAtNs(slot)
+
+/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest sight, at
+  * least an interval after the last, whenever a command may be sent.
+  *
+  * @param intervalNs
+  *   between two decisions, or between two commands if it `decidesFirst`
+  * @param decidesFirst
+  *   decides at every sight; then what waits is the decision
+  */
+private[skein] final class Controller(
+    world: DuelWorld,
+    agent: Int,
+    steering: Steering,
+    intervalNs: Long,
+    decidesFirst: Boolean,
+    onSent: Controller.OnSent
+):
+  import DuelWorld.*
+
+  private val policy     = world.agents(agent).policy
+  private val minNs      = Nanos.of(steering.minIntervalS)
+  private val handoverNs = Nanos.of(steering.handoverS)
+  private val held       = DuelSight(world.count)
+
+  private var outstanding   = 0
+  private var mayCommandAt  = 0L
+  private var mayCommand    = false
+  private var turnAt        = 0L
+  private var holds         = false
+  private var lastDecidedAt = Controller.Never
+  private var decided       = 0.0
+  private var speed         = 0.0
+  private var sent          = 0.0
+  private var made, unused  = 0
+
+  /** What the policy remembers. */
+  private var memory: Any = ()
+
+  /** What is decided upon, and how far away it shows another vehicle. */
+  private var upon                    = held
+  private val distance: Int => Double =
+    other => StrictMath.hypot(upon.x(agent) - upon.x(other), upon.y(agent) - upon.y(other))
+  private var turned = 0.0
+
+  /** Rad. */
+  def sentHeading: Double = sent
+
+  def decisions: Int = made
+
+  /** The sum of all changes of the decided heading. */
+  def effortRad: Double = turned
+
+  /** Sights or decisions that a newer one replaced. */
+  def skipped: Int = unused
+
+  def start(): Unit =
+    outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
+    lastDecidedAt = Controller.Never
+    decided = world.agents(agent).startHeadingRad
+    memory = ObservingPolicy.initialOf(policy)
+    speed = world.agents(agent).speed
+    sent = decided
+    made = 0; unused = 0; turned = 0
+    goOn()
+
+  def offer(sight: DuelSight): Unit =
+    if holds then unused += 1
+    holds = true
+    held.copyFrom(sight)
+    if decidesFirst then decide(held)
+    goOn()
+
+  /** A command was answered. */
+  def acknowledged(): Unit =
+    outstanding -= 1
+    if outstanding > 0 then mayCommandAt = math.max(mayCommandAt, world.nowNs + handoverNs)
+    goOn()
+
+  /** Does what it is time for. */
+  def goOn(): Unit =
+    if !mayCommand && outstanding < steering.mostOutstanding then
+      if world.nowNs >= mayCommandAt then mayCommand = true
+      else world.schedule(mayCommandAt, Wake, agent, 0)
+    if mayCommand && holds then
+      if world.nowNs >= turnAt then
+        turnAt = world.nowNs + intervalNs
+        holds = false
+        if !decidesFirst then decide(held)
+        send(held.step(agent))
+      else world.schedule(turnAt, Wake, agent, 0)
+
+  /** What the policy decided last, rad. */
+  def decidedHeading: Double = decided
+
+  /** And how fast it is to fly, m/s. */
+  def decidedSpeed: Double = speed
+
+  def decide(sight: DuelSight): Unit =
+    val now     = world.nowNs
+    val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
+    val before  = decided
+    for forecast <- sight.forecast do ahead(sight, forecast)
+    policy match
+      case duel: Policy     => decided = heading(duel, sight, elapsed)
+      case team: TeamPolicy =>
+        val course = team.course(seen(sight, elapsed))
+        decided = course.headingRad
+        speed = course.speedMps
+    turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
+    lastDecidedAt = now
+    made += 1
+
+  private def heading(policy: Policy, sight: DuelSight, elapsedS: Double): Double =
+    upon = sight
+    val other      = world.assignment.opponentOf(agent, distance)
+    val (dx, dy)   = (sight.x(other) - sight.x(agent), sight.y(other) - sight.y(agent))
+    val (dvx, dvy) = (sight.vx(other) - sight.vx(agent), sight.vy(other) - sight.vy(agent))
+    policy match
+      case observing: ObservingPolicy[?] =>
+        def ageS(vehicle: Int) = (world.nowNs - sight.validAtNs(vehicle)) * 1e-9
+        val seen               =
+          PlanarObservation(dx, dy, dvx, dvy, decided, sight.sent(other), elapsedS, ageS(agent), ageS(other))
+        val answer = ObservingPolicy.decide(observing, seen, memory)
+        memory = answer.memory
+        answer.headingRad
+      case _ => policy.heading(dx, dy, dvx, dvy, decided, sight.sent(other), elapsedS)
+
+  private def seen(sight: DuelSight, elapsedS: Double): TeamSight = TeamSight(
+    agent,
+    IArray.from(sight.x),
+    IArray.from(sight.y),
+    IArray.from(sight.vx),
+    IArray.from(sight.vy),
+    decided,
+    elapsedS
+  )
+
+  /** Puts where the vehicles will be in the place of where they were read. */
+  private def ahead(sight: DuelSight, forecast: Forecast): Unit =
+    val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
+    for vehicle <- 0 until world.count do
+      val kinematics = estimates(vehicle).kinematics
+      sight.x(vehicle) = kinematics.positionNed.x; sight.y(vehicle) = kinematics.positionNed.y
+      sight.vx(vehicle) = kinematics.velocityNed.x; sight.vy(vehicle) = kinematics.velocityNed.y
+
+  /** Notes that a decision was sent without any message. */
+  def sentNow(): Unit = sent = decided
+
+  private def send(step: Int): Unit =
+    mayCommand = false
+    mayCommandAt = world.nowNs + minNs
+    outstanding += 1
+    sent = decided
+    onSent.sent(agent, world.send(agent, decided, speed, step), decided, speed)
+    goOn()
+
+private[skein] object Controller:
+  /** Is told of every command sent. */
+  trait OnSent:
+    def sent(agent: Int, number: Int, headingRad: Double, speedMps: Double): Unit
+
+  private val Never = Long.MinValue

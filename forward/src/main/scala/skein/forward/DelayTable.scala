@@ -1,0 +1,46 @@
+package skein.forward
+
+import skein.signal.LatencyDistribution
+import skein.simd.WorldRandom
+import skein.units.*
+
+/** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits choose one.
+  * Successive messages are independent.
+  *
+  * @param delaysS
+  *   ascending, s: half of the round trip's quantile in the middle of each 1024th
+  */
+final class DelayTable private (val delaysS: Array[Float]) extends Delays:
+  private val delaysNs =
+    delaysS.map(s => math.round(Span.ofSeconds(s).toNanos.toDouble / DelayTable.GrainNs) * DelayTable.GrainNs)
+
+  /** The delay that these random bits choose, s. */
+  def delayS(bits: Int): Float = delaysS(bits >>> DelayTable.Drop)
+
+  def maxS: Float = delaysS.last
+
+  /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight seconds. */
+  private[skein] def copyGrains(into: Array[Int], at: Int): Unit =
+    for i <- delaysNs.indices do into(at + i) = Math.toIntExact(delaysNs(i) / DelayTable.GrainNs)
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    delaysNs(WorldRandom.bits(
+      Delays.keyOf(worldKey, line),
+      step * Delays.Lines + line % Delays.Lines
+    ) >>> DelayTable.Drop)
+
+object DelayTable:
+  val Size = 1024
+
+  /** Delays are whole multiples of this, so that kernels count time exactly in 32 bits. */
+  private[skein] val GrainNs: Int = 4
+
+  /** Bits of a random number that are not used. */
+  val Drop: Int = 32 - Integer.numberOfTrailingZeros(Size)
+
+  def of(roundTrip: LatencyDistribution): DelayTable =
+    DelayTable(Array.tabulate(Size)(i => (roundTrip.quantile((i + 0.5) / Size).toSeconds / 2).toFloat))
+
+  val none: DelayTable   = of(LatencyDistribution.Constant(Span.Zero))
+  val direct: DelayTable = of(LatencyDistribution.Direct)
+  val vpn: DelayTable    = of(LatencyDistribution.Vpn)

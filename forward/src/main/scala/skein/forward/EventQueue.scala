@@ -1,0 +1,54 @@
+package skein.forward
+
+/** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they were
+  * added. An event is a `Long` of the caller's. Allocates nothing after construction.
+  */
+private[skein] final class EventQueue(capacity: Int):
+  private val times    = Array.ofDim[Long](capacity)
+  private val sequence = Array.ofDim[Long](capacity)
+  private val events   = Array.ofDim[Long](capacity)
+  private var size     = 0
+  private var added    = 0L
+
+  def isEmpty: Boolean = size == 0
+
+  def clear(): Unit =
+    size = 0; added = 0
+
+  def nextTime: Long = times(0)
+
+  def add(time: Long, event: Long): Unit =
+    if size == capacity then throw IllegalStateException(s"more than $capacity events are waiting")
+    var hole = size
+    size += 1
+    val number = added
+    added += 1
+    while hole > 0 && isBefore(time, number, (hole - 1) / 2) do
+      move((hole - 1) / 2, hole)
+      hole = (hole - 1) / 2
+    put(hole, time, number, event)
+
+  def take(): Long =
+    val first = events(0)
+    size -= 1
+    val time   = times(size)
+    val number = sequence(size)
+    var hole   = 0
+    var child  = 1
+    while child < size do
+      if child + 1 < size && isBefore(times(child + 1), sequence(child + 1), child) then child += 1
+      if isBefore(time, number, child) then child = size
+      else
+        move(child, hole)
+        hole = child
+        child = 2 * hole + 1
+    put(hole, time, number, events(size))
+    first
+
+  private def isBefore(time: Long, number: Long, other: Int): Boolean =
+    time < times(other) || (time == times(other) && number < sequence(other))
+
+  private def move(from: Int, to: Int): Unit = put(to, times(from), sequence(from), events(from))
+
+  private def put(at: Int, time: Long, number: Long, event: Long): Unit =
+    times(at) = time; sequence(at) = number; events(at) = event

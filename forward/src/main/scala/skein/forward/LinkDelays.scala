@@ -1,0 +1,49 @@
+package skein.forward
+
+import skein.signal.LatencyProfile
+import skein.simd.WorldRandom
+
+/** The delays of links that are told by a profile. */
+object LinkDelays:
+
+  /** The delays of a link: half of a sampled round trip each. */
+  def of(profile: LatencyProfile): Delays = profile match
+    case LatencyProfile.Steady(_, roundTrip)                    => DelayTable.of(roundTrip)
+    case LatencyProfile.Alternating(_, busy, quiet, lasts, not) =>
+      AlternatingDelays(DelayTable.of(busy), DelayTable.of(quiet), lasts.toSeconds, not.toSeconds)
+
+  /** The paper's VPN over a long time: stretches of `vpn` and of `direct`. */
+  val vpnMixed: Delays = of(LatencyProfile.vpnMixed)
+
+/** A link that is busy for a while and then quiet for a while; how long is exponentially distributed, and each world's
+  * own. A flight begins at a random moment.
+  */
+final case class AlternatingDelays(
+    busy: DelayTable,
+    quiet: DelayTable,
+    busyLastsS: Double,
+    quietLastsS: Double
+) extends Delays:
+  require(busyLastsS > 0 && quietLastsS > 0, s"stretches must be positive: $busyLastsS, $quietLastsS s")
+
+  /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before it. */
+  def isBusy(worldKey: Int, timeNs: Long): Boolean =
+    var stretch = 0
+    var isBusy  = uniform(worldKey, stretch) < busyLastsS / (busyLastsS + quietLastsS)
+    var until   = 0.0
+    while
+      stretch += 1
+      // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
+      until -= StrictMath.log1p(-uniform(worldKey, stretch)) * (if isBusy then busyLastsS else quietLastsS)
+      until * 1e9 <= timeNs
+    do isBusy = !isBusy
+    isBusy
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    (if isBusy(worldKey, sentAtNs) then busy else quiet).delayNs(worldKey, line, step, number, sentAtNs)
+
+  private def uniform(worldKey: Int, stretch: Int): Double =
+    (WorldRandom.bits(worldKey, stretch * Delays.Lines + Delays.Stretch) >>> 8) * AlternatingDelays.Step
+
+private[skein] object AlternatingDelays:
+  private val Step = 1.0 / (1 << 24)

@@ -1,0 +1,71 @@
+package skein.forward
+
+/** Asks one vehicle once a period, as `skein.flow.Sense` does: a question due while the window is full waits, a second
+  * one is missed; an answer that comes after one to a later question is dropped, unless it tells of a later moment, or all
+  * wait for their turn.
+  */
+private[skein] final class PeriodicQuestions(
+    world: DuelWorld,
+    vehicle: Int,
+    periodNs: Long,
+    asking: Asking,
+    seen: PeriodicQuestions.Seen
+):
+  import DuelWorld.Ring
+  import PeriodicQuestions.*
+
+  private val offsetNs = Nanos.of(asking.spreadS) * vehicle / world.count
+  private val ends     = Array.ofDim[Byte](Ring)
+  private var waits    = false
+  private var asked    = 0
+  private var underWay = 0
+  private var newest   = -1
+  private var told     = -1
+  private var oldest   = 0
+
+  def start(): Unit =
+    waits = false; asked = 0; underWay = 0; newest = -1; told = -1; oldest = 0
+    world.schedule(offsetNs, DuelWorld.Tick, vehicle, 0)
+
+  def tick(number: Int): Unit =
+    world.schedule(offsetNs + (number + 1) * periodNs, DuelWorld.Tick, vehicle, number + 1)
+    waits = true
+    ask()
+
+  def ended(question: Int, answered: Boolean): Unit =
+    if asking.inOrder then
+      ends(question % Ring) = if answered then HasAnswer else Failed
+      while oldest < asked && ends(oldest % Ring) != Open do
+        underWay -= 1
+        oldest += 1
+        if ends((oldest - 1) % Ring) == HasAnswer then seen.seen(vehicle, oldest - 1)
+    else
+      underWay -= 1
+      if answered && (question > newest || isNewer(question)) then
+        newest = newest.max(question)
+        told = question
+        seen.seen(vehicle, question)
+    ask()
+
+  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
+  private def isNewer(question: Int): Boolean =
+    val answer = world.slot(vehicle, question)
+    val last   = world.slot(vehicle, told)
+    world.validAtNs(answer) > world.validAtNs(last) || world.sentAtNs(answer) > world.receivedAtNs(last)
+
+  private def ask(): Unit =
+    if waits && underWay < asking.window then
+      waits = false
+      underWay += 1
+      ends(asked % Ring) = Open
+      val _ = world.ask(0, vehicle, asked)
+      asked += 1
+
+private[skein] object PeriodicQuestions:
+  /** Takes the readings, in the order of the questions. */
+  trait Seen:
+    def seen(vehicle: Int, question: Int): Unit
+
+  private val Open: Byte      = 0
+  private val HasAnswer: Byte = 1
+  private val Failed: Byte    = 2

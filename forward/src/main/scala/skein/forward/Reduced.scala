@@ -1,0 +1,76 @@
+package skein.forward
+
+import skein.signal.Kinematics
+import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+
+/** A first-order model of the response to commanded velocity: v' = (gain · command(t − deadTime) − v) / lag.
+  *
+  * @param lagS
+  *   0: the velocity jumps
+  */
+final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends VelocityResponse:
+  require(lagS >= 0 && deadTimeS >= 0, s"lag $lagS s and dead time $deadTimeS s must not be negative")
+  def create(): Vehicle = LagVehicle(this)
+
+  def model: ReducedModel = ReducedModel.lag(gain, lagS, deadTimeS)
+
+  override def predictor: VehicleModel[?] =
+    // A model needs a lag above 0; within a nanosecond nothing happens.
+    ReducedVehicleModel(ReducedModel.lag(gain, lagS.max(1e-9), deadTimeS))
+
+object Reduced:
+  /** AirSim's default quadrotor under `moveByVelocityZ` at z = −20 m, as `./skein identify` fits it to live flights of
+    * the paper's duel: gain ± 0.017, lag ± 0.07 s, dead time ± 0.02 s (95 %). Off the full quadrotor by 0.02 m after 1 s
+    * and 0.22 m after 5 s (medians). See [[skein.vehicle.ReducedModel.AirSim]], which follows it more closely.
+    */
+  val AirSim: Reduced = Reduced(gain = 0.919, lagS = 2.66, deadTimeS = 0.053)
+
+/** Integrates [[Reduced]] exactly between the times at which commands begin to act. */
+private[skein] final class LagVehicle(model: Reduced) extends Vehicle:
+  import LagVehicle.Pending
+  var x, y, vx, vy               = 0.0
+  private var down               = 0.0
+  private var now                = 0.0
+  private var wantedX, wantedY   = 0.0
+  private val at, atX, atY       = Array.ofDim[Double](Pending)
+  private var first, behindFirst = 0
+
+  def start(x0: Double, y0: Double, z: Double): Unit =
+    x = x0; y = y0; vx = 0; vy = 0; down = z
+    now = 0; wantedX = 0; wantedY = 0
+    first = 0; behindFirst = 0
+
+  def command(commandedX: Double, commandedY: Double): Unit =
+    if behindFirst - first == Pending then
+      throw IllegalStateException(s"more than $Pending commands within the dead time of ${model.deadTimeS} s")
+    val slot = behindFirst % Pending
+    at(slot) = now + model.deadTimeS; atX(slot) = model.gain * commandedX; atY(slot) = model.gain * commandedY
+    behindFirst += 1
+
+  def advance(timeS: Double): Unit =
+    while first < behindFirst && at(first % Pending) <= timeS do
+      val slot = first % Pending
+      glide(at(slot))
+      wantedX = atX(slot); wantedY = atY(slot)
+      if model.lagS == 0 then
+        vx = wantedX; vy = wantedY
+      first += 1
+    glide(timeS)
+
+  override def seen: Kinematics = level(down)
+
+  private def glide(until: Double): Unit =
+    val dt = until - now
+    if model.lagS > 0 then
+      val keep = StrictMath.exp(-dt / model.lagS)
+      val gain = model.lagS * (1 - keep)
+      x += wantedX * dt + (vx - wantedX) * gain
+      y += wantedY * dt + (vy - wantedY) * gain
+      vx = wantedX + (vx - wantedX) * keep
+      vy = wantedY + (vy - wantedY) * keep
+    else
+      x += vx * dt; y += vy * dt
+    now = until
+
+private[skein] object LagVehicle:
+  private val Pending = 64

@@ -1,0 +1,171 @@
+package skein.forward
+
+/** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in double. Events happen in the order of
+  * their times, in whole nanoseconds; between them the vehicles fly by themselves. Given the delays that a flight in
+  * virtual time met ([[RecordedDelays]]) it flies as that did, which `RolloutParitySimulation` holds it to. Mutable: one
+  * per thread; an episode allocates nothing but what the policies, what they see of a team, the quadrotor's setpoints and
+  * the `predictive` loop's forecast need.
+  *
+  * @param link
+  *   delays of questions, answers, commands and acknowledgements; `Paused` ignores it
+  */
+final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
+  import DuelWorld.*
+
+  def this(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse) =
+    this(Engagement.of(duel), timing, link, model)
+
+  private val world = DuelWorld(
+    engagement,
+    link,
+    model,
+    LoopTiming.askingOf(timing),
+    keepsKinematics = timing.isInstanceOf[LoopTiming.Predictive],
+    ringOf(timing, engagement.agents.size)
+  )
+  private val loop                       = LoopRuns.of(timing, world)
+  private val periodNs                   = Nanos.of(timing.periodS)
+  private val scores                     = (engagement.durationS / timing.periodS).round.toInt
+  private val judged                     = engagement.judged.toArray
+  private val against                    = judged.map(engagement.against(_).toArray)
+  private var tallies                    = judged.map(_ => Score())
+  private var watching                   = LoopObserver.Nobody
+  private var listener: Rollout.Listener = Rollout.NoListener
+
+  /** Flies one episode.
+    *
+    * @param worldKey
+    *   of [[WorldRandom]]: decides all delays
+    */
+  def fly(
+      worldKey: Int,
+      captureRadiusM: Double = 0.0,
+      onScore: Rollout.Listener = Rollout.NoListener,
+      observer: LoopObserver = LoopObserver.Nobody
+  ): Outcome =
+    start(worldKey, captureRadiusM, onScore, observer)
+    while !isOver do handle(world.next())
+    outcome
+
+  /** Begins an episode, as [[fly]] does. */
+  private[skein] def start(
+      worldKey: Int,
+      captureRadiusM: Double,
+      onScore: Rollout.Listener = Rollout.NoListener,
+      observer: LoopObserver = LoopObserver.Nobody
+  ): Unit =
+    listener = onScore
+    tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
+    watching = observer
+    world.start(worldKey, observer)
+    world.schedule(periodNs, ScoreNow, 0, 1)
+    for controller <- loop.controllers do controller.start()
+    loop.start()
+
+  /** Handles the events before this time.
+    *
+    * @return
+    *   the time of the next event; [[Rollout.Never]] when the episode is over
+    */
+  private[skein] def flyUntil(timeNs: Long): Long =
+    while !isOver && world.nextNs < timeNs do handle(world.next())
+    if isOver then Rollout.Never else world.nextNs
+
+  private def isOver: Boolean = tallies(0).count >= scores
+
+  /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last was captured;
+    * distances are to the nearest pursuer, efforts summed over a side. In a team without sides all are judged, by the
+    * distance to the nearest other, and the effort is that of the evaders.
+    */
+  private[skein] def outcome: Outcome =
+    val each    = evaderOutcomes
+    val nearest = each.minBy(_.minDistanceM)
+    Outcome(
+      nearest.minDistanceM,
+      nearest.minDistanceAtS,
+      each.map(_.meanDistanceM).sum / each.size,
+      each.map(_.meanLast10sM).sum / each.size,
+      each.map(_.captureS).max,
+      engagement.pursuers.map(loop.controllers(_).effortRad).sum,
+      judged.map(loop.controllers(_).effortRad).sum,
+      loop.controllers.map(_.decisions).sum,
+      loop.controllers.map(_.skipped).sum
+    )
+
+  /** How the last episode came out for each evader, in the engagement's order; in a team without sides, for everybody. */
+  def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
+
+  private def handle(event: Long): Unit =
+    val vehicle = vehicleOf(event)
+    val number  = numberOf(event)
+    kindOf(event) match
+      case ScoreNow => scoreNow(number)
+      case Tick     => loop.tick(vehicle, number)
+      case Sampled  => world.sampled(vehicle, number)
+      case Answered =>
+        world.received(vehicle, number)
+        loop.answered(vehicle, number)
+      case TimedOut     => loop.timedOut(vehicle, number)
+      case Arrived      => world.arrived(vehicle, number)
+      case Acts         => world.acts(vehicle, number)
+      case Acknowledged =>
+        loop.replaced(vehicle, number)
+        loop.controllers(vehicle).acknowledged()
+      case Wake     => loop.controllers(vehicle).goOn()
+      case Patience => loop.patienceOver()
+      case Due      => loop.due(number)
+
+  private def scoreNow(number: Int): Unit =
+    for vehicle <- world.vehicles do vehicle.advance(world.nowS)
+    for index <- world.vehicles.indices do
+      watching.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
+    for index <- judged.indices do
+      val evader  = world.vehicles(judged(index))
+      var nearest = Double.PositiveInfinity
+      for agent <- against(index) do
+        val pursuer = world.vehicles(agent)
+        nearest = math.min(nearest, StrictMath.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
+      tallies(index).add(world.nowS, nearest)
+    val (evader, pursuer) = (world.vehicles(judged(0)), world.vehicles(against(0)(0)))
+    listener.scored(world.nowS, evader.x, evader.y, pursuer.x, pursuer.y)
+    world.schedule((number + 1) * periodNs, ScoreNow, 0, number + 1)
+
+object Rollout:
+
+  /** Is told of every score: the positions of the first evader and pursuer, or of the first two vehicles of
+    * a team without sides, m, at one time, s.
+    */
+  trait Listener:
+    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit
+
+  /** Whether what is scored at this time of an episode counts for the mean of its last 10 s. */
+  private[skein] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
+
+  private[skein] val Never: Long = Long.MaxValue
+
+  private val NoListener: Listener = (_, _, _, _, _) => ()
+
+  /** Places of the random sequence that belong to one step; the kernels use the same. */
+  private[skein] val Places: Int       = Delays.Lines
+  private[skein] val CommandPlace: Int = Delays.FirstCommand
+
+/** Adds up distances as they come. */
+private[skein] final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0):
+  var count                = 0
+  private var least        = Double.PositiveInfinity
+  private var leastAt      = 0.0
+  private var sum, lastSum = 0.0
+  private var lastCount    = 0
+  private var captureS     = Double.PositiveInfinity
+
+  def add(timeS: Double, distanceM: Double): Unit =
+    count += 1
+    sum += distanceM
+    if distanceM < least then
+      least = distanceM; leastAt = timeS
+    if distanceM <= captureRadiusM && captureS.isInfinite then captureS = timeS
+    if Rollout.isLast10s(timeS, durationS) then
+      lastSum += distanceM
+      lastCount += 1
+
+  def outcome: EvaderOutcome = EvaderOutcome(least, leastAt, sum / count, lastSum / lastCount, captureS)

@@ -1,0 +1,43 @@
+package skein.forward
+
+import skein.signal.Kinematics
+import skein.units.{Quaternion, Vector3}
+import skein.vehicle.{QuadrotorModel, VehicleModel}
+
+/** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and thread. */
+trait Vehicle:
+  /** Places it at rest, at time 0. */
+  def start(x: Double, y: Double, z: Double): Unit
+
+  /** A command (m/s, north and east) that acts from now on. */
+  def command(vx: Double, vy: Double): Unit
+
+  /** Flies until this time, s; never earlier than the call before. */
+  def advance(timeS: Double): Unit
+
+  def x: Double
+  def y: Double
+  def vx: Double
+  def vy: Double
+
+  // The same as the vehicle tells it when it is asked.
+  def seenX: Double  = x
+  def seenY: Double  = y
+  def seenVx: Double = vx
+  def seenVy: Double = vy
+
+  /** All that it tells. Where a vehicle knows no more than its horizontal motion: level, not turning, at z = 0. */
+  def seen: Kinematics = level(0)
+
+  protected def level(downM: Double): Kinematics =
+    Kinematics(Vector3(seenX, seenY, downM), Vector3(seenVx, seenVy, 0), Quaternion.Identity, Vector3.Zero)
+
+/** How a vehicle answers to commanded velocities. */
+trait VelocityResponse:
+  def create(): Vehicle
+
+  /** From the arrival of a command until it acts in the place of another, s. The first acts at once. */
+  def handoverS: Double = 0.0
+
+  /** What carries readings of such a vehicle forward best. */
+  def predictor: VehicleModel[?] = QuadrotorModel.AirSim

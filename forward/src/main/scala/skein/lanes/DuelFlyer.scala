@@ -1,0 +1,157 @@
+package skein.lanes
+
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced, Rollout, VelocityResponse}
+import skein.policy.Policy
+
+/** Flies a batch of worlds on one thread. Mutable. */
+private trait DuelFlyer:
+  /** Most worlds of a batch. */
+  def batch: Int
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit
+
+/** By the scalar reference. */
+private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse) extends DuelFlyer:
+  val batch: Int                             = 16
+  private var last: (Policy, Policy, Delays) = (null, null, null)
+  private var rollout: Rollout               = null
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
+    for world <- numbers do
+      val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
+      if wanted != last then
+        last = wanted
+        val (pursuer, evader, link) = wanted
+        val own = Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
+        rollout = Rollout(own, timing, link, model)
+      into.set(world, rollout.fly(worlds.key(world), captureRadiusM))
+
+/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know are flown by
+  * another.
+  */
+private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
+  val batch: Int = DuelKernel.WORLDS
+
+  /** A kernel and its policies, and the worlds that will fly by it. */
+  protected abstract class Lanes(pursuer: Policy, evader: Policy):
+    protected val pursuers: LanePolicy = LanePolicy.of(pursuer)
+    protected val evaders: LanePolicy  = LanePolicy.of(evader)
+    private val ofLane                 = Array.ofDim[Int](batch)
+    private var filled                 = 0
+
+    protected def kernel: DuelKernel
+
+    /** Worlds that the lanes were filled with. */
+    protected def count: Int = filled
+
+    /** Flies them. */
+    protected def fly(captureRadiusM: Float): Unit
+
+    /** Fills a lane besides its policies. */
+    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit
+
+    def add(worlds: DuelWorlds, world: Int): Unit =
+      ofLane(filled) = world
+      put(filled, worlds, world)
+      filled += 1
+
+    private def put(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+      pursuers.take(lane, worlds.pursuer(world))
+      evaders.take(lane, worlds.evader(world))
+      fill(lane, worlds, world)
+
+    def fly(worlds: DuelWorlds, captureRadiusM: Float, into: DuelOutcomes): Unit =
+      // Lanes that no world needs fly the last one again.
+      for lane <- filled until batch do put(lane, worlds, ofLane(filled - 1))
+      fly(captureRadiusM)
+      for lane <- 0 until filled do
+        val world = ofLane(lane)
+        into.minDistanceM(world) = kernel.minDistance(lane)
+        into.meanDistanceM(world) = kernel.meanDistance(lane)
+        into.meanLast10sM(world) = kernel.meanLast10s(lane)
+        into.captureS(world) = kernel.captureS(lane)
+        into.pursuerEffortRad(world) = kernel.pursuerEffortRad(lane)
+        into.evaderEffortRad(world) = kernel.evaderEffortRad(lane)
+      filled = 0
+
+  protected def lanes(pursuer: Policy, evader: Policy): Lanes
+
+  /** Whether the lanes tell policies of this form all that they ask for. */
+  protected def canFly(form: PolicyLanes): Boolean = true
+
+  /** Whether the lanes know a world's link. */
+  protected def canFly(link: Delays): Boolean
+
+  private val byForm = collection.mutable.HashMap.empty[(AnyRef, AnyRef), Lanes]
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
+    val filled  = collection.mutable.LinkedHashSet.empty[Lanes]
+    val unknown = Array.newBuilder[Int]
+    for world <- numbers do
+      val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
+      val forms             = (PolicyLanes.of(pursuer), PolicyLanes.of(evader))
+      if forms._1.exists(canFly) && forms._2.exists(canFly) && canFly(worlds.link(world)) then
+        val chosen = byForm.getOrElseUpdate(forms, lanes(pursuer, evader))
+        chosen.add(worlds, world)
+        filled += chosen
+      else unknown += world
+    other.fly(worlds, unknown.result(), captureRadiusM, into)
+    for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
+
+/** By [[StreamDuelKernel]], where a world's link allows. */
+private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Reduced, other: DuelFlyer)
+    extends LaneFlyer(other):
+
+  override protected def canFly(form: PolicyLanes): Boolean = !form.needsAges
+
+  protected def canFly(link: Delays): Boolean = link match
+    case table: DelayTable => StreamDuelKernel.canFly(timing, table, model)
+    case _                 => false
+
+  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
+    protected val kernel: StreamDuelKernel = StreamDuelKernel(duel, timing, model, pursuers, evaders, true)
+    private val keys                       = Array.ofDim[Int](batch)
+    private val links                      = Array.ofDim[DelayTable](batch)
+
+    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+      keys(lane) = worlds.key(world)
+      links(lane) = worlds.link(world).asInstanceOf[DelayTable]
+
+    protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
+
+/** By [[TimetableKernel]]. All worlds of a batch have one key and one link. */
+private final class TimetableFlyer(
+    duel: Duel,
+    timing: LoopTiming,
+    model: TimetableModel,
+    timetables: Timetables,
+    other: DuelFlyer
+) extends LaneFlyer(other):
+
+  protected def canFly(link: Delays): Boolean = true
+
+  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
+    protected val kernel: TimetableKernel = TimetableKernel(duel, timing, model, pursuers, evaders)
+    private var timetable: Timetable      = null
+
+    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+      if lane == 0 then
+        val (link, key) = (worlds.link(world), worlds.key(world))
+        timetable = timetables.getOrMake(link, key)(Timetable.of(duel.durationS, timing, link, key, model))
+
+    protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
+
+/** The timetables used last, for all threads. */
+private final class Timetables(most: Int):
+  private val known = new java.util.LinkedHashMap[(Delays, Int), Timetable](16, 0.75f, true):
+    override def removeEldestEntry(eldest: java.util.Map.Entry[(Delays, Int), Timetable]): Boolean =
+      size > most
+
+  /** Two threads may make the same at once; they make it equal. */
+  def getOrMake(link: Delays, key: Int)(make: => Timetable): Timetable =
+    val held = known.synchronized(known.get((link, key)))
+    if held != null then held
+    else
+      val made = make
+      known.synchronized(known.put((link, key), made)): Unit
+      made

@@ -1,0 +1,46 @@
+package skein.lanes
+
+import skein.forward.{Delays, Outcome}
+import skein.policy.Policy
+
+/** The worlds of one call of [[DuelBatch]], by number from 0. Pure functions of the number, called from any thread.
+  *
+  * Neighbours that share a link should return the same object: it is copied into the first-level cache once for all of
+  * them. Otherwise the order is free.
+  */
+trait DuelWorlds:
+  def size: Int
+
+  /** Whether many worlds have the same key and the same link, as candidates that meet the same episodes do. Then they
+    * fly together through one [[Timetable]], several times as fast.
+    */
+  def shareEpisodes: Boolean = false
+
+  /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same delays. */
+  def key(world: Int): Int
+  def link(world: Int): Delays
+  def pursuer(world: Int): Policy
+  def evader(world: Int): Policy
+
+/** What each world came to; see [[Outcome]] for the meanings. One number per world, in metres, seconds and radians.
+  *
+  * @param flown
+  *   how many worlds were flown: all, unless the call was cancelled. The others' smallest distance is 0, as are all
+  *   their numbers.
+  */
+final class DuelOutcomes private[skein] (size: Int):
+  val minDistanceM, meanDistanceM, meanLast10sM, captureS, pursuerEffortRad, evaderEffortRad: Array[Float] =
+    Array.ofDim[Float](size)
+  private var done = 0
+
+  def flown: Int = done
+
+  private[skein] def flown_=(worlds: Int): Unit = done = worlds
+
+  private[skein] def set(world: Int, outcome: Outcome): Unit =
+    minDistanceM(world) = outcome.minDistanceM.toFloat
+    meanDistanceM(world) = outcome.meanDistanceM.toFloat
+    meanLast10sM(world) = outcome.meanLast10sM.toFloat
+    captureS(world) = outcome.captureS.toFloat
+    pursuerEffortRad(world) = outcome.pursuerEffortRad.toFloat
+    evaderEffortRad(world) = outcome.evaderEffortRad.toFloat

@@ -1,0 +1,108 @@
+package skein.lanes
+
+import skein.forward.{Delays, Duel, LoopTiming, Nanos, QuadrotorResponse, Rollout, Vehicle, VelocityResponse}
+import skein.policy.Policy
+import skein.signal.Kinematics
+import skein.units.Vector3
+import skein.vehicle.{Environment, Quadrotor}
+
+/** Many worlds' quadrotors fly side by side ([[QuadrotorKernel]]), each world by its own [[Rollout]] and in its own time:
+  * before each step of physics every rollout handles the events that fall between the step before and this one. That is
+  * how the scalar quadrotor ([[QuadrotorResponse]]) meets them too, so that only the flight itself is in floats; loops,
+  * delays and policies, of any kind, are the scalar reference's. Mutable.
+  */
+private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: QuadrotorResponse)
+    extends DuelFlyer:
+  import QuadrotorFleet.*
+  val batch: Int = QuadrotorFleet.Worlds
+
+  private val kernel    = QuadrotorKernel()
+  private val stepNs    = Nanos.of(model.quadrotor.stepS)
+  private val hoveredNs = Nanos.of(model.hoveredS)
+  private val rollouts  = Array.ofDim[Rollout](batch)
+  private val flownBy   = Array.fill[(Policy, Policy, Delays)](batch)((null, null, null))
+  private val nextNs    = Array.ofDim[Long](batch)
+
+  /** The end of the last step, since the flight's start, ns. */
+  private var steppedTo = 0L
+
+  def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
+    for some <- numbers.grouped(batch) do
+      steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
+      for lane <- some.indices do
+        rolloutOf(lane, worlds, some(lane)).start(worlds.key(some(lane)), captureRadiusM)
+        nextNs(lane) = 0
+      kernel.use(some.length * Vehicles)
+      flyAll(some.length)
+      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
+
+  private def flyAll(count: Int): Unit =
+    var flying = count
+    while flying > 0 do
+      val until = steppedTo + stepNs
+      flying = 0
+      var lane = 0
+      while lane < count do
+        if nextNs(lane) < until then nextNs(lane) = rollouts(lane).flyUntil(until)
+        if nextNs(lane) != Rollout.Never then flying += 1
+        lane += 1
+      kernel.fly(1)
+      steppedTo = until
+
+  private def rolloutOf(lane: Int, worlds: DuelWorlds, world: Int): Rollout =
+    val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
+    if wanted != flownBy(lane) then
+      flownBy(lane) = wanted
+      val (pursuer, evader, link) = wanted
+      val own = Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
+      rollouts(lane) = Rollout(own, timing, link, Places(lane))
+    rollouts(lane)
+
+  /** Where the vehicles of one world are in the kernel. */
+  private final class Places(lane: Int) extends VelocityResponse:
+    private var next                                      = lane * Vehicles
+    override def handoverS: Double                        = model.handoverS
+    override def predictor: skein.vehicle.VehicleModel[?] = model.predictor
+    def create(): Vehicle                                 =
+      next += 1
+      Flying(next - 1)
+
+  /** A vehicle of the kernel, as the loops know it. */
+  private final class Flying(place: Int) extends Vehicle:
+    private var originX, originY = 0.0
+    private var down             = 0f
+    private var sinceStep        = 0.0
+
+    def start(x: Double, y: Double, z: Double): Unit =
+      originX = x
+      originY = y
+      down = z.toFloat
+      kernel.hover(place, Vector3(0, 0, z - Quadrotor.AirSim.hoverSagM(z, Environment.Calm)))
+
+    def command(vx: Double, vy: Double): Unit = kernel.command(place, vx.toFloat, vy.toFloat, down)
+
+    def advance(timeS: Double): Unit = sinceStep = (Nanos.of(timeS) - steppedTo) * 1e-9
+
+    def x: Double  = originX + ownX
+    def y: Double  = originY + ownY
+    def vx: Double = kernel.vx(place) + kernel.ax(place) * sinceStep
+    def vy: Double = kernel.vy(place) + kernel.ay(place) * sinceStep
+
+    override def seenX: Double  = ownX.toFloat + originX
+    override def seenY: Double  = ownY.toFloat + originY
+    override def seenVx: Double = vx.toFloat
+    override def seenVy: Double = vy.toFloat
+
+    override def seen: Kinematics =
+      throw UnsupportedOperationException("the fleet tells how vehicles move horizontally, and no more")
+
+    private def ownX: Double = along(kernel.x(place), kernel.vx(place), kernel.ax(place))
+    private def ownY: Double = along(kernel.y(place), kernel.vy(place), kernel.ay(place))
+    private def along(from: Double, speed: Double, acceleration: Double): Double =
+      from + speed * sinceStep + acceleration * (sinceStep * sinceStep / 2)
+
+private object QuadrotorFleet:
+  private val Vehicles = 2
+
+  /** Worlds flown together. */
+  val Worlds: Int = QuadrotorKernel.VEHICLES / Vehicles

@@ -1,0 +1,110 @@
+package skein.lanes
+
+import skein.forward.{Duel, Duelist, Nanos, QuadrotorResponse, Reduced, ReducedResponse, VelocityResponse}
+import skein.vehicle.{Quadrotor, ReducedModel}
+
+/** A kind of vehicle that flies by [[Timetable]]s. */
+private[skein] trait TimetableModel:
+  /** From a command's arrival until the vehicle follows it, s. */
+  def deadTimeS: Double
+
+  /** [[VelocityResponse.handoverS]]. */
+  def handoverS: Double
+
+  /** Of one vehicle in one episode. */
+  def clock(): VehicleClock
+
+  /** All worlds' vehicles of one role. */
+  def vehicles(duelist: Duelist): TimetableVehicles
+
+/** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
+private[skein] trait VehicleClock:
+  /** At most [[Timetable.Numbers]] numbers that tell this time, s; never earlier than the time before.
+    *
+    * @param acts
+    *   whether a command begins to act
+    */
+  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
+
+private[skein] object TimetableModel:
+  /** @return
+    *   or why this model does not fly by lanes
+    */
+  def of(model: VelocityResponse, duel: Duel): Either[String, TimetableModel] = model match
+    case lag: Reduced if lag.lagS > 0 => Right(LagTimetables(lag))
+    case ReducedResponse(drag)        =>
+      Either.cond(
+        drag.lagS.min(drag.turnLagS) >= LeastLagS,
+        DragTimetables(drag),
+        s"the lanes fly models with lags of $LeastLagS s at least"
+      )
+    case quadrotor: QuadrotorResponse =>
+      val lowest = -duel.pursuer.altitudeDownM.max(duel.evader.altitudeDownM)
+      for
+        _ <- Either.cond(
+          quadrotor.quadrotor eq Quadrotor.AirSim,
+          (),
+          "the lanes fly AirSim's own quadrotor alone"
+        )
+        _ <- Either.cond(
+          lowest >= LeastAltitudeM,
+          (),
+          s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
+        )
+      yield QuadrotorTimetables(quadrotor)
+    case _ => Left("the lanes fly only models with a lag")
+
+  /** Below, powers of e leave what floats hold. */
+  private val LeastLagS = 0.01
+
+  /** AirSim's quadrotor loses height while it turns. */
+  private val LeastAltitudeM = 5.0
+
+/** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried the vehicle
+  * since, over the error, and what remains of it.
+  */
+private final class LagTimetables(model: Reduced) extends TimetableModel:
+  def deadTimeS: Double                             = model.deadTimeS
+  def handoverS: Double                             = model.handoverS
+  def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
+  def clock(): VehicleClock                         = new VehicleClock:
+    private var actedS                                                      = 0.0
+    def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
+      val dt = atS - actedS
+      into(at) = dt.toFloat
+      into(at + 1) = (-model.lagS * StrictMath.expm1(-dt / model.lagS)).toFloat
+      into(at + 2) = StrictMath.exp(-dt / model.lagS).toFloat
+      if acts then actedS = atS
+
+/** By [[TimetableDragVehicles]]: how many pieces end until then, and the time since the last. */
+private final class DragTimetables(model: ReducedModel) extends TimetableModel:
+  def deadTimeS: Double                             = model.deadTimeS
+  def handoverS: Double                             = 0
+  def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
+  def clock(): VehicleClock                         = new VehicleClock:
+    private var pieceS                                                      = 0.0
+    def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
+      var pieces = 0
+      while atS > pieceS + ReducedModel.PieceS do
+        pieceS += ReducedModel.PieceS
+        pieces += 1
+      into(at) = pieces.toFloat
+      into(at + 1) = (atS - pieceS).toFloat
+      if acts then pieceS = atS
+
+/** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
+private final class QuadrotorTimetables(model: QuadrotorResponse) extends TimetableModel:
+  private val stepNs    = Nanos.of(model.quadrotor.stepS)
+  private val hoveredNs = Nanos.of(model.hoveredS)
+
+  def deadTimeS: Double                             = 0
+  def handoverS: Double                             = model.handoverS
+  def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
+  def clock(): VehicleClock                         = new VehicleClock:
+    private var steps                                                       = hoveredNs / stepNs
+    def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
+      val now   = hoveredNs + Nanos.of(atS)
+      val flown = now / stepNs
+      into(at) = (flown - steps).toFloat
+      into(at + 1) = ((now - flown * stepNs) * 1e-9).toFloat
+      steps = flown

@@ -1,0 +1,140 @@
+package skein.optimise
+
+import skein.forward.{Delays, Duel, LoopTiming, Outcome, Rollout, VelocityResponse}
+import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.policy.{Policy, PolicyFamily, Role}
+import skein.simd.{LaneMath, WorldRandom}
+
+/** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that their
+  * differences are their own.
+  */
+trait Evaluator:
+
+  /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's tally
+    * depends on the candidate and the episodes alone, to the bit, whatever else the call holds.
+    *
+    * @param episodes
+    *   numbers of the episodes, at least one
+    */
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally]
+
+  /** So many candidates take no longer than one. */
+  def sideBySide: Int = 1
+
+  /** The same, or none if it was cancelled.
+    *
+    * @param isCancelled
+    *   asked now and then, from any thread
+    */
+  def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
+    val all = tallies(candidates, episodes)
+    Option.when(!isCancelled())(all)
+
+/** Flies a family's candidates against one opponent in [[DuelBatch]].
+  *
+  * @param role
+  *   of the candidates
+  * @param opponent
+  *   of the other role
+  * @param seed
+  *   of the delays
+  * @param shareEpisodes
+  *   see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
+  */
+final class DuelEvaluator(
+    batch: DuelBatch,
+    durationS: Double,
+    family: PolicyFamily,
+    role: Role,
+    opponent: Policy,
+    link: Delays,
+    objective: Objective,
+    seed: Long,
+    shareEpisodes: Boolean = true
+) extends Evaluator:
+
+  override def sideBySide: Int =
+    val policy = family.defaultPolicy
+    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true, Nil) then LaneMath.LANES
+    else 1
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    talliesUnless(() => false)(candidates, episodes).get
+
+  override def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
+    val policies = candidates.map(family.policy).toArray
+    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
+    val worlds   = Worlds(policies, keys)
+    val outcomes = batch.fly(worlds, objective.captureRadiusM, isCancelled = isCancelled)
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(policies.length): candidate =>
+        Tally.of(keys.length): episode =>
+          objective.value(outcomes, candidate * keys.length + episode, role, durationS)
+
+  private def pursuer(candidate: Policy): Policy = if role == Role.Pursuer then candidate else opponent
+  private def evader(candidate: Policy): Policy  = if role == Role.Evader then candidate else opponent
+
+  /** The candidate does not enter the key: all meet the same delays. */
+  private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
+    def size: Int                       = policies.length * keys.length
+    override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
+    def key(world: Int): Int            = keys(world % keys.length)
+    def link(world: Int): Delays        = DuelEvaluator.this.link
+    def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
+    def evader(world: Int): Policy      = DuelEvaluator.this.evader(policies(world / keys.length))
+
+/** Judges by any function of a trajectory, by the scalar reference, on the calling thread.
+  *
+  * @param duel
+  *   of a candidate
+  */
+final class TrajectoryEvaluator(
+    duel: Vector[Double] => Duel,
+    timing: LoopTiming,
+    link: Delays,
+    model: VelocityResponse,
+    seed: Long
+)(value: Trajectory => Double)
+    extends Evaluator:
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    candidates.map: candidate =>
+      val rollout = Rollout(duel(candidate), timing, link, model)
+      val values  = episodes.map: episode =>
+        val path    = Trajectory.Builder()
+        val outcome = rollout.fly(WorldRandom.key(seed, 0, episode), onScore = path)
+        value(path.result(outcome))
+      Tally.of(values.size)(values)
+
+/** An episode as it was flown: positions, m, once a period.
+  *
+  * @param evader
+  *   north and east at each time
+  */
+final case class Trajectory(
+    timesS: Vector[Double],
+    evader: Vector[(Double, Double)],
+    pursuer: Vector[(Double, Double)],
+    outcome: Outcome
+):
+  def distancesM: Vector[Double] =
+    evader.zip(pursuer).map((e, p) => StrictMath.hypot(e._1 - p._1, e._2 - p._2))
+
+object Trajectory:
+  private[skein] final class Builder extends Rollout.Listener:
+    private val times           = Vector.newBuilder[Double]
+    private val evader, pursuer = Vector.newBuilder[(Double, Double)]
+
+    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit =
+      times += timeS
+      evader += ((evaderX, evaderY))
+      pursuer += ((pursuerX, pursuerY))
+
+    def result(outcome: Outcome): Trajectory =
+      Trajectory(times.result(), evader.result(), pursuer.result(), outcome)

@@ -1,0 +1,83 @@
+package skein.optimise
+
+import skein.signal.LatencyDistribution
+import skein.units.*
+
+/** How an objective changes with the latency and jitter of a link, one cell per pair.
+  *
+  * @param meansMs
+  *   of the round trip, ascending
+  * @param jittersMs
+  *   of the round trip, p99 − p50, ascending
+  * @param cells
+  *   `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
+  * @param truth
+  *   of the paused loop with the same vehicles
+  */
+final case class LatencyBudget(
+    meansMs: Vector[Double],
+    jittersMs: Vector[Double],
+    cells: Vector[Vector[Option[Tally]]],
+    truth: Double
+):
+  require(truth != 0 && truth.isFinite, s"the truth must be a number other than 0, got $truth")
+
+  /** How far a cell is off the truth, as a share of it: 0.05 is 5 % more. */
+  def deviation(jitter: Int, mean: Int): Option[Double] =
+    cells(jitter)(mean).map(tally => (tally.mean - truth) / truth.abs)
+
+  /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight lines between
+    * the cells' deviations.
+    *
+    * @param tolerance
+    *   a share of the truth, for example 0.05
+    */
+  def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound =
+    val known = meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector
+    known.indexWhere((_, off) => off > tolerance) match
+      case -1 if known.isEmpty => LatencyBudget.Bound.Unknown
+      case -1                  => LatencyBudget.Bound.Beyond(known.last._1)
+      case 0                   => LatencyBudget.Bound.Below(known.head._1)
+      case first               =>
+        val ((fromMs, fromOff), (toMs, toOff)) = (known(first - 1), known(first))
+        LatencyBudget.Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
+
+object LatencyBudget:
+  /** The largest mean latency, ms, at which something holds. */
+  enum Bound:
+    case At(meanMs: Double)
+
+    /** It holds as far as the map goes. */
+    case Beyond(meanMs: Double)
+
+    /** It does not hold even at the smallest latency. */
+    case Below(meanMs: Double)
+
+    /** The map has no cell. */
+    case Unknown
+
+  /** The link of a cell: round trips are log-normal with this mean and jitter; constant without jitter.
+    *
+    * @return
+    *   none where the jitter is so large beside the mean that the logarithm's standard deviation would exceed
+    *   [[MostSigma]]
+    */
+  def link(meanMs: Double, jitterMs: Double): Option[LatencyDistribution] =
+    if jitterMs == 0 then Some(LatencyDistribution.Constant(Span.ofMillis(meanMs)))
+    else if meanMs <= 0 || jitterMs > meanMs * jitterOverMean(MostSigma) then None
+    else
+      var (low, high) = (0.0, MostSigma)
+      for _ <- 0 until 60 do
+        val middle = (low + high) / 2
+        if jitterOverMean(middle) * meanMs < jitterMs then low = middle else high = middle
+      val median = meanMs * StrictMath.exp(-low * low / 2)
+      Some(LatencyDistribution.LogNormal(Span.ofMillis(median), low))
+
+  /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1); grows with σ up to 2.3. */
+  private def jitterOverMean(sigma: Double): Double =
+    StrictMath.exp(-sigma * sigma / 2) * (StrictMath.exp(Z99 * sigma) - 1)
+
+  /** Beyond, a few round trips of seconds would make up the mean. */
+  val MostSigma = 1.0
+
+  private val Z99 = 2.3263478740408408

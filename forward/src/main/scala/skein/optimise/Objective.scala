@@ -1,0 +1,180 @@
+package skein.optimise
+
+import skein.lanes.DuelOutcomes
+import skein.policy.Role
+
+/** A number that an episode comes to, by the name that users give. */
+enum Measure:
+  /** Mean distance over the last 10 s, m. */
+  case Last10s
+
+  /** Mean distance over the episode, m. */
+  case Mean
+
+  /** Smallest distance, m. */
+  case Min
+
+  /** Sum of the changes of the commanded heading of the vehicle that is judged, rad. */
+  case Effort
+
+  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is the
+    * probability of capture.
+    */
+  case Capture(radiusM: Double, withinS: Double)
+
+  /** When the distance first was at most `radiusM`, s; the episode's duration if it never was. */
+  case CaptureTime(radiusM: Double)
+
+  def text: String = this match
+    case Last10s                   => "last10s"
+    case Mean                      => "mean"
+    case Min                       => "min"
+    case Effort                    => "effort"
+    case Capture(radiusM, withinS) => s"capture($radiusM, $withinS)"
+    case CaptureTime(radiusM)      => s"captureTime($radiusM)"
+
+  def unit: String = this match
+    case Last10s | Mean | Min => "m"
+    case Effort               => "rad"
+    case Capture(_, _)        => ""
+    case CaptureTime(_)       => "s"
+
+  /** The radius that counts as a capture, for the measures that have one. */
+  def captureRadiusM: Option[Double] = this match
+    case Capture(radiusM, _)  => Some(radiusM)
+    case CaptureTime(radiusM) => Some(radiusM)
+    case _                    => None
+
+enum Direction(val sign: Double):
+  case Minimise extends Direction(1)
+  case Maximise extends Direction(-1)
+
+  def text: String = productPrefix.toLowerCase(java.util.Locale.ROOT)
+
+/** What a search makes small or large: a weighted sum of measures, averaged over episodes.
+  *
+  * @param terms
+  *   weight and measure; all that speak of a capture speak of one radius
+  */
+final case class Objective(terms: Vector[(Double, Measure)], direction: Direction):
+  require(terms.nonEmpty, "an objective needs at least one term")
+  require(
+    terms.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
+    "all capture measures of an objective must name the same radius"
+  )
+
+  /** The radius within which an episode counts as a capture, m; 0 where no measure asks. */
+  def captureRadiusM: Double = terms.flatMap((_, measure) => measure.captureRadiusM).headOption.getOrElse(0.0)
+
+  /** Of one episode.
+    *
+    * @param role
+    *   whose effort counts
+    */
+  def value(outcomes: DuelOutcomes, world: Int, role: Role, durationS: Double): Double =
+    val captureS = outcomes.captureS(world)
+    var sum      = 0.0
+    for (weight, measure) <- terms do
+      val came: Double = measure match
+        case Measure.Last10s => outcomes.meanLast10sM(world)
+        case Measure.Mean    => outcomes.meanDistanceM(world)
+        case Measure.Min     => outcomes.minDistanceM(world)
+        // The time of a score is known as a Float alone: a capture exactly then counts.
+        case Measure.Capture(_, withinS) => if captureS <= withinS.toFloat then 1.0 else 0.0
+        case Measure.CaptureTime(_)      => captureS.toDouble.min(durationS)
+        case Measure.Effort              =>
+          if role == Role.Pursuer then outcomes.pursuerEffortRad(world) else outcomes.evaderEffortRad(world)
+      sum += weight * came
+    sum
+
+  /** As [[Objective.parse]] reads it back, without the direction. */
+  def formula: String = terms.zipWithIndex
+    .map:
+      case ((1.0, measure), 0)    => measure.text
+      case ((weight, measure), 0) => s"$weight*${measure.text}"
+      case ((weight, measure), _) =>
+        val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
+        s"${if weight < 0 then "-" else "+"} $factor${measure.text}"
+    .mkString(" ")
+
+  def text: String = s"${direction.text} $formula"
+
+  /** Of the value, where all terms agree. */
+  def unit: String =
+    if terms.map((_, measure) => measure.unit).distinct.size == 1 then terms.head._2.unit else ""
+
+object Objective:
+  private val Forms = "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
+  private val Term  =
+    """\s*([+-])?\s*(?:(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*\*\s*)?([A-Za-z]\w*)\s*(?:\(([^)]*)\))?\s*""".r
+  private val Directed = """\s*(minimi[sz]e|maximi[sz]e)\s+(.*)""".r
+
+  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
+    * not. Without, a sum is minimised, and a single measure goes where the role wants it.
+    *
+    * @return
+    *   or what was expected, what came, and at which character
+    */
+  def parse(text: String, role: Role): Either[String, Objective] =
+    val (stated, formula) = text match
+      case Directed(word, rest) =>
+        (Some(if word.startsWith("min") then Direction.Minimise else Direction.Maximise), rest)
+      case _ => (None, text)
+    val offset = text.length - formula.length
+
+    def terms(from: Int, read: Vector[(Double, Measure)]): Either[String, Vector[(Double, Measure)]] =
+      if from == formula.length && read.nonEmpty then Right(read)
+      else
+        Term.findPrefixMatchOf(formula.substring(from)) match
+          case Some(term) if read.isEmpty || term.group(1) != null =>
+            val size = Option(term.group(2)).fold(1.0)(_.toDouble)
+            for
+              measure <- measureOf(term.group(3), Option(term.group(4)))
+                .left
+                .map(mistake =>
+                  s"objective '$text', at character ${offset + from + term.start(3) + 1}: $mistake"
+                )
+              all <- terms(
+                from + term.end,
+                read :+ ((if term.group(1) == "-" then -size else size) -> measure)
+              )
+            yield all
+          case _ =>
+            val expected =
+              if read.isEmpty then s"[WEIGHT*]MEASURE, where MEASURE is one of $Forms" else "+ or -"
+            Left(
+              s"objective '$text', at character ${offset + from + 1}: expected $expected, came '${formula.substring(from)}'"
+            )
+
+    for
+      read <- terms(0, Vector.empty)
+      _    <- Either.cond(
+        read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
+        (),
+        s"objective '$text': expected one capture radius, came ${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
+      )
+    yield Objective(read, stated.getOrElse(naturally(read, role)))
+
+  private def naturally(terms: Vector[(Double, Measure)], role: Role): Direction = terms match
+    case Vector((1.0, measure)) =>
+      val pursuerWantsMore = measure match
+        case Measure.Capture(_, _) => true
+        case _                     => false
+      measure match
+        case Measure.Effort => Direction.Minimise
+        case _              =>
+          if pursuerWantsMore == (role == Role.Pursuer) then Direction.Maximise else Direction.Minimise
+    case _ => Direction.Minimise
+
+  private def measureOf(name: String, arguments: Option[String]): Either[String, Measure] =
+    val numbers =
+      arguments.map(_.split(',').toVector.map(_.trim.toDoubleOption.filter(x => x > 0 && x < 1e6)))
+    (name, numbers) match
+      case ("last10s", None)                                       => Right(Measure.Last10s)
+      case ("mean", None)                                          => Right(Measure.Mean)
+      case ("min", None)                                           => Right(Measure.Min)
+      case ("effort", None)                                        => Right(Measure.Effort)
+      case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) => Right(Measure.Capture(radiusM, withinS))
+      case ("captureTime", Some(Vector(Some(radiusM))))            => Right(Measure.CaptureTime(radiusM))
+      case _                                                       =>
+        Left(s"expected one of $Forms, came '$name${arguments.fold("")(a => s"($a)")}'")

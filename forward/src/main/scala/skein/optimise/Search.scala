@@ -1,0 +1,245 @@
+package skein.optimise
+
+import skein.policy.SearchSpace
+import skein.signal.{NormalQuantile, SplitMix64}
+
+/** A candidate and what it came to. */
+final case class Scored(candidate: Vector[Double], tally: Tally)
+
+/** Where a search stands: a value, which can be written down and gone on from.
+  *
+  * @param results
+  *   of the round's candidates so far, in their order
+  * @param leaders
+  *   the best so far, best first; at the end the standings of the play-off
+  * @param flown
+  *   episodes
+  */
+final case class SearchState(course: Course, results: Vector[Tally], leaders: Vector[Scored], flown: Long):
+  def isDone: Boolean      = course == Course.Ended
+  def best: Option[Scored] = leaders.headOption
+
+/** What a method has to remember between rounds. */
+enum Course:
+  /** Grid and random: the number of the round's first candidate. */
+  case Listed(next: Long)
+
+  /** Cross-entropy: the distribution that the generation is drawn from. */
+  case Drawn(generation: Int, means: Vector[Double], deviations: Vector[Double])
+
+  /** CMA-ES. */
+  case Adapted(state: CmaEs.State)
+
+  /** Racing: who is left with what they have flown; empty in the first round. */
+  case Raced(round: Int, field: Vector[Scored])
+
+  /** The leaders, the distribution's centre and the defaults meet on fresh episodes: so many of them so far, with what
+    * each has come to.
+    */
+  case PlayOff(episodes: Int, field: Vector[Scored])
+
+  case Ended
+
+/** Chooses the best of many candidates. All meet the same episodes, and the leaders meet again on fresh ones, since the
+  * best of many seen on a few episodes was partly lucky.
+  *
+  * A state machine: [[step]] is a pure function, so that a search that was stopped and gone on with ends as one that
+  * never stopped. Of equal candidates the first wins.
+  *
+  * @param seed
+  *   of the candidates
+  */
+final class Search(space: SearchSpace, method: SearchMethod, direction: Direction, seed: Long):
+  import Search.*
+
+  require(
+    method.mostOfOne <= PlayOffFrom,
+    s"one candidate would fly ${method.mostOfOne} episodes, expected at most $PlayOffFrom"
+  )
+
+  private val evolution = method match
+    case SearchMethod.CmaEs(population, _, _, _) => Some(CmaEs(space.dimension, population, seed))
+    case _                                       => None
+
+  private val playOffEpisodes =
+    (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(LeastPlayOff).min(MostPlayOff).toInt
+
+  /** Episodes of the whole search, if it does not end early. */
+  val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
+
+  def start: SearchState =
+    val course = method match
+      case _: (SearchMethod.Grid | SearchMethod.Random) => Course.Listed(0)
+      case _: SearchMethod.CrossEntropy                 =>
+        Course.Drawn(0, space.axes.map(axis => (axis.least + axis.most) / 2), space.axes.map(_.width / 2))
+      case cma: SearchMethod.CmaEs =>
+        Course.Adapted(evolution.get.start(space.shares(space.defaults), cma.startSize))
+      case _: SearchMethod.Racing => Course.Raced(0, Vector.empty)
+    SearchState(course, Vector.empty, Vector.empty, 0)
+
+  /** One step on.
+    *
+    * @param state
+    *   not done
+    * @param atMost
+    *   episodes that the step flies, about; more where candidates fly side by side. How a search is cut into steps does not change how it ends.
+    * @param isCancelled
+    *   asked now and then, from any thread; a step that is cancelled leaves the state as it was
+    */
+  def step(
+      state: SearchState,
+      evaluator: Evaluator,
+      atMost: Int,
+      isCancelled: () => Boolean = () => false
+  ): SearchState =
+    require(!state.isDone, "the search is done")
+    val (candidates, episodes) = round(state.course)
+    val batch                  = candidates.slice(
+      state.results.size,
+      state.results.size + (atMost / episodes.size).max(evaluator.sideBySide)
+    )
+    evaluator.talliesUnless(isCancelled)(batch, episodes).fold(state): tallies =>
+      val results = state.results ++ tallies
+      val flown   = state.flown + batch.size.toLong * episodes.size
+      if results.size < candidates.size then state.copy(results = results, flown = flown)
+      else
+        val (course, leaders) =
+          after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
+        SearchState(course, Vector.empty, leaders, flown)
+
+  /** The round's candidates, and the episodes that each flies. */
+  private def round(course: Course): (Vector[Vector[Double]], Range) = course match
+    case Course.Listed(next) =>
+      val numbers = Vector.range(next, (next + MostListed).min(listed))
+      val fields  = method match
+        case SearchMethod.Grid(perAxis, _) => numbers.map(space.gridAt(perAxis, _))
+        case _                             => numbers.map(space.randomAt(seed, _))
+      (fields, 0 until method.episodes)
+    case Course.Drawn(generation, means, deviations) =>
+      (drawn(generation, means, deviations), 0 until method.episodes)
+    case Course.Adapted(state)      => (evolution.get.sample(state).map(space.at), 0 until method.episodes)
+    case Course.Raced(0, _)         => (randomField, 0 until method.episodes)
+    case Course.Raced(round, field) =>
+      val flown = field.head.tally.count
+      (field.map(_.candidate), flown until 2 * flown)
+    case Course.PlayOff(episodes, field) =>
+      (
+        field.map(_.candidate),
+        PlayOffFrom + episodes until PlayOffFrom + (episodes + PlayOffRound).min(playOffEpisodes)
+      )
+    case Course.Ended => throw IllegalStateException("no round after the end")
+
+  private def listed: Long = method match
+    case SearchMethod.Grid(perAxis, _)      => space.gridSize(perAxis)
+    case SearchMethod.Random(candidates, _) => candidates.toLong
+    case _                                  => 0
+
+  private def randomField: Vector[Vector[Double]] = method match
+    case SearchMethod.Racing(candidates, _) => space.random(candidates, seed)
+    case _                                  => Vector.empty
+
+  private def after(course: Course, before: Vector[Scored], seen: Vector[Scored]): (Course, Vector[Scored]) =
+    lazy val leaders = ranked(before ++ seen).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
+    (course, method) match
+      case (Course.Listed(next), _) =>
+        val behind = next + seen.size
+        (if behind < listed then Course.Listed(behind) else playOff(leaders, None), leaders)
+      case (Course.Drawn(generation, means, deviations), entropy: SearchMethod.CrossEntropy) =>
+        val elites        = eliteOf(entropy)
+        val chosen        = ranked(seen).take(elites).map(_.candidate)
+        val newMeans      = means.indices.toVector.map(axis => chosen.map(_(axis)).sum / elites)
+        val newDeviations = means.indices.toVector.map: axis =>
+          math.sqrt(chosen.map(c => (c(axis) - newMeans(axis)) * (c(axis) - newMeans(axis))).sum / elites)
+        val (nextMeans, nextDeviations) =
+          (blend(means, newMeans, entropy.smoothing), blend(deviations, newDeviations, entropy.smoothing))
+        val next =
+          if generation + 1 < entropy.generations then Course.Drawn(generation + 1, nextMeans, nextDeviations)
+          else playOff(leaders, Some(space.clamp(nextMeans)))
+        (next, leaders)
+      case (Course.Adapted(state), cma: SearchMethod.CmaEs) =>
+        val next = evolution.get.next(state, evolution.get.sample(state), seen.map(cost))
+        val goOn = next.generation < cma.generations && next.spread > LeastSpread
+        (if goOn then Course.Adapted(next) else playOff(leaders, Some(space.at(next.mean))), leaders)
+      case (Course.Raced(round, field), _) =>
+        val standing =
+          ranked(if round == 0 then seen
+          else field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally)))
+        val ahead = (standing ++ before).distinctBy(scored => place(scored.candidate)).take(MostLeaders)
+        val next  =
+          if standing.size == 1 then playOff(ahead, None)
+          else Course.Raced(round + 1, standing.take((standing.size + 1) / 2))
+        (next, ahead)
+      case (Course.PlayOff(episodes, field), _) =>
+        val standing = field.zip(seen).map((f, s) => f.copy(tally = f.tally + s.tally))
+        val flown    = episodes + seen.head.tally.count
+        (if flown < playOffEpisodes then Course.PlayOff(flown, standing) else Course.Ended, ranked(standing))
+      case _ => (Course.Ended, before)
+
+  /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the same
+    * episodes, and would leave no room for others.
+    */
+  private def place(candidate: Vector[Double]): Vector[Long] =
+    space.shares(candidate).map(share => (share * 100).round)
+
+  private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
+    val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
+    Course.PlayOff(0, candidates.map(Scored(_, Tally.empty)))
+
+  /** Small is good; what is no number is worst. */
+  private def cost(scored: Scored): Double =
+    val cost = direction.sign * scored.tally.mean
+    if cost.isNaN then Double.PositiveInfinity else cost
+
+  private def ranked(all: Vector[Scored]): Vector[Scored] = all.sortBy(cost)
+
+  private def drawn(
+      generation: Int,
+      means: Vector[Double],
+      deviations: Vector[Double]
+  ): Vector[Vector[Double]] =
+    val population = method match
+      case entropy: SearchMethod.CrossEntropy => entropy.population
+      case _                                  => 0
+    val source = SplitMix64(SplitMix64.seedOf(seed, generation))
+    Vector.fill(population):
+      space.clamp(means.zip(deviations).map: (mean, deviation) =>
+        mean + deviation * NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12)))
+
+object Search:
+  /** Candidates that meet in the play-off, besides the distribution's centre and the defaults. */
+  val MostLeaders = 16
+
+  /** The play-off's episodes count from here; a search's own lie below. */
+  val PlayOffFrom: Int = 1 << 24
+
+  // A tenth of the search's episodes, within these bounds.
+  private val LeastPlayOff = 64L
+  private val MostPlayOff  = 1024L
+  private val PlayOffRound = 64
+  private val MostListed   = 16384
+  private val LeastSpread  = 1e-6
+
+  /** The whole search at once.
+    *
+    * @return
+    *   the standings of the play-off, best first
+    */
+  def run(
+      space: SearchSpace,
+      method: SearchMethod,
+      direction: Direction,
+      seed: Long,
+      evaluator: Evaluator
+  ): Vector[Scored] =
+    val search = Search(space, method, direction, seed)
+    Iterator
+      .iterate(search.start)(search.step(_, evaluator, Int.MaxValue))
+      .find(_.isDone)
+      .get
+      .leaders
+
+  private def eliteOf(entropy: SearchMethod.CrossEntropy): Int =
+    (entropy.population * entropy.elite).round.toInt.max(2).min(entropy.population)
+
+  private def blend(old: Vector[Double], fresh: Vector[Double], weight: Double): Vector[Double] =
+    old.zip(fresh).map((o, f) => (1 - weight) * o + weight * f)

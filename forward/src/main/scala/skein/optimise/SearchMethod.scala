@@ -1,0 +1,70 @@
+package skein.optimise
+
+/** How a [[Search]] chooses its candidates.
+  *
+  * @see
+  *   the cases' parameters; `episodes` is what every candidate flies
+  */
+enum SearchMethod:
+  /** Evenly spread candidates, both bounds of every axis included. */
+  case Grid(perAxis: Int, episodes: Int)
+
+  /** Candidates drawn evenly from the space. */
+  case Random(candidates: Int, episodes: Int)
+
+  /** The cross-entropy method (Rubinstein, Kroese, 2004) with independent normal distributions, cut to the space: each
+    * generation is drawn around the elite of the one before.
+    *
+    * @param elite
+    *   share of a generation that makes the next, above 0 to 1
+    * @param smoothing
+    *   weight of the new mean and spread against the old, above 0 to 1
+    */
+  case CrossEntropy(
+      population: Int,
+      generations: Int,
+      episodes: Int,
+      elite: Double = 0.2,
+      smoothing: Double = 0.8
+  )
+
+  /** [[skein.optimise.CmaEs]] on the space scaled to the unit cube and mirrored at its bounds, from the defaults. It ends
+    * early when its spread is below 10^−6^ of every axis.
+    */
+  case CmaEs(population: Int, generations: Int, episodes: Int, startSize: Double = 0.3)
+
+  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates fly a few episodes, the better half as
+    * many again, and so on to the last, so that hopeless candidates stop early.
+    *
+    * @param episodes
+    *   of the first round; the last candidate's are `candidates` times as many, about
+    */
+  case Racing(candidates: Int, episodes: Int)
+
+  def episodes: Int
+
+  /** Episodes that one candidate flies at most. */
+  def mostOfOne: Long = this match
+    case Racing(candidates, episodes) =>
+      Math.multiplyExact(episodes.toLong, 1L << (SearchMethod.rounds(candidates) - 1))
+    case _ => episodes
+
+  /** Episodes flown in all, if it does not end early. */
+  def evaluations(dimension: Int): Long = this match
+    case Grid(perAxis, episodes) =>
+      (1 to dimension).foldLeft(episodes.toLong)((product, _) => Math.multiplyExact(product, perAxis.toLong))
+    case Random(candidates, episodes)                          => candidates.toLong * episodes
+    case CrossEntropy(population, generations, episodes, _, _) => population.toLong * generations * episodes
+    case CmaEs(population, generations, episodes, _)           => population.toLong * generations * episodes
+    case Racing(candidates, episodes)                          =>
+      Iterator
+        .iterate((candidates, episodes.toLong, 0L)): (field, each, round) =>
+          ((field + 1) / 2, if round == 0 then each else 2 * each, round + 1)
+        .take(SearchMethod.rounds(candidates))
+        .map((field, each, _) => field * each)
+        .sum
+
+object SearchMethod:
+  /** Rounds of a race between so many: until one is left. */
+  private[skein] def rounds(candidates: Int): Int =
+    Iterator.iterate(candidates)(field => (field + 1) / 2).takeWhile(_ > 1).size + 1

@@ -1,0 +1,44 @@
+package skein.optimise
+
+/** How many values were seen, their mean, and the sum of their squared deviations from it. */
+final case class Tally(count: Int, mean: Double, squares: Double):
+
+  /** Of both together (Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for computing sample
+    * variances", 1979).
+    */
+  def +(other: Tally): Tally =
+    if count == 0 then other
+    else if other.count == 0 then this
+    else
+      val total = count + other.count
+      val apart = other.mean - mean
+      Tally(
+        total,
+        mean + apart * other.count / total,
+        squares + other.squares + apart * apart * count * other.count / total
+      )
+
+  /** Standard deviation of the values; 0 for fewer than two. */
+  def sd: Double = if count < 2 then 0.0 else math.sqrt(squares / (count - 1))
+
+  /** The true mean lies within so much of `mean` with 95 % confidence, by the normal approximation. */
+  def halfWidth95: Double = if count == 0 then Double.PositiveInfinity else 1.959964 * sd / math.sqrt(count)
+
+object Tally:
+  val empty: Tally = Tally(0, 0, 0)
+
+  /** Of `count` values, by their number from 0. */
+  def of(count: Int)(value: Int => Double): Tally =
+    var sum = 0.0
+    var i   = 0
+    while i < count do
+      sum += value(i)
+      i += 1
+    val mean    = if count == 0 then 0.0 else sum / count
+    var squares = 0.0
+    i = 0
+    while i < count do
+      val off = value(i) - mean
+      squares += off * off
+      i += 1
+    Tally(count, mean, squares)

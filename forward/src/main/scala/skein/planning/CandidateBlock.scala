@@ -1,0 +1,43 @@
+package skein.planning
+
+/** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays hold step
+  * after step: the action of candidate i in step h is at h · SIZE + i.
+  */
+private[planning] trait CandidateBlock:
+  def turnRates: Array[Float]
+  def speeds: Array[Float]
+
+  /** Of each candidate, after [[fly]]. */
+  def costs: Array[Float]
+
+  /** What all manoeuvres from now on are flown in, and what they are to achieve. */
+  def situate(situation: Situation, objective: Objective, dtS: Double): Unit
+
+  /** Draws all candidates, within the limits.
+    *
+    * @param keys
+    *   of each candidate's random stream ([[skein.simd.WorldRandom]])
+    * @param stepsPerKnot
+    *   so many steps share one random number
+    */
+  def draw(keys: Array[Int], search: Search, stepsPerKnot: Int): Unit
+
+  /** Flies all candidates. */
+  def fly(): Unit
+
+  /** Forgets the sums below. */
+  def forget(): Unit
+
+  /** Adds the actions flown, each weighted by e^(−(cost − base) / temperature), to the sums. */
+  def weigh(base: Float, temperature: Float): Unit
+
+  /** Weighted sums per step and place in the block. */
+  def turnSums: Array[Float]
+  def speedSums: Array[Float]
+
+  /** Sums of the weights per place in the block. */
+  def weightSums: Array[Float]
+
+private[planning] object CandidateBlock:
+  /** Candidates of a block: few enough for the caches, a multiple of every lane count. */
+  final val Size = 128

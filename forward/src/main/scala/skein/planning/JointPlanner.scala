@@ -1,0 +1,97 @@
+package skein.planning
+
+import scala.collection.mutable
+
+/** What is to be planned for several vehicles at one moment. */
+final case class PlanProblem(settings: PlannerSettings, parts: Vector[Part]):
+  require(parts.nonEmpty, "a plan is for one vehicle at least")
+
+object PlanProblem:
+  /** Searches side by side. */
+  val MostSearches = 64
+
+/** Plans for several vehicles of one controller, any time: slice by slice the vehicles take turns, and each improves its
+  * plan against the newest plans of all others (best responses in turn, as in decentralised model predictive control;
+  * Richards and How, ''Robust distributed model predictive control'', Int. J. Control 80, 2007). So nobody's way is
+  * guessed, and two do not dodge to the same side: who comes second knows where the first will be.
+  *
+  * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep apart from
+  * one another go on to do so when time passes and parts of them have been flown, even where a tick has no slice for
+  * some vehicle; the next tick begins with that one. How well depends on how well the vehicles follow
+  * [[Situation.response]].
+  *
+  * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks of
+  * candidates: one per thread.
+  */
+final class JointPlanner:
+  private val blocks   = mutable.Map.empty[Int, CandidateBlock]
+  private val planners = mutable.Map.empty[(PlannerSettings, Objective), Planner]
+
+  private def planner(settings: PlannerSettings, objective: Objective): Planner =
+    planners.getOrElse((settings, objective), made(settings, objective))
+
+  private def made(settings: PlannerSettings, objective: Objective): Planner =
+    if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
+    if planners.size >= JointPlanner.MostPlanners then planners.clear()
+    val block   = blocks.getOrElseUpdate(settings.steps, CandidateBlocks(settings.steps))
+    val planner = new Planner(settings, objective, block)
+    planners((settings, objective)) = planner
+    planner
+
+  /** The plan to begin with: what is left of the last, or straight on for all. */
+  def resumed(problem: PlanProblem, last: Option[JointPlan]): JointPlan =
+    val plans = problem.parts.indices.toVector.map: self =>
+      val part   = problem.parts(self)
+      val single = planner(problem.settings, part.objective)
+      single.resumed(last.fold(single.start)(_.plans(self)), part.situation.sinceDecisionS)
+    val tracks = problem.parts.zip(plans).map((part, plan) => track(problem, part, plan))
+    JointPlan(plans, tracks, last.fold(0)(_.turn), 0)
+
+  /** Searches one slice for the vehicle whose turn it is.
+    *
+    * @param search
+    *   its number: searches side by side meet other candidates
+    */
+  def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
+    val self = plan.turn
+    val part = problem.parts(self)
+    // What it cost before was by the others' plans of then; it is among the candidates.
+    val before = plan.plans(self).copy(cost = Float.PositiveInfinity)
+    val stream = part.stream * PlanProblem.MostSearches + search
+    val better =
+      planner(problem.settings, part.objective).improve(before, plan.nearSituation(self, part), stream)
+    JointPlan(
+      plan.plans.updated(self, better),
+      plan.tracks.updated(self, track(problem, part, better)),
+      (self + 1) % plan.plans.size,
+      plan.slices + 1
+    )
+
+  /** What one search finds in so many slices. */
+  def searched(problem: PlanProblem, warm: JointPlan, search: Int, slices: Int): JointPlan =
+    Iterator.iterate(warm)(improved(problem, _, search)).drop(slices).next()
+
+  private def track(problem: PlanProblem, part: Part, plan: Plan): PredictedTrack =
+    val alone = part.situation.copy(behaviours = Vector.empty, others = Vector.empty)
+    ManoeuvreRollout(alone, part.objective, problem.settings.dtS).fly(plan.manoeuvre).track
+
+object JointPlanner:
+  /** Kept, by their steps; of more, all are made anew. */
+  private val MostBlocks = 8
+
+  /** Kept likewise, by their settings and objectives. */
+  private val MostPlanners = 64
+
+  /** The best of what several searches have found; of equals the first. Its plans count the candidates of all. */
+  def best(problem: PlanProblem, found: Vector[JointPlan]): JointPlan =
+    val chosen =
+      if found.size == 1 then found.head else found.minBy(_.cost(problem.parts, problem.settings.dtS))
+    chosen.copy(
+      plans = chosen.plans.zipWithIndex.map((plan, self) =>
+        plan.copy(
+          slices = found.map(_.plans(self).slices).sum,
+          candidates = found.map(_.plans(self).candidates).sum
+        )
+      ),
+      slices = found.map(_.slices).sum
+    )

@@ -1,0 +1,244 @@
+package skein.planning
+
+import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
+
+/** How better manoeuvres are looked for. */
+enum Method:
+  /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the mean of all
+    * candidates, each weighted by e^(−cost / temperature).
+    */
+  case PathIntegral(temperature: Double)
+
+  /** The cross-entropy method (Rubinstein, 1999): mean and deviation of the search move towards those of the best
+    * candidates.
+    *
+    * @param elites
+    *   how many of a slice are the best
+    * @param smoothing
+    *   share of the old mean and deviation that is kept
+    */
+  case CrossEntropy(elites: Int, smoothing: Double)
+
+/** @param steps
+  *   of the horizon
+  * @param dtS
+  *   length of a step
+  * @param blocksPerSlice
+  *   a slice is what is searched between two looks at the clock; a block are 128 candidates
+  * @param stepsPerKnot
+  *   so many steps turn alike, apart from what the search has found
+  * @param turnSd
+  *   at first, rad/s
+  * @param speedSd
+  *   at first, m/s
+  */
+final case class PlannerSettings(
+    steps: Int = 20,
+    dtS: Double = 0.1,
+    method: Method = Method.CrossEntropy(elites = 48, smoothing = 0.2),
+    blocksPerSlice: Int = 16,
+    stepsPerKnot: Int = 4,
+    turnSd: Double = 0.8,
+    speedSd: Double = 2
+):
+  require(steps > 0 && dtS > 0, s"the horizon must be positive, came $steps steps of $dtS s")
+  require(blocksPerSlice > 0 && stepsPerKnot > 0, "blocks per slice and steps per knot must be positive")
+
+  def horizonS: Double     = steps * dtS
+  def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size
+
+/** Plans manoeuvres, any time: a plan is improved slice by slice, and its manoeuvre is at every moment the best found. Equal
+  * plans, situations and streams give equal plans, to the last bit, on every machine.
+  *
+  * Holds the memory for a block of candidates: one per thread.
+  */
+final class Planner private[planning] (
+    val settings: PlannerSettings,
+    val objective: Objective,
+    block: CandidateBlock
+):
+  import settings.*
+  require(
+    objective.limits.maxTurnRate * dtS <= 1 + 1e-9,
+    s"expected at most 1 rad of turn in a step, came ${objective.limits.maxTurnRate * dtS}"
+  )
+
+  private val size       = CandidateBlock.Size
+  private val limits     = objective.limits
+  private val cruise     = math.min(limits.maxSpeed, math.max(limits.minSpeed, objective.cruiseSpeed))
+  private val keys       = Array.ofDim[Int](size)
+  private val eliteCosts = method match
+    case Method.CrossEntropy(elites, _) => Array.ofDim[Float](elites)
+    case _                              => Array.emptyFloatArray
+  private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
+
+  /** Before anything was planned: straight on. */
+  def start: Plan = around(Manoeuvre.straight(cruise, steps))
+
+  /** The plan to begin with when time has passed: what is left of the last, to be tried anew. */
+  def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
+
+  private def around(manoeuvre: Manoeuvre): Plan =
+    val speedSds = if limits.minSpeed == limits.maxSpeed then 0f else speedSd.toFloat
+    Plan(
+      manoeuvre,
+      Float.PositiveInfinity,
+      Search(
+        manoeuvre.turnRates,
+        IArray.fill(steps)(turnSd.toFloat),
+        manoeuvre.speeds,
+        IArray.fill(steps)(speedSds)
+      ),
+      0,
+      0
+    )
+
+  /** Searches one slice.
+    *
+    * @param stream
+    *   of random numbers: a plan improved with another stream meets other candidates
+    */
+  def improve(plan: Plan, situation: Situation, stream: Long): Plan =
+    Planner.checkPlannable(situation.response, dtS)
+    block.situate(situation, objective, dtS)
+    block.forget()
+    java.util.Arrays.fill(eliteCosts, Float.PositiveInfinity)
+    var best     = plan.manoeuvre
+    var bestCost = plan.cost
+    var base     = 0f
+    for number <- 0 until blocksPerSlice do
+      for i <- 0 until size do
+        keys(i) = WorldRandom.key(stream, plan.slices, number * size + i)
+      block.draw(keys, plan.search.narrowed(Planner.widths(number % Planner.widths.size)), stepsPerKnot)
+      if number == 0 then (known(plan) ++ situation.suggested).zipWithIndex.foreach(put)
+      block.fly()
+      if number == 0 then base = block.costs(0)
+      val least = cheapest
+      if block.costs(least) < bestCost then
+        bestCost = block.costs(least)
+        best = manoeuvreAt(least)
+      method match
+        case Method.PathIntegral(temperature) => block.weigh(base, temperature.toFloat)
+        case _: Method.CrossEntropy           => gatherElites()
+    val search = method match
+      case _: Method.PathIntegral            => weightedSearch(plan.search)
+      case Method.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
+    Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
+
+  /** Courses that are always tried: the search's mean, the best, and what a pilot would think of first. */
+  private def known(plan: Plan): Vector[Manoeuvre] =
+    val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))
+    Vector(
+      Manoeuvre(plan.search.turnMeans, plan.search.speedMeans),
+      plan.manoeuvre,
+      Manoeuvre.steady(limit, speed, steps),
+      Manoeuvre.steady(-limit, speed, steps),
+      Manoeuvre.steady(0, speed, steps),
+      Manoeuvre.steady(0, limits.minSpeed, steps),
+      Manoeuvre.steady(0, limits.maxSpeed, steps)
+    )
+
+  private def put(manoeuvre: Manoeuvre, i: Int): Unit =
+    for step <- 0 until steps do
+      val speed = math.min(math.max(manoeuvre.speeds(step), limits.minSpeed.toFloat), limits.maxSpeed.toFloat)
+      val limit = math.min(speed * limits.curvature.toFloat, limits.maxTurnRate.toFloat)
+      block.turnRates(step * size + i) = math.min(math.max(manoeuvre.turnRates(step), -limit), limit)
+      block.speeds(step * size + i) = speed
+
+  private def cheapest: Int =
+    var least = 0
+    var i     = 1
+    while i < size do
+      if block.costs(i) < block.costs(least) then least = i
+      i += 1
+    least
+
+  private def manoeuvreAt(i: Int): Manoeuvre =
+    def column(values: Array[Float]): IArray[Float] =
+      val of = Array.ofDim[Float](steps)
+      for step <- 0 until steps do of(step) = values(step * size + i)
+      IArray.unsafeFromArray(of)
+    Manoeuvre(column(block.turnRates), column(block.speeds))
+
+  private def gatherElites(): Unit =
+    var worst = indexOfWorst
+    var i     = 0
+    while i < size do
+      if block.costs(i) < eliteCosts(worst) then
+        eliteCosts(worst) = block.costs(i)
+        var step = 0
+        while step < steps do
+          eliteTurns(worst * steps + step) = block.turnRates(step * size + i)
+          eliteSpeeds(worst * steps + step) = block.speeds(step * size + i)
+          step += 1
+        worst = indexOfWorst
+      i += 1
+
+  private def indexOfWorst: Int =
+    var worst = 0
+    var i     = 1
+    while i < eliteCosts.length do
+      if eliteCosts(i) > eliteCosts(worst) then worst = i
+      i += 1
+    worst
+
+  private def eliteSearch(before: Search, kept: Float): Search =
+    def moments(values: Array[Float], means: IArray[Float], sds: IArray[Float]) =
+      val (newMeans, newSds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
+      for step <- 0 until steps do
+        val mean     = meanOverElites(elite => values(elite * steps + step))
+        val variance = meanOverElites: elite =>
+          val off = values(elite * steps + step) - mean
+          off * off
+        newMeans(step) = kept * means(step) + (1 - kept) * mean.toFloat
+        newSds(step) = kept * sds(step) + (1 - kept) * math.sqrt(variance).toFloat
+      (IArray.unsafeFromArray(newMeans), IArray.unsafeFromArray(newSds))
+    val (turnMeans, turnSds)   = moments(eliteTurns, before.turnMeans, before.turnSds)
+    val (speedMeans, speedSds) = moments(eliteSpeeds, before.speedMeans, before.speedSds)
+    Search(turnMeans, turnSds, speedMeans, speedSds)
+
+  private inline def meanOverElites(inline value: Int => Double): Double =
+    var total = 0.0
+    var elite = 0
+    while elite < eliteCosts.length do
+      total += value(elite)
+      elite += 1
+    total / eliteCosts.length
+
+  private def weightedSearch(before: Search): Search =
+    val total                     = sum(block.weightSums, 0)
+    def means(sums: Array[Float]) = IArray.tabulate(steps)(step => (sum(sums, step) / total).toFloat)
+    if total > 0 then before.copy(turnMeans = means(block.turnSums), speedMeans = means(block.speedSums))
+    else before
+
+  private def sum(values: Array[Float], step: Int): Double =
+    var total = 0.0
+    var at    = step * size
+    while at < (step + 1) * size do
+      total += values(at)
+      at += 1
+    total
+
+object Planner:
+  /** Of the search, by block: wide ones find other manoeuvres, narrow ones improve on what was found. With a wide one
+    * alone, a plan that is almost right is hardly ever improved.
+    */
+  private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
+
+  def apply(settings: PlannerSettings, objective: Objective): Planner =
+    new Planner(settings, objective, CandidateBlocks(settings.steps))
+
+  private def checkPlannable(model: ReducedModel, dtS: Double): Unit = require(
+    model.turnLagS == model.lagS && model.lagS >= shortestLagS(dtS),
+    s"plans need a vehicle with equal lags of at least $ShortestLag steps of $dtS s, came $model"
+  )
+
+  /** Of a vehicle whose manoeuvres can be planned in such steps, s. */
+  def shortestLagS(dtS: Double): Double = ShortestLag * dtS
+
+  /** In steps: the kernel's series hold for less decay in a step. */
+  private val ShortestLag = 2.5
+
+  /** Whether candidates are flown by lanes; otherwise a deadline meets some fifty times fewer of them. */
+  def isFast: Boolean = CandidateBlocks.isFast

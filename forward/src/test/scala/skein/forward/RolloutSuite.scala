@@ -1,0 +1,128 @@
+package skein.forward
+
+import scala.collection.mutable.ArrayBuffer
+import skein.policy.{PaperEvader, PaperPursuer, Policy, Scenario}
+import skein.signal.LatencyDistribution
+import skein.simd.WorldRandom
+import skein.units.*
+
+class RolloutSuite extends munit.FunSuite:
+  private val loops =
+    Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+  private val towards: Policy       = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
+  private val awayFrom: Policy      = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
+  private val lag: VelocityResponse = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+
+  private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
+    val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
+    val _      = rollout.fly(key, onScore = (_, ex, ey, px, py) => points += ((ex, ey, px, py)))
+    points.toVector
+
+  private def distances(rollout: Rollout, key: Int): Vector[Double] =
+    trajectory(rollout, key).map((ex, ey, px, py) => math.hypot(ex - px, ey - py))
+
+  private def assertClose(actual: Seq[Double], expected: Seq[Double], tolerance: Double): Unit =
+    assertEquals(actual.size, expected.size)
+    for (a, e) <- actual.zip(expected) do assertEqualsDouble(a, e, tolerance)
+
+  for model <- Seq(VelocityResponses.quadrotor(), lag, VelocityResponses.Ideal); loop <- loops do
+    test(s"without delays $loop flies as paused does, with ${model.getClass.getSimpleName}"):
+      val truth = distances(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, model), 1)
+      assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
+
+  for loop <- loops do
+    test(s"under $loop a world depends on its key alone"):
+      val rollout = Rollout(Duel.paper, loop, DelayTable.vpn, lag)
+      val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
+      for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))
+      assertEquals(rollout.fly(WorldRandom.key(7, 3, 11)), alone)
+
+    test(s"under $loop nothing changes when the world is turned and moved"):
+      // Off the axis, since straight ahead the pursuer's turn hangs on the sign of a rounding error.
+      val offset           = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+      val angle            = 0.7
+      val (cos, sin)       = (math.cos(angle), math.sin(angle))
+      def turn(d: Duelist) = d.copy(
+        startX = 100 + d.startX * cos - d.startY * sin,
+        startY = -50 + d.startX * sin + d.startY * cos,
+        startHeadingRad = d.startHeadingRad + angle
+      )
+      val turned = Duel(turn(offset.pursuer), turn(offset.evader))
+      val key    = WorldRandom.key(1, 2, 3)
+      val plain  = distances(Rollout(offset, loop, DelayTable.direct, lag), key)
+      assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
+
+  test("with symmetric policies the mirrored duel is the mirror image"):
+    val evader: Policy    = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
+    val key               = WorldRandom.key(5, 0, 0)
+    def fly(side: Double) =
+      val duel = Duel(
+        Duel.paper.pursuer.copy(policy = PaperPursuer(), startY = 3 * side),
+        Duel.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),
+        durationS = 20
+      )
+      trajectory(Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, lag), key)
+    for ((ex, ey, px, py), (mx, my, qx, qy)) <- fly(1).zip(fly(-1)) do
+      assertClose(Seq(mx, -my, qx, -qy), Seq(ex, ey, px, py), 1e-6)
+
+  test("a straight chase ends after (d − l) / (vP − vE)"):
+    val duel  = Duel(Duel.paper.pursuer.copy(policy = towards), Duel.paper.evader.copy(policy = awayFrom))
+    val flown =
+      Rollout(duel, LoopTiming.Paused(0.01), DelayTable.none, VelocityResponses.Ideal).fly(
+        0,
+        captureRadiusM = 2
+      )
+    assertEqualsDouble(flown.captureS, (21.0 - 2.0) / (10.0 - 5.0), 0.0101)
+
+  test("the paper's game, paused, settles at the distance of AirSim's own flight code, 8.31 m ± 3 %"):
+    val flown =
+      Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, VelocityResponses.quadrotor()).fly(0)
+    assertEqualsDouble(flown.meanLast10sM, 8.31, 0.03 * 8.31)
+    assertEqualsDouble(flown.minDistanceM, 3.7, 0.3)
+    assertEqualsDouble(flown.minDistanceAtS, 6.0, 0.2)
+
+  for
+    (loop, link, name, least, most) <- Seq(
+      (LoopTiming.Futures(), DelayTable.direct, "direct", 8.8, 9.7),
+      (LoopTiming.Stream(), DelayTable.direct, "direct", 8.9, 9.6),
+      (LoopTiming.Futures(), DelayTable.vpn, "vpn", 9.9, 11.0),
+      (LoopTiming.Stream(), DelayTable.vpn, "vpn", 9.9, 11.0)
+    )
+  do
+    test(s"$loop over $name settles where the reference flights did, between $least and $most m"):
+      val rollout = Rollout(Duel.paper, loop, link, VelocityResponses.quadrotor())
+      for episode <- 0 until 4 do
+        val settled = rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM
+        assert(settled > least && settled < most, s"episode $episode: $settled m")
+
+  test(
+    "sequential reads both vehicles one after the other, then waits: its step lasts two round trips and a period"
+  ):
+    val link    = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(50)))
+    val rollout = Rollout(Duel.paper, LoopTiming.Sequential(0.1), link, lag)
+    assertEqualsDouble(rollout.fly(0).decisions / 2.0, 60 / 0.2, 1.0)
+
+  test("stream skips pictures when acknowledgements of commands take longer than two periods"):
+    val link  = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(300)))
+    val flown = Rollout(Duel.paper, LoopTiming.Stream(), link, lag).fly(0)
+    assert(flown.skipped > 300, flown)
+    assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
+
+  test("the reduced model follows its differential equation through dead time and commands"):
+    val vehicle = Reduced(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
+    vehicle.start(0, 0, 0)
+    vehicle.command(10, 0)
+    vehicle.advance(0.3)
+    vehicle.command(0, 10)
+    vehicle.advance(1.0)
+    var x, y, vx, vy = 0.0
+    val dt           = 1e-5
+    for i <- 0 until 100000 do
+      val t        = i * dt
+      val (wx, wy) = if t < 0.12 then (0.0, 0.0) else if t < 0.42 then (8.0, 0.0) else (0.0, 8.0)
+      x += vx * dt; y += vy * dt
+      vx += (wx - vx) / 0.5 * dt; vy += (wy - vy) / 0.5 * dt
+    assertClose(Seq(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy), Seq(x, y, vx, vy), 3e-4)
+
+  test("the default duel is the scenario's"):
+    assertEquals(Duel.of(Scenario.duel()).evader.policy, PaperEvader())

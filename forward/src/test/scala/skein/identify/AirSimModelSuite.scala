@@ -1,0 +1,83 @@
+package skein.identify
+
+import skein.forward.{
+  DelayTable,
+  Duel,
+  LoopTiming,
+  Reduced,
+  Rollout,
+  Vehicle,
+  VelocityResponse,
+  VelocityResponses
+}
+import skein.policy.{Role, Scenario}
+import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
+
+/** Holds the identified models of the built-in quadrotor to the quadrotor itself, in the paper's duel over the VPN. */
+class AirSimModelSuite extends munit.FunSuite:
+
+  /** What both vehicles were told and did in an episode with the full quadrotor. */
+  private lazy val flights: Vector[Flown] =
+    val flown                    = Vector.newBuilder[TappedVehicle]
+    val tapped: VelocityResponse = () =>
+      val vehicle = TappedVehicle(VelocityResponses.quadrotor().create())
+      flown += vehicle
+      vehicle
+    val _ = Rollout(
+      Duel.of(Scenario.duel()),
+      LoopTiming.Stream(),
+      DelayTable.vpn,
+      tapped
+    ).fly(WorldRandom.key(1, 0, 0))
+    flown.result().zip(Seq(Role.Evader, Role.Pursuer)).map((vehicle, role) => vehicle.flown(role.toString))
+
+  test(
+    "the identified model follows the full quadrotor through the duel: 0.1 m after 1 s, 0.7 m after 5 s, 95 %"
+  ):
+    val truth  = flights.map(HorizonErrors.reflown(_))
+    val errors = HorizonErrors.of(ReducedModel.AirSim, truth)
+    assertEquals(errors.map(_.horizonS), Vector(1.0, 2.0, 5.0))
+    assert(
+      errors(0).positionP95M < 0.1 && errors(1).positionP95M < 0.25 && errors(2).positionP95M < 0.7,
+      errors
+    )
+    assert(errors(0).positionP50M < 0.02 && errors(2).positionP50M < 0.12, errors)
+
+  test("identifying from the quadrotor's flights gives the named defaults again"):
+    val named = Map(Structure.Lag -> Reduced.AirSim.model, Structure.Drag -> ReducedModel.AirSim)
+    for (structure, model) <- named do
+      val found =
+        Identification.of(flights.map(HorizonErrors.reflown(_)), structure).fold(fail(_), identity).model
+      assertEqualsDouble(found.gain, model.gain, 0.03, s"$structure: $found")
+      assertEqualsDouble(found.lagS, model.lagS, 0.1 * model.lagS, s"$structure: $found")
+      assertEqualsDouble(found.deadTimeS, model.deadTimeS, 0.03, s"$structure: $found")
+      assertEqualsDouble(found.dragPerM, model.dragPerM, 0.002, s"$structure: $found")
+
+/** Notes what a vehicle is told. */
+private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
+  private val arrivals              = Vector.newBuilder[Arrival]
+  private val sights                = Vector.newBuilder[Sight]
+  private var now, down, nextSightS = 0.0
+
+  def flown(name: String): Flown = Flown(name, sights.result(), arrivals.result(), down)
+
+  def start(x: Double, y: Double, z: Double): Unit =
+    vehicle.start(x, y, z)
+    down = z
+
+  def command(vx: Double, vy: Double): Unit =
+    vehicle.command(vx, vy)
+    arrivals += Arrival(now, vx, vy)
+
+  def advance(timeS: Double): Unit =
+    vehicle.advance(timeS)
+    now = timeS
+    if timeS >= nextSightS then
+      sights += Sight(timeS, x, y, vx, vy)
+      nextSightS = timeS + 0.1
+
+  def x: Double  = vehicle.x
+  def y: Double  = vehicle.y
+  def vx: Double = vehicle.vx
+  def vy: Double = vehicle.vy

@@ -1,0 +1,274 @@
+package skein.lanes
+
+import java.util.concurrent.atomic.AtomicInteger
+import scala.jdk.CollectionConverters.*
+import skein.forward.{
+  Asking,
+  DelayTable,
+  Delays,
+  Duel,
+  LinkDelays,
+  LoopTiming,
+  Reduced,
+  ReducedResponse,
+  Rollout,
+  Steering,
+  VelocityResponse,
+  VelocityResponses
+}
+import skein.policy.*
+import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.simd.WorldRandom
+import skein.units.Span
+import skein.vehicle.ReducedModel
+
+class DuelBatchSuite extends munit.FunSuite:
+  import DuelBatchSuite.*
+
+  private val short = Duel.paper.copy(durationS = 12)
+
+  test("threads, the other worlds and their order change no bit"):
+    val all    = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2).fly(mixed(300), captureRadiusM = 5)
+    val single = DuelBatch(short, LoopTiming.Stream(), lag, threads = 1)
+    val backwards = single.fly(reordered(mixed(300), 299 - _), captureRadiusM = 5)
+    assertEquals(all.flown, 300)
+    for world <- 0 until 300 do
+      assertEquals(numbers(backwards, 299 - world), numbers(all, world), s"world $world")
+
+  test("worlds whose policies are no formulas fly by the scalar reference, beside the others"):
+    val worlds   = mixed(40)
+    val outcomes = DuelBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
+    for world <- 0 until worlds.size if worlds.evader(world) == Straight do
+      assertEquals(numbers(outcomes, world), scalar(worlds, world, LoopTiming.Stream(), lag), s"world $world")
+
+  for
+    (timing, model) <- Seq(
+      LoopTiming.Futures()    -> lag,
+      LoopTiming.Stream()     -> VelocityResponses.Ideal,
+      LoopTiming.Sequential() -> VelocityResponses.Ideal
+    )
+  do
+    test(s"single worlds of $timing with $model fly by the scalar reference, and the engine says so"):
+      val batch  = DuelBatch(short, timing, model, threads = 2)
+      val worlds = mixed(20)
+      val flown  = batch.fly(worlds, captureRadiusM = 5)
+      assert(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).startsWith("scalar: "))
+      assert(!batch.fliesByLanes(PaperPursuer(), PaperEvader(), false, Nil))
+      for world <- 0 until worlds.size do
+        assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
+
+  test(
+    "where delays are long for the period, where they come in stretches, and where a loop is asked as published, the engine says scalar and why"
+  ):
+    val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
+    val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
+    def batch(timing: LoopTiming) = DuelBatch(short, timing, lag, threads = 1)
+    def engine(timing: LoopTiming, links: Delays*) =
+      batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links)
+    def isFast(timing: LoopTiming, links: Delays*) =
+      batch(timing).fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = false, links)
+    assert(isFast(LoopTiming.stream(0.1), near, far))
+    assert(!isFast(LoopTiming.stream(0.005), near))
+    assert(clue(engine(
+      LoopTiming.stream(0.005),
+      near
+    )).matches("scalar: a command may act \\d+ periods after .*know 64"))
+    assert(clue(engine(
+      LoopTiming.stream(0.01),
+      near,
+      far
+    )).contains("over 1 of 2 links; scalar over the others: a command"))
+    assert(!isFast(LoopTiming.stream(0.01), near, far))
+    val alternating = LinkDelays.of(LatencyProfile.vpnMixed)
+    assert(clue(engine(LoopTiming.stream(0.1), alternating)).startsWith("scalar: "))
+    assert(batch(LoopTiming.stream(0.1)).fliesByLanes(
+      PaperPursuer(),
+      PaperEvader(),
+      shareEpisodes = true,
+      Seq(alternating)
+    ))
+    for published <- Seq(
+        LoopTiming.Stream(decideThenPace = true),
+        LoopTiming.Stream(asking = Asking(inOrder = true)),
+        LoopTiming.Stream(asking = Asking(spreadS = 0.1)),
+        LoopTiming.Stream(steering = Steering(mostOutstanding = 6))
+      )
+    do assert(clue(engine(published, near)).startsWith("scalar: the lanes"))
+
+  test("progress counts all worlds, and a cancelled call says how many it flew"):
+    val batch = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2)
+    val seen  = Vector.newBuilder[Int]
+    batch.fly(mixed(600), onProgress = seen += _): Unit
+    assertEquals(seen.result().last, 600)
+    assertEquals(seen.result(), seen.result().sorted)
+    val done   = AtomicInteger()
+    val worlds = mixed(600)
+    val part   = batch.fly(worlds, onProgress = done.set, isCancelled = () => done.get > 0)
+    assert(part.flown > 0 && part.flown < 600, s"${part.flown} flown")
+    val whole = batch.fly(worlds)
+    val same  = (0 until 600).count(world => numbers(part, world) == numbers(whole, world))
+    assertEquals(same, part.flown)
+
+  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Futures()) do
+    test(
+      s"candidates that share episodes of $timing fly as each alone, whatever their order, number and threads"
+    ):
+      val batch     = DuelBatch(short, timing, lag, threads = 2)
+      val worlds    = candidates(150)
+      val all       = batch.fly(worlds, captureRadiusM = 5)
+      val backwards = DuelBatch(short, timing, lag, threads = 1)
+        .fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
+      assertEquals(all.flown, worlds.size)
+      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil))
+      for world <- 0 until worlds.size do
+        assertEquals(numbers(backwards, worlds.size - 1 - world), numbers(all, world), s"world $world")
+      for world <- 0 until worlds.size by 29 do
+        val alone = batch.fly(reordered(worlds, _ => world, Some(1)), captureRadiusM = 5)
+        assertEquals(numbers(alone, 0), numbers(all, world), s"world $world")
+        for (ours, reference) <- numbers(all, world).zip(scalar(worlds, world, timing, lag)) do
+          assert(
+            ours == reference || (ours - reference).abs < 5e-3,
+            s"world $world: $ours, scalar $reference"
+          )
+
+  for (name, model) <- Seq(
+      "the quadrotor" -> VelocityResponses.quadrotor(),
+      "drag"          -> ReducedResponse(ReducedModel.AirSim)
+    )
+  do
+    test(
+      s"candidates with $name that share episodes fly by lanes as each alone, and close to the scalar engine"
+    ):
+      val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val batch   = DuelBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
+      val worlds  = candidates(30)
+      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil))
+      val all       = batch.fly(worlds, captureRadiusM = 5)
+      val backwards = batch.fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
+      for world <- 0 until worlds.size do
+        assertEquals(numbers(backwards, worlds.size - 1 - world), numbers(all, world), s"world $world")
+      for world <- 0 until worlds.size by 17 do
+        val alone = batch.fly(reordered(worlds, _ => world, Some(1)), captureRadiusM = 5)
+        assertEquals(numbers(alone, 0), numbers(all, world), s"world $world")
+        val near = numbers(all, world).zip(scalar(worlds, world, LoopTiming.Futures(), model, offAxis))
+        assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
+
+  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential()) do
+    test(s"quadrotors with delays of their own under $timing fly by lanes, close to the scalar engine"):
+      val (model, count) = (VelocityResponses.quadrotor(), 150)
+      val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val all = DuelBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
+      assert(DuelBatch(offAxis, timing, model).fliesByLanes(PaperPursuer(), Straight, false, Nil))
+      val single    = DuelBatch(offAxis, timing, model, threads = 1)
+      val backwards = single.fly(reordered(mixed(count), count - 1 - _), captureRadiusM = 5)
+      assertEquals(all.flown, count)
+      for world <- 0 until count do
+        assertEquals(numbers(backwards, count - 1 - world), numbers(all, world), s"world $world")
+      for world <- 0 until count by 5 do
+        val near = numbers(all, world).zip(scalar(mixed(count), world, timing, model, offAxis))
+        assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
+
+  test("low quadrotors fly by the scalar reference, which knows the ground"):
+    val batch = DuelBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
+    assertEquals(
+      batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil),
+      "scalar: the lanes know no ground and fly from 5.0 m altitude on"
+    )
+
+  test("what a world throws reaches the caller"):
+    val worlds = mixed(300)
+    val broken = new DuelWorlds:
+      export worlds.{evader, key, pursuer, size}
+      def link(world: Int): Delays =
+        if world == 200 then sys.error("no such link") else worlds.link(world)
+    val thrown = intercept[RuntimeException](DuelBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
+    assertEquals(thrown.getMessage, "no such link")
+
+  test("without the vector module the scalar engine flies, and says how to get the other"):
+    val binary  = java.nio.file.Path.of(System.getProperty("java.home"), "bin", "java").toString
+    val process = ProcessBuilder(
+      binary,
+      "-cp",
+      System.getProperty("java.class.path"),
+      "skein.lanes.DuelBatchWithoutVectors"
+    ).redirectErrorStream(true).start()
+    val lines = process.inputReader.lines.iterator.asScala.toVector
+    assertEquals(process.waitFor(), 0, lines.mkString("\n"))
+    assertEquals(
+      lines.head,
+      "scalar: the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
+    )
+    val here = scalar(mixed(1), 0, LoopTiming.Stream(), lag)
+    assertEquals(lines(1), here.toString)
+
+object DuelBatchSuite:
+  /** Goes straight on, by what is no arithmetic. */
+  val Straight: Policy = (_, _, _, _, own, _, _) => own.toString.toDouble
+
+  val lag: Reduced = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+
+  /** Worlds of different links and policies; the evader of every seventh goes straight on. */
+  def mixed(count: Int): DuelWorlds =
+    val links = Vector(DelayTable.vpn, DelayTable.direct, DelayTable.none)
+    new DuelWorlds:
+      def size: Int                    = count
+      def key(world: Int): Int         = WorldRandom.key(7, 1, world)
+      def link(world: Int): DelayTable = links(world / 10 % links.size)
+      def pursuer(world: Int): Policy  = PaperPursuer(0.8 + 0.001 * world)
+      def evader(world: Int): Policy   = if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
+
+  /** So many candidates meet 3 episodes over 2 links; the evader of every seventh goes straight on. */
+  def candidates(count: Int): DuelWorlds =
+    val links = Vector(DelayTable.vpn, DelayTable.direct)
+    new DuelWorlds:
+      def size: Int                       = count * 6
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = WorldRandom.key(9, 0, world % 3)
+      def link(world: Int): DelayTable    = links(world % 6 / 3)
+      def pursuer(world: Int): Policy     =
+        if world / 6 % 5 == 0 then PaperPursuer(stepRad = Some(0.1))
+        else PaperPursuer(0.8 + 0.002 * (world / 6))
+      def evader(world: Int): Policy = if world % 7 == 6 then Straight else PaperEvader()
+
+  def reordered(worlds: DuelWorlds, number: Int => Int, count: Option[Int] = None): DuelWorlds =
+    new DuelWorlds:
+      def size: Int                       = count.getOrElse(worlds.size)
+      override def shareEpisodes: Boolean = worlds.shareEpisodes
+      def key(world: Int): Int            = worlds.key(number(world))
+      def link(world: Int): Delays        = worlds.link(number(world))
+      def pursuer(world: Int): Policy     = worlds.pursuer(number(world))
+      def evader(world: Int): Policy      = worlds.evader(number(world))
+
+  def numbers(o: DuelOutcomes, world: Int): Vector[Float] =
+    Vector(
+      o.minDistanceM,
+      o.meanDistanceM,
+      o.meanLast10sM,
+      o.captureS,
+      o.pursuerEffortRad,
+      o.evaderEffortRad
+    ).map(_(world))
+
+  def scalar(
+      worlds: DuelWorlds,
+      world: Int,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      from: Duel = Duel.paper
+  ): Vector[Float] =
+    val duel = Duel(
+      from.pursuer.copy(policy = worlds.pursuer(world)),
+      from.evader.copy(policy = worlds.evader(world)),
+      12
+    )
+    val o = Rollout(duel, timing, worlds.link(world), model).fly(worlds.key(world), 5)
+    Vector(o.minDistanceM, o.meanDistanceM, o.meanLast10sM, o.captureS, o.pursuerEffortRad, o.evaderEffortRad)
+      .map(_.toFloat)
+
+/** Started in a JVM without the vector module. */
+object DuelBatchWithoutVectors:
+  def main(args: Array[String]): Unit =
+    val batch =
+      DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSuite.lag, threads = 1)
+    println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil))
+    println(DuelBatchSuite.numbers(batch.fly(DuelBatchSuite.mixed(1), captureRadiusM = 5), 0))

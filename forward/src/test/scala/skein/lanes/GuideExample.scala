@@ -1,0 +1,47 @@
+package skein.lanes
+
+// guide: policy
+import skein.policy.{Decided, ObservingPolicy, PlanarObservation}
+
+/** Where the opponent was seen last, and how fast that bearing turns on average. */
+final case class Bearing(rad: Double, rateRadPerS: Double)
+
+/** Leads the opponent by its bearing's average rate, and believes old readings less. */
+final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double) extends ObservingPolicy[Bearing]:
+  def initial: Bearing = Bearing(0, 0)
+
+  def decide(seen: PlanarObservation, memory: Bearing): Decided[Bearing] =
+    val rad  = StrictMath.atan2(seen.dyM, seen.dxM)
+    val rate = if seen.elapsedS > 0 then wrapped(rad - memory.rad) / seen.elapsedS else 0.0
+    val news = seen.elapsedS / (seen.elapsedS + forgetS + seen.opponentAgeS)
+    val mean = memory.rateRadPerS + news * (rate - memory.rateRadPerS)
+    val turn = wrapped(rad - seen.ownHeadingRad) + gain * mean
+    val most = turnRateRadPerS * seen.elapsedS
+    Decided(seen.ownHeadingRad + turn.max(-most).min(most), Bearing(rad, mean))
+
+  private def wrapped(angleRad: Double) = math.IEEEremainder(angleRad, 2 * math.Pi)
+// guide: end
+
+object GuideExample:
+  // guide: search
+  import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+  import skein.lanes.DuelBatch
+  import skein.optimise.{Direction, DuelEvaluator, Measure, Objective}
+  import skein.policy.{Axis, PaperEvader, PolicyFamily, Role, SearchSpace}
+
+  val leads = PolicyFamily(
+    "lead",
+    "leads by the bearing's average rate",
+    Set(Role.Pursuer),
+    SearchSpace(
+      Vector(Axis("gain", 0, 4), Axis("forgetS", 0.05, 2), Axis("turnRateRadPerS", 0.5, 2))
+    ),
+    numbers => Lead(numbers(0), numbers(1), numbers(2))
+  )
+  val batch     = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
+  val nearest   = Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise)
+  val evaluator =
+    DuelEvaluator(batch, 60, leads, Role.Pursuer, PaperEvader(), DelayTable.vpn, nearest, seed = 1)
+  val candidates = leads.space.random(200, seed = 1)
+  val best       = candidates.zip(evaluator.tallies(candidates, 0 until 20)).minBy(_._2.mean)
+  // guide: end

@@ -1,0 +1,26 @@
+package skein.lanes
+
+import java.nio.file.{Files, Path}
+import skein.forward.DelayTable
+import skein.policy.PaperEvader
+
+/** What the guide on formulas shows is compiled and runs. */
+class GuideSuite extends munit.FunSuite:
+  private val root =
+    Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
+  private val guide = Files.readString(root.resolve("docs/guides/formulas.md"))
+  private val shown =
+    val source = Files.readString(root.resolve("forward/src/test/scala/skein/lanes/GuideExample.scala"))
+    source.split(
+      "// guide: (?!end)"
+    ).drop(1).map(_.split("// guide: end")(0).linesIterator.drop(1).mkString("\n").stripTrailing.stripIndent)
+
+  test("the guide's code is the example's, word by word"):
+    for part <- shown do assert(guide.contains(part), part)
+
+  test("the example's policy is searched by lanes, and the best is better than the middle"):
+    import GuideExample.*
+    val engine = batch.engine(leads.defaultPolicy, PaperEvader(), true, Seq(DelayTable.vpn))
+    assert(engine.startsWith("SIMD"), engine)
+    val middle = evaluator.tallies(Vector(leads.space.defaults), 0 until 20).head.mean
+    assert(best._2.mean < middle, s"${best._2.mean} against $middle")

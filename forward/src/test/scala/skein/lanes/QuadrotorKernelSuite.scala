@@ -1,0 +1,39 @@
+package skein.lanes
+
+import skein.units.Vector3
+import skein.vehicle.{Quadrotor, Setpoint}
+
+class QuadrotorKernelSuite extends munit.FunSuite:
+  private val vehicles = QuadrotorKernel.VEHICLES
+
+  private def downM(vehicle: Int) = -5.0 - vehicle * 0.2
+
+  /** A new velocity every 0.3 s, up to 10 m/s, different for every vehicle. */
+  private def velocity(vehicle: Int, turn: Int): (Float, Float) =
+    val speed = 2 + (vehicle * 7 + turn * 3) % 9
+    val angle = 0.9 * vehicle + 0.35 * turn
+    ((speed * math.cos(angle)).toFloat, (speed * math.sin(angle)).toFloat)
+
+  test("the kernel flies as the scalar quadrotor does: 10 s of turning, to 5 mm and 5 mm/s"):
+    val kernel = QuadrotorKernel()
+    val states = Array.tabulate(vehicles)(v => Quadrotor.AirSim.hovering(Vector3(v, -v, downM(v))))
+    for v <- 0 until vehicles do kernel.hover(v, Vector3(v, -v, downM(v)))
+    for turn <- 0 until 33 do
+      for v <- 0 until vehicles do
+        val (north, east) = velocity(v, turn)
+        kernel.command(v, north, east, downM(v).toFloat)
+        val setpoint = Setpoint.velocityZ(north, east, downM(v))
+        for _ <- 1 to 100 do Quadrotor.AirSim.step(states(v), setpoint)
+      kernel.fly(100)
+    for v <- 0 until vehicles do
+      val position = (kernel.positionNed(v) - states(v).positionNed).norm
+      val speed    = (kernel.velocityNed(v) - states(v).velocityNed).norm
+      assert(position < 5e-3, s"vehicle $v is $position m off")
+      assert(speed < 5e-3, s"vehicle $v is $speed m/s off")
+
+  test("hover holds its position to a millimetre over 30 s, in floats too"):
+    val kernel = QuadrotorKernel()
+    for v <- 0 until vehicles do kernel.hover(v, Vector3(0, 0, -20))
+    val start = kernel.positionNed(0)
+    kernel.fly(10000)
+    for v <- 0 until vehicles do assert((kernel.positionNed(v) - start).norm < 1e-3, kernel.positionNed(v))

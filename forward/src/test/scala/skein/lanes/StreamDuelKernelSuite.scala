@@ -1,0 +1,144 @@
+package skein.lanes
+
+import scala.collection.mutable.ArrayBuffer
+import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout}
+import skein.optimise.LatencyBudget
+import skein.policy.{PaperEvader, PaperPursuer}
+import skein.simd.WorldRandom
+
+class StreamDuelKernelSuite extends munit.FunSuite:
+  private val worlds = DuelKernel.WORLDS
+  private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+
+  private val keys      = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
+  private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)
+  private val radii     = Array.tabulate(worlds)(i => 7f + 0.02f * i)
+
+  private val captureRadiusM = 3.9f
+
+  private def duel(world: Int, durationS: Double): Duel = Duel(
+    Duel.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
+    Duel.paper.evader.copy(policy = PaperEvader(radii(world))),
+    durationS
+  )
+
+  private def kernelOf(
+      turnRates: Array[Float],
+      radii: Array[Float],
+      durationS: Double = 60,
+      model: Reduced = lag,
+      shortCut: Boolean = true,
+      periodS: Double = 0.1
+  ): StreamDuelKernel =
+    val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
+    for world <- 0 until worlds do
+      pursuers.take(world, PaperPursuer(turnRates(world)))
+      evaders.take(world, PaperEvader(radii(world)))
+    val duel = Duel.paper.copy(durationS = durationS)
+    StreamDuelKernel(duel, LoopTiming.stream(periodS), model, pursuers, evaders, shortCut)
+
+  private def fly(link: DelayTable, durationS: Double): StreamDuelKernel =
+    val kernel = kernelOf(turnRates, radii, durationS)
+    kernel.fly(keys, Array.fill(worlds)(link), captureRadiusM)
+    kernel
+
+  for (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
+  do
+    test(s"over $name kernel and scalar reference fly the same 5 s, to 2 mm in every world"):
+      val kernel = fly(link, 5)
+      val equal  = (0 until worlds).count: world =>
+        val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+        (kernel.minDistance(world) - scalar.minDistanceM).abs < 2e-3 &&
+        (kernel.meanDistance(world) - scalar.meanDistanceM).abs < 2e-3 &&
+        (kernel.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+        (kernel.evaderEffortRad(world) - scalar.evaderEffortRad).abs < 2e-3
+      assert(equal == worlds, s"$equal of $worlds worlds agree")
+
+    test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
+      val kernel  = fly(link, 60)
+      val scalars = ArrayBuffer.empty[Outcome]
+      for world <- 0 until worlds do
+        scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+      assertEqualsDouble(kernel.meanLast10s.sum / worlds, scalars.map(_.meanLast10sM).sum / worlds, 0.01)
+      assertEqualsDouble(kernel.minDistance.sum / worlds, scalars.map(_.minDistanceM).sum / worlds, 0.01)
+      assertEqualsDouble(
+        kernel.pursuerEffortRad.sum / worlds,
+        scalars.map(_.pursuerEffortRad).sum / worlds,
+        0.05
+      )
+      // A capture is the same but where the smallest distance lies within a rounding error of the radius.
+      val captured = scalars.count(_.captureS.isFinite)
+      val same     = scalars.indices.count: world =>
+        val (ours, reference) = (kernel.captureS(world), scalars(world).captureS.toFloat)
+        ours == reference || (ours - reference).abs < 1e-3
+      assert(
+        captured > worlds / 10 && captured < worlds,
+        s"$captured captured; median of the smallest distances ${scalars.map(_.minDistanceM).sorted.apply(worlds / 2)}"
+      )
+      assert(same >= 0.97 * worlds, s"$same of $worlds captures agree")
+
+  test("a period that does not divide 10 s: the last scores' mean is that of the scalar reference"):
+    val kernel = kernelOf(turnRates, radii, durationS = 12, periodS = 0.3)
+    kernel.fly(keys, Array.fill(worlds)(DelayTable.direct), captureRadiusM)
+    val off = (0 until worlds).map: world =>
+      val scalar = Rollout(duel(world, 12), LoopTiming.stream(0.3), DelayTable.direct, lag).fly(keys(world))
+      (kernel.meanLast10s(world) - scalar.meanLast10sM).abs
+    assert(off.sorted.apply(worlds / 2) < 5e-3, off.sorted.mkString(" "))
+
+  private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
+
+  // There answers overtake one another, questions fail, and vehicles answer in turns.
+  for (meanMs, jitterMs) <- badLinks do
+    val link = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+
+    test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
+      assert(StreamDuelKernel.canFly(LoopTiming.stream(0.1), link, lag), s"up to ${link.maxS} s")
+      val kernel                             = fly(link, 10)
+      def scalar(world: Int, asideM: Double) =
+        val moved = duel(world, 10)
+        Rollout(
+          moved.copy(pursuer = moved.pursuer.copy(startY = moved.pursuer.startY + asideM)),
+          LoopTiming.stream(0.1),
+          link,
+          lag
+        ).fly(keys(world))
+      for world <- 0 until worlds do
+        val reference          = scalar(world, 0)
+        def off(from: Outcome) = Vector(
+          from.minDistanceM - reference.minDistanceM,
+          from.meanDistanceM - reference.meanDistanceM,
+          from.pursuerEffortRad - reference.pursuerEffortRad,
+          from.evaderEffortRad - reference.evaderEffortRad
+        ).map(_.abs).max
+        val apart = Vector(
+          kernel.minDistance(world) - reference.minDistanceM,
+          kernel.meanDistance(world) - reference.meanDistanceM,
+          kernel.pursuerEffortRad(world) - reference.pursuerEffortRad,
+          kernel.evaderEffortRad(world) - reference.evaderEffortRad
+        ).map(_.abs).max
+        // A decision lies at a threshold if the scalar engine too decides otherwise from hundredths of a millimetre aside.
+        val atThreshold = apart >= 2e-3 && (-4 to 4).exists(k => off(scalar(world, k * 5e-6)) >= 2e-3)
+        assert(apart < 2e-3 || atThreshold, s"world $world: $apart apart, and at no threshold")
+
+    test(s"at $meanMs ms and $jitterMs ms of jitter telling pictures by lanes is but a short cut"):
+      val kernel  = kernelOf(turnRates, radii)
+      val longWay = kernelOf(turnRates, radii, shortCut = false)
+      for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)
+      assertEquals(kernel.meanLast10s.toSeq, longWay.meanLast10s.toSeq)
+      assertEquals(kernel.pursuerEffortRad.toSeq, longWay.pursuerEffortRad.toSeq)
+
+  test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
+    val kernel   = fly(DelayTable.vpn, 60)
+    val before   = kernel.meanLast10s.clone
+    val reversed = kernelOf(turnRates.reverse, radii.reverse)
+    reversed.fly(keys.reverse, Array.fill(worlds)(DelayTable.vpn), captureRadiusM)
+    assertEquals(reversed.meanLast10s.reverse.toSeq, before.toSeq)
+
+  test("worlds of different links fly side by side as each would alone"):
+    val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
+    val kernel = kernelOf(turnRates, radii)
+    for _ <- 1 to 2 do
+      kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), captureRadiusM)
+      val alone = links.map(link => fly(link, 60))
+      for world <- 0 until worlds do
+        assertEquals(kernel.meanLast10s(world), alone(world / 5 % 3).meanLast10s(world), s"world $world")

@@ -1,0 +1,75 @@
+package skein.lanes
+
+import skein.policy.{Decided, PlanarObservation, ObservingPolicy, Policy}
+
+/** What [[TrendPursuer]] remembers: where the opponent was seen last, and how fast that direction turns on average. */
+final case class Trend(bearingRad: Double, rateRadPerS: Double)
+
+/** Turns with the line of sight's average rate, and after the opponent. Nothing in the product knows it. */
+final case class TrendPursuer(gain: Double, forgetS: Double, turnRateRadPerS: Double)
+    extends ObservingPolicy[Trend]:
+  def initial: Trend = Trend(0, 0)
+
+  def decide(seen: PlanarObservation, memory: Trend): Decided[Trend] =
+    val bearing = StrictMath.atan2(seen.dyM, seen.dxM)
+    val trend   =
+      if seen.elapsedS > 0 then
+        val rate  = wrapped(bearing - memory.bearingRad) / seen.elapsedS
+        val share = 1 - StrictMath.exp(-seen.elapsedS / forgetS)
+        Trend(bearing, memory.rateRadPerS + share * (rate - memory.rateRadPerS))
+      else Trend(bearing, 0)
+    val wanted = gain * trend.rateRadPerS + wrapped(bearing - seen.ownHeadingRad)
+    val rate   = wanted.max(-turnRateRadPerS).min(turnRateRadPerS)
+    Decided(seen.ownHeadingRad + rate * seen.elapsedS, trend)
+
+  private def wrapped(angleRad: Double) = math.IEEEremainder(angleRad, 2 * math.Pi)
+
+/** Heads for where the opponent is by now: its velocity carries it on over the age of its reading. */
+final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRadPerS: Double)
+    extends ObservingPolicy[Unit]:
+  def initial: Unit = ()
+
+  def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+    val (cos, sin) = (StrictMath.cos(seen.ownHeadingRad), StrictMath.sin(seen.ownHeadingRad))
+    // The opponent's own velocity, as far as the own one is as commanded.
+    val north = seen.dvxMps + ownSpeedMps * cos
+    val east  = seen.dvyMps + ownSpeedMps * sin
+    val dx    = seen.dxM + trust * (north * seen.opponentAgeS - ownSpeedMps * cos * seen.ownAgeS)
+    val dy    = seen.dyM + trust * (east * seen.opponentAgeS - ownSpeedMps * sin * seen.ownAgeS)
+    val turn  = math.IEEEremainder(StrictMath.atan2(dy, dx) - seen.ownHeadingRad, 2 * math.Pi)
+    val most  = turnRateRadPerS * seen.elapsedS
+    Decided(seen.ownHeadingRad + turn.max(-most).min(most), memory)
+
+/** A network with two hidden layers of 16 rectified neurons, as one writes it who has never seen ours. */
+final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double) extends Policy:
+  require(weights.length == RectifiedNetwork.Weights)
+
+  def heading(
+      dxM: Double,
+      dyM: Double,
+      dvxMps: Double,
+      dvyMps: Double,
+      ownHeadingRad: Double,
+      opponentHeadingRad: Double,
+      elapsedS: Double
+  ): Double =
+    val (cos, sin) = (StrictMath.cos(ownHeadingRad), StrictMath.sin(ownHeadingRad))
+    val inputs     = Array(
+      (dxM * cos + dyM * sin) / 20,
+      (dyM * cos - dxM * sin) / 20,
+      (dvxMps * cos + dvyMps * sin) / 10,
+      (dvyMps * cos - dvxMps * sin) / 10
+    )
+    val hidden = layer(layer(inputs, 0, 16), 16 * 5, 16)
+    ownHeadingRad + turnRateRadPerS * elapsedS * StrictMath.tanh(neuron(hidden, 16 * 5 + 16 * 17))
+
+  private def layer(inputs: Array[Double], from: Int, neurons: Int): Array[Double] =
+    Array.tabulate(neurons)(i => neuron(inputs, from + i * (inputs.length + 1)).max(0.0))
+
+  private def neuron(inputs: Array[Double], from: Int): Double =
+    var sum = weights(from + inputs.length)
+    for i <- inputs.indices do sum += weights(from + i) * inputs(i)
+    sum
+
+object RectifiedNetwork:
+  val Weights: Int = 16 * 5 + 16 * 17 + 17

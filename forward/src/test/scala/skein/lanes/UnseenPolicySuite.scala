@@ -1,0 +1,74 @@
+package skein.lanes
+
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced, Rollout}
+import skein.policy.{ChauffeurEvader, Policy}
+import skein.signal.SplitMix64
+import skein.simd.WorldRandom
+
+/** Policies that the product has never seen fly by lanes as they are written. */
+class UnseenPolicySuite extends munit.FunSuite:
+  import UnseenPolicySuite.*
+
+  private val model = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val short = Duel.paper.copy(durationS = 5)
+
+  for
+    (name, draw)     <- Unseen
+    (timing, shared) <- Seq(
+      LoopTiming.Stream()     -> true,
+      LoopTiming.Sequential() -> true,
+      LoopTiming.Stream()     -> false
+    )
+    if shared || name != "ages"
+  do
+    test(s"$name, ${timing.productPrefix}, ${
+        if shared then "one episode" else "delays of their own"
+      }: as by the scalar reference"):
+      val random   = SplitMix64(7)
+      val pursuers = Vector.fill(128)(draw(random))
+      val evader   = ChauffeurEvader()
+      val worlds   = new DuelWorlds:
+        def size: Int                       = pursuers.size
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then 0 else world)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = pursuers(world)
+        def evader(world: Int): Policy      = UnseenPolicySuite.Evader
+      val batch = DuelBatch(short, timing, model, 1)
+      assert(
+        batch.fliesByLanes(pursuers.head, evader, shared, Seq(DelayTable.vpn)),
+        batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn))
+      )
+      val flown = batch.fly(worlds)
+      val off   = pursuers.indices.map: world =>
+        val duel = Duel(
+          short.pursuer.copy(policy = pursuers(world)),
+          short.evader.copy(policy = evader),
+          short.durationS
+        )
+        val scalar = Rollout(duel, timing, DelayTable.vpn, model).fly(worlds.key(world))
+        (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
+          (flown.minDistanceM(world) - scalar.minDistanceM).abs max
+          (flown.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs
+      assert(off.max < 5e-3, off.sorted.takeRight(10).mkString(" "))
+
+  test("worlds of their own tell no ages by lanes, and the engine says so"):
+    val batch = DuelBatch(short, LoopTiming.Stream(), model, 1)
+    val line  = batch.engine(AgeAwarePursuer(10, 1, 1), ChauffeurEvader(), false, Seq(DelayTable.vpn))
+    assert(line.startsWith("scalar: a policy asks how old readings are"), line)
+
+object UnseenPolicySuite:
+  val Evader: ChauffeurEvader = ChauffeurEvader()
+
+  val Unseen: Seq[(String, SplitMix64 => Policy)] = Seq(
+    "memory" -> (random =>
+      TrendPursuer(random.nextDouble(), 0.2 + random.nextDouble(), 0.5 + random.nextDouble())
+    ),
+    "ages"    -> (random => AgeAwarePursuer(10, random.nextDouble(), 0.5 + random.nextDouble())),
+    "network" -> (random =>
+      RectifiedNetwork(
+        Array.fill(RectifiedNetwork.Weights)(random.nextDouble() - 0.5),
+        0.5 + random.nextDouble()
+      )
+    )
+  )

@@ -1,0 +1,53 @@
+package skein.lanes
+
+import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
+import skein.policy.PolicyFamily
+import skein.signal.SplitMix64
+
+/** How fast are policies searched that the product has never seen? `forward/Test/runMain skein.lanes.unseenRates`: on one
+  * thread, 1,024 candidates of one episode of 60 s of `stream` over `vpn`, beside the paper's pursuer, and by the scalar
+  * engine; processor time. Agent-steps of 0.1 s; an operation is one of the compiled expression, whose number is told.
+  */
+@main def unseenRates(rounds: Int*): Unit =
+  val model  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val timing = LoopTiming.Stream()
+  val paper  = (random: SplitMix64) => PolicyFamily.paperPursuer.policy(Vector(0.5 + random.nextDouble()))
+  val times  = java.lang.management.ManagementFactory.getThreadMXBean
+
+  def seconds(work: => Unit): Double =
+    val from = times.getCurrentThreadCpuTime
+    work
+    (times.getCurrentThreadCpuTime - from) * 1e-9
+
+  for _ <- 1 to rounds.headOption.getOrElse(2); (name, draw) <- ("paper" -> paper) +: UnseenPolicySuite.Unseen
+  do
+    val random                   = SplitMix64(3)
+    val candidates               = Array.fill(DuelKernel.WORLDS)(draw(random))
+    val lanes                    = TimetableModel.of(model, Duel.paper).fold(sys.error, identity)
+    val table                    = Timetable.of(60, timing, DelayTable.vpn, 1, lanes)
+    val started                  = System.nanoTime
+    val pursuers                 = LanePolicy.of(candidates(0))
+    val compiledMs               = (System.nanoTime - started) / 1_000_000
+    val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
+    val kernel                   = TimetableKernel(Duel.paper, timing, lanes, pursuers, evaders)
+    def fly(episodes: Int): Unit = for _ <- 1 to episodes do
+      for world <- 0 until DuelKernel.WORLDS do
+        pursuers.take(world, candidates(world))
+        evaders.take(world, UnseenPolicySuite.Evader)
+      kernel.fly(table, DuelKernel.WORLDS, 0)
+    fly(1000)
+    val rate = Vector.fill(5)(200 * DuelKernel.WORLDS * 1200 / seconds(fly(200))).max * 1e-6
+    def scalar(count: Int): Unit = for world <- 0 until count do
+      val duel = Duel(
+        Duel.paper.pursuer.copy(policy = candidates(world % DuelKernel.WORLDS)),
+        Duel.paper.evader.copy(policy = UnseenPolicySuite.Evader),
+        60
+      )
+      Rollout(duel, timing, DelayTable.vpn, model).fly(1): Unit
+    scalar(150)
+    val slow    = Vector.fill(3)(60 * 1200 / seconds(scalar(60))).max * 1e-6
+    val size    = PolicyLanes.get(candidates(0)).operations
+    val witness = kernel.meanLast10s.map(_.toDouble).sum / DuelKernel.WORLDS
+    println(
+      f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations  ${rate * size}%7.0f M operations/s  made in $compiledMs ms  witness $witness%.5f"
+    )

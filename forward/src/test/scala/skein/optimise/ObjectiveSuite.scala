@@ -1,0 +1,85 @@
+package skein.optimise
+
+import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout}
+import skein.lanes.{DuelBatch, DuelOutcomes, DuelWorlds}
+import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.simd.WorldRandom
+
+class ObjectiveSuite extends munit.FunSuite:
+  private def read(text: String, role: Role = Role.Pursuer): Objective =
+    Objective.parse(text, role).fold(mistake => fail(mistake), identity)
+
+  test("a weighted sum is read term by term, and its text is read back"):
+    val objective = read("0.7*last10s + 0.3*effort-2e-1 * capture(4, 20)")
+    assertEquals(
+      objective.terms,
+      Vector(0.7 -> Measure.Last10s, 0.3 -> Measure.Effort, -0.2 -> Measure.Capture(4, 20))
+    )
+    assertEquals(objective.direction, Direction.Minimise)
+    assertEquals(read(objective.text), objective)
+
+  test("a measure alone goes where the role wants it, unless it is said"):
+    assertEquals(read("last10s").direction, Direction.Minimise)
+    assertEquals(read("last10s", Role.Evader).direction, Direction.Maximise)
+    assertEquals(read("capture(4, 20)").direction, Direction.Maximise)
+    assertEquals(read("captureTime(4)").direction, Direction.Minimise)
+    assertEquals(read("effort", Role.Evader).direction, Direction.Minimise)
+    assertEquals(read("maximise last10s").direction, Direction.Maximise)
+    assertEquals(read("minimize 2*min + mean", Role.Evader).direction, Direction.Minimise)
+
+  for
+    (text, place, expected) <- Seq(
+      ("", "character 1", "MEASURE"),
+      ("minimise 0.5*nosuch", "character 14", "last10s"),
+      ("last10s min", "character 9", "+ or -"),
+      ("last10s + ", "character 9", "+ or -"),
+      ("capture(4)", "character 1", "capture(RADIUS_M, WITHIN_S)"),
+      ("capture(4, x)", "character 1", "capture(RADIUS_M, WITHIN_S)"),
+      ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)"),
+      ("capture(4, 20) + captureTime(5)", "one capture radius", "4.0 and 5.0")
+    )
+  do
+    test(s"'$text' is refused with place and expectation"):
+      val mistake = Objective.parse(text, Role.Pursuer).left.getOrElse("accepted")
+      assert(mistake.contains(place) && mistake.contains(expected), mistake)
+
+  test("captures, their times and efforts are those of the scalar reference"):
+    val duel     = Duel.paper.copy(durationS = 20)
+    val model    = Reduced(0.9, 0.8, 0.05)
+    val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
+    val worlds   = new DuelWorlds:
+      def size: Int                    = pursuers.size
+      def key(world: Int): Int         = WorldRandom.key(1, 0, 0)
+      def link(world: Int): DelayTable = DelayTable.direct
+      def pursuer(world: Int): Policy  = pursuers(world)
+      def evader(world: Int): Policy   = PaperEvader()
+    val outcomes = DuelBatch(duel, LoopTiming.Futures(), model, 1).fly(worlds, captureRadiusM = 4.5)
+    for (pursuer, world) <- pursuers.zipWithIndex do
+      val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))
+      val one = Rollout(own, LoopTiming.Futures(), DelayTable.direct, model).fly(worlds.key(0), 4.5)
+      def value(text: String, role: Role = Role.Pursuer) = read(text, role).value(outcomes, world, role, 20)
+      assertEqualsDouble(value("captureTime(4.5)"), one.captureS.min(20), 1e-5)
+      assertEqualsDouble(value("capture(4.5, 8)"), if one.captureS <= 8 then 1 else 0, 0)
+      assertEqualsDouble(value("effort"), one.pursuerEffortRad, 1e-4)
+      assertEqualsDouble(value("effort", Role.Evader), one.evaderEffortRad, 1e-4)
+      assertEqualsDouble(
+        value("2*min - 0.5*mean + last10s"),
+        2 * one.minDistanceM - 0.5 * one.meanDistanceM + one.meanLast10sM,
+        1e-4
+      )
+
+  test("tallies of parts make the tally of the whole"):
+    val values = Vector.tabulate(20)(i => math.sin(i) * i)
+    val whole  = Tally.of(20)(values)
+    val parts  = Tally.of(7)(values) + Tally.of(13)(i => values(i + 7))
+    assertEquals(parts.count, 20)
+    assertEqualsDouble(parts.mean, whole.mean, 1e-12)
+    assertEqualsDouble(parts.sd, whole.sd, 1e-12)
+    val mean = values.sum / 20
+    assertEqualsDouble(whole.sd, math.sqrt(values.map(v => (v - mean) * (v - mean)).sum / 19), 1e-12)
+
+  test("a capture at the last moment that counts is one, and one a score later is none"):
+    val outcomes = DuelOutcomes(1)
+    for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
+      outcomes.set(0, Outcome(1, captureS, 1, 1, captureS, 0, 0, 0, 0))
+      assertEquals(read("capture(4, 7.3)").value(outcomes, 0, Role.Pursuer, 20), expected, s"$captureS s")

@@ -1,0 +1,161 @@
+package skein.optimise
+
+import java.util.concurrent.atomic.AtomicInteger
+import scala.concurrent.duration.*
+import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+import skein.lanes.DuelBatch
+import skein.policy.{Axis, PaperEvader, PaperPursuer, PolicyFamily, Role, SearchSpace}
+import skein.signal.SplitMix64
+
+class SearchSuite extends munit.FunSuite:
+  // On a busy machine the lanes take long to be compiled.
+  override def munitTimeout: Duration = 3.minutes
+
+  private val space = SearchSpace(Vector(Axis("a", -2, 4), Axis("b", -3, 3)))
+
+  private def depth(c: Vector[Double]): Double = math.pow(c(0) - 1, 2) + 2 * math.pow(c(1) + 0.5, 2)
+
+  /** A bowl around (1, -0.5) whose episodes are noisy, all candidates alike but for a little of their own. */
+  private val bowl: Evaluator = (candidates, episodes) =>
+    candidates.map: c =>
+      Tally.of(episodes.size): i =>
+        depth(c) + 0.1 * (SplitMix64(episodes(i) * 31L + c.hashCode).nextDouble() - 0.5)
+
+  private val hill: Evaluator = (candidates, episodes) =>
+    bowl.tallies(candidates, episodes).map(tally => tally.copy(mean = -tally.mean))
+
+  private val methods = Vector(
+    SearchMethod.Grid(25, 4),
+    SearchMethod.Random(900, 4),
+    SearchMethod.CrossEntropy(60, 15, 4),
+    SearchMethod.CmaEs(12, 60, 4),
+    SearchMethod.Racing(400, 2)
+  )
+
+  private def search(method: SearchMethod, seed: Long = 3) =
+    Search.run(space, method, Direction.Minimise, seed, bowl)
+
+  test("a grid spans the space, bounds included"):
+    val grid = space.grid(4)
+    assertEquals(grid.size, 16)
+    assertEquals(grid.head, Vector(-2.0, -3.0))
+    assertEquals(grid.last, Vector(4.0, 3.0))
+    assertEquals(grid(1), Vector(-2.0, -1.0))
+
+  test("random candidates lie in the space, and the same seed draws the same"):
+    val drawn = space.random(500, 7)
+    assert(drawn.forall(c => space.clamp(c) == c))
+    assertEquals(space.random(500, 7), drawn)
+    assertNotEquals(space.random(500, 8), drawn)
+
+  test("shares of the space are mirrored at its bounds"):
+    assertEquals(space.at(Vector(0, 1)), Vector(-2.0, 3.0))
+    assertEquals(space.at(Vector(-0.25, 1.5)), space.at(Vector(0.25, 0.5)))
+    assertEquals(space.shares(space.at(Vector(0.25, 0.75))), Vector(0.25, 0.75))
+
+  for method <- methods do
+    test(s"$method finds the bottom of a noisy bowl, the same for the same seed"):
+      val found = search(method).head
+      assert(depth(found.candidate) < 0.05, s"seed 3: $found")
+      assertEquals(search(method).head, found)
+
+    test(s"$method, maximising, finds the top of a hill"):
+      val found = Search.run(space, method, Direction.Maximise, 3, hill).head
+      assert(depth(found.candidate) < 0.05, s"seed 3: $found")
+
+    test(s"$method ends the same however it is cut into steps"):
+      val machine                 = Search(space, method, Direction.Minimise, 5)
+      def run(atMost: Int => Int) =
+        Iterator
+          .iterate((machine.start, 0))((state, i) => (machine.step(state, bowl, atMost(i)), i + 1))
+          .map(_._1)
+          .find(_.isDone)
+          .get
+      val whole = run(_ => Int.MaxValue)
+      assertEquals(run(i => 1 + (i * 37) % 200), whole)
+
+      def cutAndGoneOnWith(state: SearchState) =
+        val left = machine.step(state, bowl, 150, isCancelled = () => true)
+        assertEquals(left, state)
+        machine.step(left, bowl, 150)
+      assertEquals(Iterator.iterate(machine.start)(cutAndGoneOnWith).find(_.isDone).get, whole)
+      assert(whole.flown <= machine.expected, s"flew ${whole.flown}, expected at most ${machine.expected}")
+
+  test("the play-off's winner is measured on episodes on which no one was chosen"):
+    val seen      = Set.newBuilder[Int]
+    val evaluator = new Evaluator:
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+        if episodes.head >= Search.PlayOffFrom then seen ++= episodes
+        bowl.tallies(candidates, episodes)
+    val found = Search.run(space, SearchMethod.Random(200, 4), Direction.Minimise, 1, evaluator).head
+    assertEquals(found.tally.count, seen.result().size)
+
+  test("a race spends most episodes on the good candidates"):
+    var flown     = Map.empty[Vector[Double], Int].withDefaultValue(0)
+    val evaluator = new Evaluator:
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+        if episodes.head < Search.PlayOffFrom then
+          for c <- candidates do flown = flown.updated(c, flown(c) + episodes.size)
+        bowl.tallies(candidates, episodes)
+    val _ = Search.run(space, SearchMethod.Racing(64, 2), Direction.Minimise, 5, evaluator)
+    assertEquals(
+      flown.values.toVector.sorted.groupBy(identity).view.mapValues(_.size).toMap,
+      Map(2 -> 32, 4 -> 16, 8 -> 8, 16 -> 4, 32 -> 2, 64 -> 1, 128 -> 1)
+    )
+    assertEquals(flown.values.map(_.toLong).sum, SearchMethod.Racing(64, 2).evaluations(2))
+
+  test("what is no number is worse than everything"):
+    val holes: Evaluator = (candidates, episodes) =>
+      bowl.tallies(candidates, episodes).zip(candidates).map: (tally, c) =>
+        if c(0) > 0.5 then tally.copy(mean = Double.NaN) else tally
+    val found = Search.run(space, SearchMethod.CmaEs(12, 40, 4), Direction.Minimise, 3, holes).head
+    assert(found.candidate(0) <= 0.5 && depth(found.candidate) < 0.4, s"seed 3: $found")
+
+  test("a race whose last candidates would reach the episodes of the play-off is refused"):
+    def race(candidates: Int, episodes: Int) =
+      Search(space, SearchMethod.Racing(candidates, episodes), Direction.Minimise, 1)
+    assertEquals(SearchMethod.Racing(64, 2).mostOfOne, 128L)
+    val _ = race(1 << 17, 1 << 7)
+    for (candidates, episodes) <- Seq((1 << 17) -> 129, ((1 << 17) + 1) -> 128, 100_000 -> 1_000_000) do
+      val mistake = intercept[IllegalArgumentException](race(candidates, episodes))
+      assert(mistake.getMessage.contains("expected at most 16777216"), mistake.getMessage)
+
+  private val lag   = Reduced(0.9, 0.8, 0.05)
+  private val short = Duel.paper.copy(durationS = 30)
+
+  private def game(threads: Int): Evaluator = DuelEvaluator(
+    DuelBatch(short, LoopTiming.Stream(), lag, threads),
+    30,
+    PolicyFamily.paperPursuer,
+    Role.Pursuer,
+    PaperEvader(),
+    DelayTable.vpn,
+    Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
+    seed = 1
+  )
+
+  test("the value of a turn rate is the scalar reference's mean, and does not depend on the threads"):
+    val candidates = Vector(Vector(0.7), Vector(1.0), Vector(1.4))
+    val tallies    = game(1).tallies(candidates, 0 until 30)
+    assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
+    val scalar = TrajectoryEvaluator(
+      c => short.copy(pursuer = short.pursuer.copy(policy = PaperPursuer(c.head.toFloat))),
+      LoopTiming.Stream(),
+      DelayTable.vpn,
+      lag,
+      seed = 1
+    )(path => path.distancesM.takeRight(100).sum / 100).tallies(candidates, 0 until 30)
+    for (tally, reference) <- tallies.zip(scalar) do assertEqualsDouble(tally.mean, reference.mean, 0.03)
+
+  test("the paper's pursuer over vpn: the search finds a turn rate at least as good as any of a fine grid"):
+    val turnRate  = PolicyFamily.paperPursuer.space
+    val evaluator = game(1)
+    val grid      = Search.run(turnRate, SearchMethod.Grid(29, 20), Direction.Minimise, 1, evaluator).head
+    val found = Search.run(turnRate, SearchMethod.CmaEs(10, 12, 20), Direction.Minimise, 1, evaluator).head
+    assert(found.tally.mean <= grid.tally.mean + 0.02, s"$found, grid $grid")
+
+  test("a cancelled flight of candidates ends within its batches and tells nothing"):
+    val asked      = AtomicInteger()
+    val candidates = space.random(400, 1).map(_ => PolicyFamily.paperPursuer.space.defaults)
+    assertEquals(game(1).talliesUnless(() => asked.incrementAndGet() > 2)(candidates, 0 until 4), None)
+    assert(asked.get <= 4, s"asked ${asked.get} times")

@@ -1,0 +1,83 @@
+package skein.vehicle
+
+import skein.forward.{Reduced, ReducedResponse}
+import skein.signal.{Kinematics, SplitMix64}
+import skein.units.*
+
+class ReducedModelSuite extends munit.FunSuite:
+  private val model = ReducedModel(gain = 0.95, lagS = 1.7, deadTimeS = 0.12, turnLagS = 2.4, dragPerM = 0.01)
+
+  private def moving(model: ReducedModel): ReducedFlight =
+    val flight = ReducedFlight(model)
+    flight.start(0, 1, 2, 3, -4, 6, 2)
+    flight
+
+  test("how a flight is cut into calls does not change it"):
+    val (whole, cut) = (moving(model), moving(model))
+    val source       = SplitMix64(1)
+    whole.advance(0.83)
+    var now = 0.0
+    while now < 0.83 do
+      now = (now + 0.03 * source.nextDouble()).min(0.83)
+      cut.advance(now)
+    assertEqualsDouble(cut.x, whole.x, 1e-12)
+    assertEqualsDouble(cut.y, whole.y, 1e-12)
+    assertEqualsDouble(cut.vx, whole.vx, 1e-12)
+    assertEqualsDouble(cut.vy, whole.vy, 1e-12)
+
+  test("a piece is the solution of its differential equation"):
+    // Euler's method with a millionth of a second, within one piece and so one speed for the drag.
+    val flight         = moving(model)
+    val (step, span)   = (1e-6, 0.09)
+    val (ex, ey)       = (6 / math.hypot(6, 2), 2 / math.hypot(6, 2))
+    val goal           = model.gain * math.hypot(6, 2)
+    var (x, y, vx, vy) = (1.0, 2.0, 3.0, -4.0)
+    for _ <- 1 to math.round(span / step).toInt do
+      val along    = vx * ex + vy * ey
+      val (cx, cy) = (vx - along * ex, vy - along * ey)
+      val pull     = (goal - along) / model.lagS
+      val drag     = model.dragPerM * 5
+      x += vx * step; y += vy * step
+      vx += (pull * ex - cx / model.turnLagS - drag * (along * ex + cx)) * step
+      vy += (pull * ey - cy / model.turnLagS - drag * (along * ey + cy)) * step
+    flight.advance(span)
+    assertEqualsDouble(flight.x, x, 1e-5)
+    assertEqualsDouble(flight.y, y, 1e-5)
+    assertEqualsDouble(flight.vx, vx, 1e-5)
+    assertEqualsDouble(flight.vy, vy, 1e-5)
+
+  test("drag settles where the pull balances c v²"):
+    val flight = moving(model)
+    flight.act(0, 10, 0)
+    flight.advance(60)
+    assertEqualsDouble((0.95 * 10 - flight.vx) / 1.7, 0.01 * flight.vx * flight.vx, 1e-6)
+
+  test("without drag and with one lag it is the three-parameter model"):
+    val reduced  = Reduced(0.9, 0.8, 0.05)
+    val vehicles = Seq(reduced.create(), ReducedResponse(reduced.model).create())
+    for vehicle <- vehicles do
+      vehicle.start(3, 4, -20)
+      for k <- 1 to 40 do
+        vehicle.advance(0.07 * k)
+        vehicle.command(9 * math.cos(k), 9 * math.sin(k))
+      vehicle.advance(3.1)
+    assertEqualsDouble(vehicles(1).x, vehicles(0).x, 1e-9)
+    assertEqualsDouble(vehicles(1).y, vehicles(0).y, 1e-9)
+    assertEqualsDouble(vehicles(1).vx, vehicles(0).vx, 1e-9)
+    assertEqualsDouble(vehicles(1).vy, vehicles(0).vy, 1e-9)
+
+  test("as a predictor it holds a command back for the dead time, whatever the spans it is asked for"):
+    val predictor       = ReducedVehicleModel(model)
+    val seen            = Kinematics(Vector3(0, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+    val told            = Setpoint.velocityZ(10, 0, -20)
+    def after(ms: Int*) = predictor.kinematics(ms.foldLeft(predictor.start(seen))((state, span) =>
+      predictor.advanced(state, told, Span.ofMillis(span))
+    ))
+    assertEquals(after(60, 60).velocityNed, Vector3.Zero)
+    assert(after(60, 61).velocityNed.x > 0)
+    val expected = ReducedResponse(model).create()
+    expected.start(0, 0, -20)
+    expected.command(10, 0)
+    expected.advance(0.15)
+    assertEqualsDouble(after(150).positionNed.x, expected.x, 1e-12)
+    assertEqualsDouble(after(100, 50).positionNed.x, expected.x, 1e-12)

@@ -1,0 +1,34 @@
+package skein.link
+
+import org.apache.pekko.stream.scaladsl.Source
+import scala.concurrent.duration.Duration
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Success, Try}
+import skein.units.{Clock, Span}
+
+/** Measures round trips through anything that answers. */
+object LatencyProbe:
+
+  /** Sends a request each `period`, whether or not the one before has been answered, and gives each one's round trip in
+    * the order of sending; a request that failed gives its failure.
+    *
+    * @param request
+    *   sends one and completes when its answer is there; it has a timeout of its own
+    * @param maxUnanswered
+    *   requests under way; while there are so many none is sent
+    */
+  def roundTrips(
+      request: () => Future[?],
+      period: Span,
+      samples: Int,
+      clock: Clock,
+      maxUnanswered: Int = 64
+  ): Source[Try[Span], Any] =
+    Source
+      .tick(Duration.Zero, period.toDuration, ())
+      .take(samples)
+      .mapAsync(maxUnanswered): _ =>
+        val sentAt = clock.now()
+        request().transform(answer => Success(answer.map(_ => clock.now().since(sentAt))))(using
+          ExecutionContext.parasitic
+        )

@@ -1,0 +1,36 @@
+package skein.link
+
+import skein.units.Decimals.fixed
+import skein.units.Span
+
+/** Why there is no connection, or no listener. Futures and streams of a [[Transport]] fail with one of these; the
+  * message says what was wanted, where, and what to do.
+  */
+enum TransportError(message: String, cause: Throwable | Null = null) extends RuntimeException(message, cause):
+
+  /** The host answers, and no program listens at that port. */
+  case NobodyListens(at: Address)
+      extends TransportError(s"nobody listens at $at; is the program there started?")
+
+  /** The host did not answer in time: it is off, elsewhere, or a firewall drops the request. */
+  case NoAnswer(at: Address, after: Span)
+      extends TransportError(s"no answer from $at after ${after.toSeconds.fixed(1)} s; is the host reachable?")
+
+  /** The host's name has no address. */
+  case UnknownHost(at: Address) extends TransportError(s"unknown host ${at.host}; check its name")
+
+  /** Another program listens there already. */
+  case PortTaken(at: Address)
+      extends TransportError(
+        s"port ${at.port} of ${at.host} is taken; stop the other program or choose another port"
+      )
+
+  /** The system does not let this program listen there: not an address of this machine, or a privileged port. */
+  case CannotListen(at: Address, reason: String) extends TransportError(s"cannot listen at $at: $reason")
+
+  /** The connection was there and broke: reset by the other side, or by the network. */
+  case Lost(to: Address, reason: String) extends TransportError(s"connection to $to lost: $reason")
+
+  /** Anything else on the way to a connection. */
+  case Failed(to: Address, reason: Throwable)
+      extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)

@@ -1,0 +1,51 @@
+package skein.record
+
+/** The first value in which two recordings differ.
+  *
+  * @param where
+  *   the row, for example `decision 17 of Pursuer`
+  * @param column
+  *   in the row's table
+  */
+final case class Difference(where: String, column: String, recorded: String, again: String):
+  def message: String = s"$where: $column was $recorded, is $again"
+
+object Difference:
+
+  /** Of two sequences of records, compared in order, column by column, to the last bit. */
+  def first(recorded: Iterable[Record], again: Iterable[Record]): Option[Difference] =
+    val rows = recorded.iterator.map(Some(_)).zipAll(again.iterator.map(Some(_)), None, None)
+    rows.collectFirst(Function.unlift:
+      case (Some(one), Some(other)) => between(one, other)
+      case (Some(one), None)        => Some(Difference(nameOf(one), "the row", "there", "missing"))
+      case (None, Some(other))      => Some(Difference(nameOf(other), "the row", "missing", "there"))
+      case (None, None)             => None)
+
+  def between(recorded: Record, again: Record): Option[Difference] =
+    val (before, now) = (Table.of(recorded), Table.of(again))
+    if before != now then Some(Difference(nameOf(recorded), "the table", before.name, now.name))
+    else
+      before.columns.definitions
+        .map(_.name)
+        .lazyZip(cells(recorded))
+        .lazyZip(cells(again))
+        .collectFirst:
+          case (column, one, other) if one != other => Difference(nameOf(recorded), column, one, other)
+
+  private def nameOf(record: Record): String = record match
+    case decision: Decision => s"decision ${decision.sequence} of ${decision.vehicle}"
+    case reading: Reading   => s"reading ${reading.sequence} of ${reading.vehicle}"
+    case command: Command   => s"command ${command.sequence} to ${command.vehicle}"
+    case other              => s"a row of ${Table.of(other).name}"
+
+  /** A double's shortest text is another for another double. */
+  private def cells(record: Record): Vector[String] =
+    val texts = Vector.newBuilder[String]
+    val row   = new RowWriter:
+      def text(value: String): Unit   = texts += value
+      def long(value: Long): Unit     = texts += value.toString
+      def double(value: Double): Unit = texts += value.toString
+      def longs(values: Vector[Long]): Unit = texts += values.mkString(",")
+      def nothing(): Unit             = texts += "absent"
+    Table.columnsOf(record).append(record, row)
+    texts.result()

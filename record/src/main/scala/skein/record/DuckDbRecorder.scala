@@ -1,0 +1,84 @@
+package skein.record
+
+import java.nio.file.Path
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
+import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
+import org.apache.pekko.stream.{ActorAttributes, BoundedSourceQueue, QueueOfferResult}
+import scala.concurrent.duration.*
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.{Failure, Success}
+
+/** Writes a flight into one DuckDB file while it flies. Records wait in a bounded queue; a stream of its own, on the
+  * dispatcher for blocking work, commits them every [[DuckDbRecorder.commitInterval]] or every
+  * [[DuckDbRecorder.batchSize]] rows. What is committed survives a kill of the process.
+  */
+final class DuckDbRecorder private (
+    capacity: Int,
+    queue: BoundedSourceQueue[Record],
+    failed: Promise[RecordError],
+    ending: AtomicReference[Option[Ending]],
+    closing: Promise[Unit],
+    closed: Future[Either[RecordError, Written]]
+) extends Recorder:
+
+  def offer(record: Record): Unit = record match
+    case last: Ending => ending.set(Some(last))
+    case _            =>
+      queue.offer(record) match
+        case QueueOfferResult.Dropped =>
+          val _ = failed.trySuccess(RecordError.QueueFull(capacity))
+          // What is queued already is still written; what comes now would leave a gap.
+          queue.complete()
+        case QueueOfferResult.Enqueued | QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => ()
+
+  def failure: Future[RecordError] = failed.future
+
+  def close(): Future[Either[RecordError, Written]] =
+    if !queue.isCompleted then queue.complete()
+    closing.trySuccess(()): Unit
+    closed
+
+object DuckDbRecorder:
+
+  /** Records that may wait to be written: at 20 vehicles and 10 Hz about a minute. */
+  val defaultCapacity = 65536
+
+  /** With the time that a commit takes, a kill of the process loses less than 200 ms. */
+  val commitInterval: FiniteDuration = 50.millis
+
+  /** Rows committed at once at the most. */
+  val batchSize = 4096
+
+  /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made. */
+  def open(file: Path, heading: Heading, capacity: Int = defaultCapacity)(using
+      system: ActorSystem
+  ): Future[Either[RecordError, DuckDbRecorder]] =
+    given ExecutionContext = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
+    Future(RecordingFile.create(file, heading)).map(_.map(start(_, capacity)))
+
+  private def start(file: RecordingFile, capacity: Int)(using ActorSystem, ExecutionContext): DuckDbRecorder =
+    val failed           = Promise[RecordError]()
+    val ending           = AtomicReference(Option.empty[Ending])
+    val closing          = Promise[Unit]()
+    val (queue, drained) = Source
+      .queue[Record](capacity)
+      .groupedWithin(batchSize, commitInterval)
+      .map(file.write)
+      .takeWhile(_.isRight, inclusive = true)
+      .toMat(Sink.foreach(_.left.foreach(failed.trySuccess)))(Keep.both)
+      .addAttributes(ActorAttributes.dispatcher(Dispatchers.DefaultBlockingDispatcherId))
+      .run()
+    def finish(): Either[RecordError, Written] =
+      for last <- ending.get do file.end(last).left.foreach(failed.trySuccess)
+      val written = file.close()
+      written.left.foreach(failed.trySuccess)
+      failed.future.value.fold(written)(reason => Left(reason.get))
+    val closed = drained.transformWith:
+      case Success(_) => closing.future.map(_ => finish())
+      // The stream itself fails when its actor system ends before it.
+      case Failure(reason) =>
+        failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
+        Future.successful(finish())
+    DuckDbRecorder(capacity, queue, failed, ending, closing, closed)

@@ -1,0 +1,55 @@
+package skein.record
+
+import java.nio.file.Path
+import scala.collection.mutable.ArrayBuffer
+import scala.concurrent.{Future, Promise}
+
+/** Keeps a flight in memory: for virtual time, where writing would be the slowest part, and for tests.
+  *
+  * @param capacity
+  *   records it takes; one more is a failure
+  */
+final class MemoryRecorder(heading: Heading, capacity: Int = MemoryRecorder.defaultCapacity) extends Recorder:
+  private val kept   = ArrayBuffer.empty[Record]
+  private var closed = false
+  private val failed = Promise[RecordError]()
+
+  def offer(record: Record): Unit = synchronized:
+    if record.isInstanceOf[Ending] && failed.isCompleted then kept += record: Unit
+    else if !closed then
+      if kept.size < capacity then kept += record: Unit
+      else
+        closed = true
+        val _ = failed.trySuccess(RecordError.QueueFull(capacity))
+
+  def failure: Future[RecordError] = failed.future
+
+  def close(): Future[Either[RecordError, Written]] = synchronized:
+    closed = true
+    Future.successful:
+      failed.future.value match
+        case Some(reason) => Left(reason.get)
+        case None         => Right(Written.nothing ++ (heading.records ++ records).map(Table.of(_).name))
+
+  /** What was recorded so far, in order. */
+  def records: Vector[Record] = synchronized(kept.toVector)
+
+  /** The same, sorted by kind. */
+  def recording: Recording = Recording(heading, records)
+
+  /** Of what [[writeTo]] writes. */
+  def digest: Digest = Digest.of(heading.records.iterator ++ records)
+
+  /** Writes the file that a [[DuckDbRecorder]] would have written. Blocks. */
+  def writeTo(file: Path): Either[RecordError, Written] =
+    for
+      opened <- RecordingFile.create(file, heading)
+      outcome = opened.write(records)
+      written <- opened.close()
+      _       <- outcome
+    yield written
+
+object MemoryRecorder:
+
+  /** About 1 GB of records; 20 vehicles at 10 Hz for an hour. */
+  val defaultCapacity = 4_000_000

@@ -1,0 +1,347 @@
+package skein.record
+
+import skein.policy.Action
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** One row of a recording; each case class below is one table. Column names are the field names with the unit behind
+  * them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`, `Mps`, `Rad`,
+  * `RadPerS`. Fields named `validAt` are on the simulator's clock, all other instants on the controller's.
+  *
+  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order in
+  * which all records of the flight were accepted.
+  */
+sealed trait Record
+
+/** What was flown: exactly one row a recording.
+  *
+  * @param loop
+  *   the label of a [[LoopKind]], or the name of a loop of somebody's own
+  * @param id
+  *   names the flight in tables and pictures, for example `stream-vpn`
+  * @param clock
+  *   the label of a [[ClockKind]]
+  * @param simulator
+  *   `built-in`, or the address of another
+  * @param version
+  *   of the program that recorded
+  */
+final case class Flight(
+    id: String,
+    loop: String,
+    link: String,
+    seed: Long,
+    period: Span,
+    duration: Span,
+    clock: String,
+    simulator: String,
+    scenario: String,
+    version: String,
+    startedAt: Instant
+) extends Record:
+
+  /** Absent for a loop that is none of ours. */
+  def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
+
+  /** Whether it is the truth that others are held against: the simulator stood still while a loop decided. */
+  def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
+
+  def isVirtual: Boolean = clock == ClockKind.Virtual.label
+
+/** A run parameter that has no column in [[Flight]]. */
+final case class Parameter(name: String, value: String) extends Record
+
+/** A vehicle of the flight.
+  *
+  * @param role
+  *   the name of a [[skein.policy.Role]], or of one of somebody's own
+  * @param startNed
+  *   the origin of its own frame in the world frame
+  */
+final case class Vehicle(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
+
+/** One answer of the simulator.
+  *
+  * @param sequence
+  *   counts the readings of this vehicle in the order in which they were asked for
+  */
+final case class Reading(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
+
+/** One decision for one vehicle, with everything that it was made from.
+  *
+  * @param sequence
+  *   counts the decisions for this vehicle
+  * @param own
+  *   the vehicle's own reading that was used; its columns begin with `own`
+  * @param opponent
+  *   the opponent's reading that was used; its columns begin with `opponent`
+  * @param relativeX
+  *   the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of other roles, the opponent
+  *   seen from the vehicle
+  * @param relativeY
+  *   the same, to the right of that heading
+  * @param headingBefore
+  *   commanded last to this vehicle
+  * @param opponentHeading
+  *   commanded last to the opponent, as far as known
+  * @param heading
+  *   the one chosen
+  * @param elapsed
+  *   since this vehicle's last decision; zero at the first
+  * @param trueAge
+  *   absent until the clocks' offset is known
+  * @param predicted
+  *   where both vehicles were expected to be, if that was decided upon instead of the readings
+  * @param speed
+  *   the one chosen; absent where the vehicle always commands its own
+  * @param action
+  *   what was decided to do; absent where it is told by heading and speed at the altitude of the start
+  */
+final case class Decision(
+    sequence: Long,
+    vehicle: String,
+    decidedAt: Instant,
+    own: Reading,
+    opponent: Reading,
+    relativeX: Metres,
+    relativeY: Metres,
+    headingBefore: Radians,
+    opponentHeading: Radians,
+    heading: Radians,
+    elapsed: Span,
+    observations: Observations,
+    trueAge: Option[TrueAge],
+    predicted: Option[Predicted] = None,
+    speed: Option[MetresPerSecond] = None,
+    action: Option[Action] = None
+) extends Record
+
+/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle, where the
+  * policy regards the whole team.
+  *
+  * @param decider
+  *   the vehicle that was decided for
+  * @param decision
+  *   the decision's sequence
+  * @param reading
+  *   the sequence of the reading of `vehicle` that was used
+  * @param predicted
+  *   where it was expected to be, if that was decided upon instead of the reading
+  */
+final case class Sighting(
+    decider: String,
+    decision: Long,
+    vehicle: String,
+    reading: Long,
+    predicted: Option[PredictedMotion]
+) extends Record
+
+/** How a decision was planned.
+  *
+  * @param decision
+  *   the sequence of the decision of `vehicle`
+  * @param candidates
+  *   flown by all searches together
+  * @param slices
+  *   that each of the searches finished before the deadline; all 0 where nothing was ready: then
+  *   the last plan went on, or the policy decided
+  * @param cost
+  *   of the plan chosen; absent where none was tried
+  * @param took
+  *   from asking until the decision was there
+  * @param breaches
+  *   of hard limits within the plan's horizon
+  */
+final case class Planned(
+    vehicle: String,
+    decision: Long,
+    candidates: Long,
+    slices: Vector[Long],
+    cost: Option[Double],
+    took: Span,
+    breaches: Long
+) extends Record
+
+/** Where a vehicle was expected to be when the command acts. */
+final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
+
+/** The paper's four observations at one decision. Both ages count from the *arrival* of the reading used, as
+  * published; a time since a move is absent before the first move.
+  */
+final case class Observations(
+    ownAge: Span,
+    opponentAge: Span,
+    sinceOwnMove: Option[Span],
+    sinceOpponentMove: Option[Span]
+)
+
+/** How old the readings used were, from when physics was sampled.
+  *
+  * @param clockOffset
+  *   the controller's clock minus the simulator's, as estimated then
+  * @param uncertainty
+  *   of the offset, and so of both ages: the truth lies within ± this
+  */
+final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
+
+/** What a decision took for true instead of the readings.
+  *
+  * @param actsAt
+  *   when the command was expected to act, on the simulator's clock
+  */
+final case class Predicted(
+    actsAt: Instant,
+    ownPositionNed: Vector3,
+    ownVelocityNed: Vector3,
+    opponentPositionNed: Vector3,
+    opponentVelocityNed: Vector3
+)
+
+/** A prediction whose moment has come and was read.
+  *
+  * @param decider
+  *   the vehicle for whose decision it was made
+  * @param vehicle
+  *   whose place was predicted
+  * @param predictedFor
+  *   on the simulator's clock
+  * @param age
+  *   from the reading that was carried forward to the moment predicted for
+  * @param positionNed
+  *   as predicted
+  * @param error
+  *   distance to where the vehicle was then, between two readings interpolated
+  */
+final case class Prediction(
+    decider: String,
+    vehicle: String,
+    madeAt: Instant,
+    predictedFor: Instant,
+    age: Span,
+    positionNed: Vector3,
+    error: Metres
+) extends Record
+
+/** One velocity command as sent. What became of it is an [[Acknowledgement]] of its own, so that a command is on disk
+  * while its answer is outstanding.
+  *
+  * @param sequence
+  *   counts the commands to this vehicle
+  * @param decision
+  *   the sequence of the decision that it carries out; absent for take-off, hover and the like
+  * @param velocityNorth
+  *   world frame
+  * @param velocityEast
+  *   world frame
+  * @param down
+  *   the altitude goal, NED
+  */
+final case class Command(
+    sequence: Long,
+    vehicle: String,
+    decision: Option[Long],
+    velocityNorth: MetresPerSecond,
+    velocityEast: MetresPerSecond,
+    down: Metres,
+    sentAt: Instant
+) extends Record
+
+/** How a command ended.
+  *
+  * @param command
+  *   the command's sequence
+  * @param endedAt
+  *   when the answer came, or when it was given up
+  * @param outcome
+  *   `done`, `superseded`, or the error's text
+  */
+final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: String)
+    extends Record
+
+/** One round trip over a link. */
+final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends Record
+
+/** Something that the loop did not want: every drop, skip, timeout, reconnect.
+  *
+  * @param vehicle
+  *   absent where it concerns all
+  * @param decision
+  *   where a deadline was missed, the sequence of the decision that the fallback made instead; absent where it made none
+  */
+final case class Event(
+    at: Instant,
+    kind: EventKind,
+    vehicle: Option[String],
+    detail: String,
+    decision: Option[Long] = None
+) extends Record
+
+/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these rows if
+  * there are any, else from the readings.
+  */
+final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) extends Record
+
+/** How the flight ended: the last row. There is none where the recording broke off before.
+  *
+  * @param reason
+  *   why it ended before its time
+  */
+final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
+
+/** Recorded by name. */
+enum EndingKind:
+  /** It flew its whole time. */
+  case Completed
+
+  /** Somebody stopped it. */
+  case Stopped
+
+  /** It could not go on. */
+  case Failed
+
+/** What an [[Event]] tells of; recorded by name. */
+enum EventKind:
+  /** A newer value replaced one that was not used yet. */
+  case Dropped
+
+  /** A period passed without its action because an earlier one had not ended. */
+  case Skipped
+
+  /** A call was not answered in time. */
+  case TimedOut
+
+  /** A policy did not decide in time. */
+  case DeadlineMissed
+
+  /** A plan could not keep within a hard limit. */
+  case LimitBroken
+
+  /** An answer came after its call had been given up. */
+  case LateReply
+
+  /** The bounds on calls in flight refused a call. */
+  case Overloaded
+
+  /** The simulator answered with an error. */
+  case Refused
+
+  /** A connection was lost. */
+  case Disconnected
+
+  /** A connection is there again. */
+  case Reconnected
+
+  /** Nothing was heard of the simulator for longer than its answers take. */
+  case SimulatorSilent
+
+  /** The simulator was heard of again. */
+  case SimulatorBack
+
+  /** A step of the paused simulator was not as long as asked for. */
+  case StepDrift
+
+  /** A call was given up because the flight had ended. */
+  case Cancelled
+
+  /** The flight ended before its time. */
+  case Aborted

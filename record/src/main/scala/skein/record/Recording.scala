@@ -1,0 +1,36 @@
+package skein.record
+
+/** A recorded flight, sorted by kind; each kind in the order in which it was recorded. */
+final case class Recording(
+    heading: Heading,
+    readings: Vector[Reading] = Vector.empty,
+    decisions: Vector[Decision] = Vector.empty,
+    sightings: Vector[Sighting] = Vector.empty,
+    planned: Vector[Planned] = Vector.empty,
+    predictions: Vector[Prediction] = Vector.empty,
+    commands: Vector[Command] = Vector.empty,
+    acknowledgements: Vector[Acknowledgement] = Vector.empty,
+    latencies: Vector[Latency] = Vector.empty,
+    events: Vector[Event] = Vector.empty,
+    truths: Vector[Truth] = Vector.empty,
+    ending: Option[Ending] = None
+):
+  def flight: Flight = heading.flight
+
+object Recording:
+
+  def apply(heading: Heading, records: Seq[Record]): Recording =
+    Recording(
+      heading,
+      records.collect { case reading: Reading => reading }.toVector,
+      records.collect { case decision: Decision => decision }.toVector,
+      records.collect { case sighting: Sighting => sighting }.toVector,
+      records.collect { case planned: Planned => planned }.toVector,
+      records.collect { case prediction: Prediction => prediction }.toVector,
+      records.collect { case command: Command => command }.toVector,
+      records.collect { case acknowledgement: Acknowledgement => acknowledgement }.toVector,
+      records.collect { case latency: Latency => latency }.toVector,
+      records.collect { case event: Event => event }.toVector,
+      records.collect { case truth: Truth => truth }.toVector,
+      records.collectFirst { case ending: Ending => ending }
+    )

@@ -1,0 +1,86 @@
+package skein.record
+
+import java.nio.file.{Files, Path}
+import java.sql.{DriverManager, SQLException}
+import java.util.Properties
+import org.duckdb.DuckDBConnection
+import scala.util.Using
+
+/** The database behind a recording, while it is written. Not safe for use from several threads at once. */
+private[record] final class RecordingFile private (val path: Path, connection: DuckDBConnection):
+  private var nextRow = 0L
+  private var written = Written.nothing
+  private var broken  = false
+
+  /** Appends records in order and commits them: they survive the process from here on. */
+  def write(records: Seq[Record]): Either[RecordError, Unit] =
+    RecordingFile.attempt(RecordError.WriteFailed(path, _)):
+      val numbered = records.zipWithIndex.map((record, index) => (nextRow + index, record))
+      execute("BEGIN")
+      for (table, rows) <- numbered.groupBy((_, record) => Table.of(record)) do
+        // groupBy has sorted every record to the table of its own type.
+        table.asInstanceOf[Table[Record]].append(rows, connection)
+      // As SQL: the driver's own commit() returns as if all were well when the log cannot be written.
+      execute("COMMIT")
+      written = written ++ records.map(Table.of(_).name)
+      nextRow += records.size
+    .left.map: error =>
+      broken = true
+      error
+
+  /** Appends the last record, also behind a write that was refused, as far as the disk takes it then. */
+  def end(record: Ending): Either[RecordError, Unit] =
+    if broken then
+      val _ = RecordingFile.attempt(RecordError.WriteFailed(path, _))(execute("ROLLBACK"))
+    write(Seq(record))
+
+  /** Moves the write-ahead log into the file and closes it, also where that fails. */
+  def close(): Either[RecordError, Written] =
+    RecordingFile.attempt(RecordError.WriteFailed(path, _)):
+      Using.resource(connection)(_ => execute("CHECKPOINT"))
+      written
+
+  private def execute(sql: String): Unit = RecordingFile.execute(connection, sql)
+
+private[record] object RecordingFile:
+
+  /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the first. */
+  def create(file: Path, heading: Heading): Either[RecordError, RecordingFile] =
+    if Files.exists(file) then Left(RecordError.AlreadyExists(file))
+    else
+      attempt(RecordError.CannotCreate(file, _)):
+        val connection = connect(file, readOnly = false)
+        execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
+        execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
+        Table.all.foreach(table => execute(connection, table.create))
+        RecordingFile(file, connection)
+      .flatMap: opened =>
+        val begun = opened.write(heading.records)
+        if begun.isLeft then
+          val _ = opened.close()
+        begun.map(_ => opened)
+
+  /** A connection to the file alone: one thread of its own, no extensions from the network. */
+  def connect(file: Path, readOnly: Boolean): DuckDBConnection =
+    val properties = Properties()
+    properties.setProperty("duckdb.read_only", readOnly.toString)
+    properties.setProperty("threads", "1")
+    properties.setProperty("autoinstall_known_extensions", "false")
+    DriverManager.getConnection(s"jdbc:duckdb:$file", properties).asInstanceOf[DuckDBConnection]
+
+  /** Runs an action on the database; its exceptions become an error with the first line of their text. */
+  def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =
+    try Right(action)
+    catch
+      case failed: SQLException => Left(error(firstLine(failed.getMessage)))
+      // DuckDB unpacks its library into the folder for temporary files, which may be full or refuse it.
+      case failed: LinkageError =>
+        val cause = Iterator.iterate[Throwable](failed)(_.getCause).takeWhile(_ != null).toVector.last
+        Left(error(s"the database's library cannot be loaded: ${firstLine(s"${cause.getMessage}")}"))
+
+  private def execute(connection: DuckDBConnection, sql: String): Unit =
+    Using.resource(connection.createStatement()): statement =>
+      val _ = statement.execute(sql)
+
+  private def firstLine(message: String): String =
+    message.linesIterator.nextOption().getOrElse("no reason given")

@@ -1,0 +1,69 @@
+package skein.record
+
+import java.nio.file.{Files, Path}
+import java.sql.Connection
+import scala.util.Using
+
+/** Reads recordings back. A file that a killed process left is as good as another. */
+object RecordingReader:
+
+  /** The whole recording in memory. Blocks. */
+  def read(file: Path): Either[RecordError, Recording] =
+    withRecording(file): connection =>
+      RecordingFile
+        .attempt(RecordError.NotARecording(file, _)):
+          for flight <- Table.flight.read(connection).headOption
+          yield Recording(
+            Heading(flight, Table.vehicle.read(connection), Table.parameter.read(connection)),
+            Table.reading.read(connection),
+            Table.decision.read(connection),
+            Table.sighting.read(connection),
+            Table.planned.read(connection),
+            Table.prediction.read(connection),
+            Table.command.read(connection),
+            Table.acknowledgement.read(connection),
+            Table.latency.read(connection),
+            Table.event.read(connection),
+            Table.truth.read(connection),
+            Table.ending.read(connection).headOption
+          )
+        .flatMap(_.toRight(RecordError.NotARecording(file, "its table 'flight' is empty")))
+
+  /** Every record with its row number, in that order. Blocks. */
+  private[record] def records(file: Path): Either[RecordError, Vector[(Long, Record)]] =
+    withRecording(file): connection =>
+      RecordingFile.attempt(RecordError.NotARecording(file, _)):
+        Table.all.flatMap(_.readNumbered(connection)).sortBy(_._1)
+
+  /** Opens for reading only, checks that it is a recording of a format that is read, and closes afterwards. */
+  private[record] def withRecording[A](file: Path)(
+      action: Connection => Either[RecordError, A]
+  ): Either[RecordError, A] =
+    if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
+    else if !isDuckDb(file) then Left(RecordError.NotARecording(file, "it is not a DuckDB file"))
+    else
+      RecordingFile
+        .attempt(RecordError.CannotOpen(file, _))(RecordingFile.connect(file, readOnly = true))
+        .flatMap(Using.resource(_)(connection =>
+          checkVersion(file, connection).flatMap(_ => action(connection))
+        ))
+
+  private def checkVersion(file: Path, connection: Connection): Either[RecordError, Unit] =
+    RecordingFile
+      .attempt(_ => RecordError.NotARecording(file, "it has no table 'format'")):
+        Using.resource(connection.createStatement()): statement =>
+          Using.resource(statement.executeQuery("SELECT max(version) FROM format")): rows =>
+            val _ = rows.next()
+            rows.getInt(1)
+      .flatMap: found =>
+        Either.cond(
+          found >= RecordingFormat.oldest && found <= RecordingFormat.version,
+          (),
+          RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, found)
+        )
+
+  /** DuckDB's files bear its name behind an eight-byte checksum. */
+  private def isDuckDb(file: Path): Boolean =
+    Using.resource(Files.newInputStream(file)): in =>
+      val start = in.readNBytes(12)
+      start.length == 12 && String(start, 8, 4, java.nio.charset.StandardCharsets.US_ASCII) == "DUCK"

@@ -1,0 +1,25 @@
+package skein.record
+
+import org.duckdb.DuckDBAppender
+
+/** Takes the values of one row from left to right. */
+private[record] trait RowWriter:
+  def text(value: String): Unit
+  def long(value: Long): Unit
+  def double(value: Double): Unit
+
+  def longs(values: Vector[Long]): Unit
+
+  /** An absent value. */
+  def nothing(): Unit
+
+  /** An absent value of a column that older formats do not have. */
+  def nothingYet(): Unit = nothing()
+
+/** Writes into the row that the appender has begun. */
+private[record] final class AppenderRow(appender: DuckDBAppender) extends RowWriter:
+  def text(value: String): Unit   = { val _ = appender.append(value) }
+  def long(value: Long): Unit     = { val _ = appender.append(value) }
+  def double(value: Double): Unit = { val _ = appender.append(value) }
+  def longs(values: Vector[Long]): Unit = { val _ = appender.append(values.toArray) }
+  def nothing(): Unit             = { val _ = appender.appendNull() }

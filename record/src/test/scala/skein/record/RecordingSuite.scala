@@ -1,0 +1,139 @@
+package skein.record
+
+import java.nio.file.{Files, Path}
+import java.sql.DriverManager
+import scala.util.Using
+
+class RecordingSuite extends munit.FunSuite:
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("recording"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def record(file: Path, records: Record*): Unit =
+    val recorder = MemoryRecorder(Samples.heading)
+    records.foreach(recorder.offer)
+    val written = recorder.writeTo(file)
+    assert(written.isRight, written)
+
+  private def execute(file: Path, sql: String): Unit =
+    Using.resource(DriverManager.getConnection(s"jdbc:duckdb:$file")): connection =>
+      val _ = connection.createStatement().execute(sql)
+
+  folder.test("every record comes back from the file as it was offered"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
+
+  folder.test("a file of the format before is read: what it does not have is absent"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    execute(file, "DROP TABLE sighting")
+    execute(file, "ALTER TABLE decision DROP COLUMN speedMps")
+    execute(file, "UPDATE format SET version = 2")
+    val older = Samples.oneOfEach.collect:
+      case decision: Decision                     => decision.copy(speed = None)
+      case other if !other.isInstanceOf[Sighting] => other
+    assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, older)))
+    assert(Export.parquet(file, folder.resolve("parquet")).isRight)
+
+  folder.test("up to format 4 slices were text, and a fallback's decision was in the event's text alone"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    val today = Digest.ofFile(file)
+    execute(file, "ALTER TABLE event DROP COLUMN decision")
+    execute(file, "ALTER TABLE plan ALTER slices TYPE VARCHAR USING array_to_string(slices, ',')")
+    execute(file, "UPDATE format SET version = 4")
+    assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
+    assertEquals(Digest.ofFile(file), today)
+
+  folder.test("rows are numbered through all tables in the order of their records"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.reading(1), Samples.decision(1), Samples.reading(2))
+    Using.resource(DriverManager.getConnection(s"jdbc:duckdb:$file")): connection =>
+      val rows = connection
+        .createStatement()
+        .executeQuery("SELECT row FROM reading UNION ALL SELECT row FROM decision ORDER BY row")
+      assertEquals(
+        List.unfold(rows)(rows => Option.when(rows.next())(rows.getLong(1), rows)),
+        List(4L, 5L, 6L)
+      )
+
+  folder.test("a recording is never overwritten"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file)
+    assertEquals(MemoryRecorder(Samples.heading).writeTo(file), Left(RecordError.AlreadyExists(file)))
+
+  folder.test("a file in a folder that does not exist cannot be created"): folder =>
+    val file = folder.resolve("missing/flight.duckdb")
+    MemoryRecorder(Samples.heading).writeTo(file) match
+      case Left(RecordError.CannotCreate(`file`, _)) => ()
+      case other                                     => fail(s"expected CannotCreate, got $other")
+
+  folder.test("what is not a recording is told apart by its reason"): folder =>
+    val missing = folder.resolve("missing.duckdb")
+    assertEquals(RecordingReader.read(missing), Left(RecordError.NoSuchFile(missing)))
+    val text = Files.writeString(folder.resolve("text.duckdb"), "position,velocity\n1,2\n")
+    assertEquals(RecordingReader.read(text), Left(RecordError.NotARecording(text, "it is not a DuckDB file")))
+    val other = folder.resolve("other.duckdb")
+    execute(other, "CREATE TABLE anything (x INTEGER)")
+    assertEquals(
+      RecordingReader.read(other),
+      Left(RecordError.NotARecording(other, "it has no table 'format'"))
+    )
+
+  folder.test("a recording of another format names both formats"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file)
+    execute(file, "UPDATE format SET version = 99")
+    assertEquals(
+      RecordingReader.read(file),
+      Left(RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, 99))
+    )
+
+  for (what, change, reason) <- Seq(
+      (
+        "a number that is none",
+        "UPDATE reading SET positionNorthM = 'NaN'",
+        "table reading, row 4: positionNorthM: expected a finite number, came NaN"
+      ),
+      (
+        "an endless number",
+        "UPDATE decision SET ownAgeMs = '-Infinity'",
+        "table decision, row 5: ownAgeMs: expected a finite number, came -Infinity"
+      ),
+      ("an unknown word", "UPDATE event SET kind = 'Odd'", "table event, row 6: kind: expected one of Dropped, Skipped")
+    )
+  do
+    folder.test(s"$what in a recording is told with its place, in one line"): folder =>
+      val file = folder.resolve("flight.duckdb")
+      record(file, Samples.reading(1), Samples.decision(1), Event(Samples.at(6), EventKind.Skipped, None, "late"))
+      execute(file, change)
+      RecordingReader.read(file) match
+        case Left(RecordError.NotARecording(`file`, found)) =>
+          assert(found.startsWith(reason), found)
+          assertEquals(found.linesIterator.size, 1)
+        case other => fail(s"expected NotARecording, got $other")
+
+  folder.test("each table is exported as a Parquet file with all its rows"): folder =>
+    val file      = folder.resolve("flight.duckdb")
+    val directory = folder.resolve("it's parquet")
+    record(file, Samples.oneOfEach*)
+    val files = Export.parquet(file, directory).fold(error => fail(error.message), identity)
+    assertEquals(files.map(_.getFileName.toString).toSet, Table.all.map(_.name + ".parquet").toSet)
+    Using.resource(DriverManager.getConnection("jdbc:duckdb:")): connection =>
+      val quoted = directory.resolve("decision.parquet").toString.replace("'", "''")
+      val rows = connection.createStatement().executeQuery(s"SELECT count(*), sum(headingRad) FROM '$quoted'")
+      assert(rows.next())
+      assertEquals(rows.getInt(1), 2)
+      assertEqualsDouble(rows.getDouble(2), 2 * 0.9776, 1e-12)
+
+  test("a recorder in memory fails when it is full instead of dropping silently"):
+    val recorder = MemoryRecorder(Samples.heading, capacity = 2)
+    Samples.oneOfEach.take(2).foreach(recorder.offer)
+    assert(!recorder.failure.isCompleted)
+    recorder.offer(Samples.reading(3))
+    assertEquals(recorder.failure.value.map(_.get), Some(RecordError.QueueFull(2)))
+    assertEquals(recorder.close().value.map(_.get), Some(Left(RecordError.QueueFull(2))))
+    assertEquals(recorder.records, Samples.oneOfEach.take(2))

@@ -1,0 +1,115 @@
+package skein.record
+
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** Records with a different value in every field. */
+object Samples:
+
+  val heading: Heading = Heading(
+    Flight(
+      id = "stream-vpn",
+      loop = "stream",
+      link = "vpn",
+      seed = -7,
+      period = Span.ofMillis(100),
+      duration = Span.ofSeconds(60),
+      clock = "virtual",
+      simulator = "built-in",
+      scenario = "duel",
+      version = "0.1.0",
+      startedAt = Instant.ofNanos(1_790_000_000_123_456_789L)
+    ),
+    Seq(
+      Vehicle("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
+      Vehicle("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
+    ),
+    Seq(Parameter("turningRadiusM", "8"))
+  )
+
+  def at(nanos: Long): Instant = heading.flight.startedAt + Span.ofNanos(nanos)
+
+  def reading(sequence: Long, vehicle: String = "Pursuer"): Reading =
+    val base = sequence * 100_000_000L
+    Reading(
+      sequence,
+      vehicle,
+      Stamped(
+        Kinematics(
+          Vector3(sequence + 0.1, sequence + 0.2, -20.3),
+          Vector3(1.1, -2.2, math.Pi),
+          Quaternion(0.5, -0.5, 0.25, -0.75),
+          Vector3(0.01, 0.02, -0.03)
+        ),
+        validAt = Instant.ofNanos(base + 3_000_001),
+        sentAt = at(base),
+        receivedAt = at(base + 36_800_000)
+      )
+    )
+
+  def decision(sequence: Long): Decision = Decision(
+    sequence,
+    vehicle = "Pursuer",
+    decidedAt = at(sequence * 100_000_000L + 40_000_001),
+    own = reading(sequence),
+    opponent = reading(sequence + 1, "Evader"),
+    relativeX = Metres(12.5),
+    relativeY = Metres(-3.25),
+    headingBefore = Radians(0.8776),
+    opponentHeading = Radians(-1.5),
+    heading = Radians(0.9776),
+    elapsed = Span.ofNanos(100_000_001),
+    observations =
+      Observations(Span.ofNanos(1_234_567), Span.ofNanos(26_000_003), Some(Span.ofNanos(79_999_999)), None),
+    trueAge = Some(
+      TrueAge(
+        Span.ofMillis(20.5),
+        Span.ofMillis(45.25),
+        Span.ofNanos(1_790_000_000_000_000_001L),
+        Span.ofMillis(2.5)
+      )
+    ),
+    predicted = Some(
+      Predicted(
+        Instant.ofNanos(4_000_001),
+        Vector3(1.5, 2.5, -20.5),
+        Vector3(9.5, -0.5, 0.25),
+        Vector3(21.5, 1.25, -19.75),
+        Vector3(4.5, 0.75, -0.125)
+      )
+    )
+  )
+
+  val oneOfEach: Vector[Record] = Vector(
+    reading(1),
+    decision(1),
+    decision(2).copy(trueAge = None, predicted = None, speed = Some(MetresPerSecond(3.75))),
+    Sighting("Pursuer", 2, "Evader", 3, None),
+    Sighting(
+      "Evader",
+      4,
+      "Pursuer",
+      5,
+      Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
+    ),
+    Planned("Pursuer", 1, 40_960, Vector(40, 39), Some(12.25), Span.ofMillis(60.5), 0),
+    Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
+    Prediction(
+      "Pursuer",
+      "Evader",
+      at(40_000_000),
+      Instant.ofNanos(4_000_001),
+      Span.ofMillis(61.5),
+      Vector3(21.5, 1.25, -19.75),
+      Metres(0.0625)
+    ),
+    Command(1, "Pursuer", Some(1), MetresPerSecond(6.4), MetresPerSecond(7.7), Metres(-20), at(41_000_000)),
+    Command(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
+    Acknowledgement("Pursuer", 1, at(80_000_000), "superseded"),
+    Latency("vpn", at(5), Span.ofNanos(102_800_001)),
+    Event(at(6), EventKind.Skipped, Some("Evader"), "an answer was outstanding, it's late"),
+    Event(at(6), EventKind.DeadlineMissed, Some("Evader"), "decision 5 by the fallback: Late", Some(5)),
+    Event(at(7), EventKind.Disconnected, None, ""),
+    Truth("Evader", Instant.ofNanos(3_000_000), Vector3(21.5, 0.25, -20.125)),
+    Ending(at(4_000_000_000L), EndingKind.Failed, Some("the disk is full"))
+  )

@@ -1,0 +1,122 @@
+package skein.simulator
+
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.compiletime.{constValueTuple, summonAll}
+import scala.deriving.Mirror
+import skein.airsim.wire.*
+import skein.units.Instant
+import upack.*
+
+/** How AirSim's server reads an argument of this type: the conversions of msgpack-c, which its rpclib uses.
+  *
+  *   - A number may come as an integer where a float is wanted, never as a boolean, a string or nil; a float is no
+  *     integer, and an integer out of its type's range is none.
+  *   - A string may come as str or as bin, which old clients send.
+  *   - A map's missing keys keep their defaults and further keys are passed over, at any depth; a map with a key that is
+  *     no string, or another kind of value in its place, is refused.
+  *   - What is refused is told as `std::bad_cast`, with no word about where.
+  *
+  * Otherwise than AirSim it refuses numbers that are not finite, or too large for a 32-bit float where one is wanted:
+  * they would poison physics for good.
+  */
+private[simulator] trait Argument[A]:
+  /** Throws [[BadArgument]]. */
+  def read(value: Msg): A
+
+/** An argument that cannot be taken; its message is the text of the answer. */
+final private[simulator] class BadArgument(text: String)
+    extends RuntimeException(text, null, /* enableSuppression = */ false, /* writableStackTrace = */ false)
+
+private[simulator] object Argument:
+  /** An integer from 0 to 2³² − 1. */
+  opaque type Unsigned32 <: Long = Long
+
+  given Argument[Boolean] =
+    case Bool(value) => value
+    case _           => badCast
+
+  given Argument[Int] = integer(_, Int.MinValue, Int.MaxValue).toInt
+
+  given Argument[Unsigned32] = integer(_, 0, 0xffffffffL)
+
+  /** A time stamp, nanoseconds: unsigned, up to the greatest that a signed 64-bit number holds. */
+  given Argument[Instant] = value => Instant.ofNanos(integer(value, 0, Long.MaxValue))
+
+  given Argument[Double] = value => finite(number(value))
+
+  given Argument[Float] = value => finite(number(value).toFloat).toFloat
+
+  given Argument[String] =
+    case Str(text)   => text
+    case Binary(raw) => String(raw, UTF_8)
+    case _           => badCast
+
+  given [A](using element: Argument[A]): Argument[Seq[A]] =
+    case Arr(values) => values.iterator.map(element.read).toVector
+    case _           => badCast
+
+  given Argument[Vector3r]    = record(Vector3r.Zero)
+  given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
+  given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
+  given Argument[YawMode]     = record(YawMode.Still)
+  given Argument[RcData]      = record(RcData.Absent)
+  given Argument[GeoPoint]    = record(GeoPoint(0, 0, 0))
+
+  given Argument[KinematicsState] = record(
+    KinematicsState(
+      Vector3r.Zero,
+      Quaternionr(1, 0, 0, 0),
+      Vector3r.Zero,
+      Vector3r.Zero,
+      Vector3r.Zero,
+      Vector3r.Zero
+    )
+  )
+
+  given Argument[ImageRequest] = record(ImageRequest("", 0, pixels_as_float = false, compress = true))
+
+  /** A map whose keys are the fields' names; `default` fills those that are missing. */
+  inline def record[A <: Product](default: A)(using mirror: Mirror.ProductOf[A]): Argument[A] =
+    val names = constValueTuple[mirror.MirroredElemLabels].toList.asInstanceOf[List[String]]
+    Record(default, names.map(Str(_)).zip(each[mirror.MirroredElemTypes]), mirror.fromProduct)
+
+  /** The readers of a tuple's types. */
+  inline def each[T <: Tuple]: List[Argument[?]] =
+    summonAll[Tuple.Map[T, Argument]].toList.asInstanceOf[List[Argument[?]]]
+
+  final private class Record[A <: Product](
+      default: A,
+      fields: List[(Msg, Argument[?])],
+      make: Product => A
+  ) extends Argument[A]:
+    def read(value: Msg): A = value match
+      case Obj(entries) =>
+        if !entries.keysIterator.forall(_.isInstanceOf[Str | Binary]) then badCast
+        val values = fields.zip(default.productIterator).map:
+          case ((name, reader), unless) => entries.get(name).fold(unless)(reader.read)
+        make(Tuple.fromArray(values.toArray))
+      case _ => badCast
+
+  private def badCast: Nothing = throw BadArgument("std::bad_cast")
+
+  private def integer(value: Msg, least: Long, greatest: Long): Long =
+    val number = value match
+      case Int32(number)                 => number.toLong
+      case Int64(number)                 => number
+      case UInt64(number) if number >= 0 => number
+      case _                             => badCast
+    if number >= least && number <= greatest then number else badCast
+
+  private def number(value: Msg): Double = value match
+    case Float32(number) => number.toDouble
+    case Float64(number) => number
+    case Int32(number)   => number.toDouble
+    case Int64(number)   => number.toDouble
+    case UInt64(number)  => unsigned(number)
+    case _               => badCast
+
+  private def finite(number: Double): Double =
+    if number.isFinite then number else throw BadArgument("parameters must be finite numbers")
+
+  private def unsigned(number: Long): Double =
+    if number >= 0 then number.toDouble else (number >>> 1).toDouble * 2

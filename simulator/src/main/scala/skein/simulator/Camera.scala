@@ -1,0 +1,174 @@
+package skein.simulator
+
+import skein.airsim.wire.{CameraInfo, Pose, ProjectionMatrix, Quaternionr, Vector3r}
+import skein.units.{Quaternion, Vector3}
+
+/** A camera that a vehicle carries: where it sits, its lens and its film. It draws nothing yet.
+  *
+  * @param position
+  *   on the vehicle, front right down, m
+  * @param orientation
+  *   against the vehicle's
+  * @param distortion
+  *   K1, K2, K3, P1, P2 of the Brown-Conrady model
+  */
+final private[simulator] case class Camera(
+    position: Vector3,
+    orientation: Quaternion,
+    lens: Lens = Lens.Universal,
+    filmback: Filmback = Filmback.DigitalFilm,
+    focalLengthMm: Float = Filmback.DigitalFilm.focalLengthMm(Camera.DefaultFovDeg),
+    apertureF: Float = 2.8f,
+    focusDistanceCm: Float = 100_000f,
+    distortion: Vector[Float] = Vector.fill(Camera.DistortionNames.size)(0f)
+):
+  /** Horizontal, degrees. */
+  def fovDeg: Float = filmback.fovDeg(focalLengthMm)
+
+  def verticalFovDeg: Float =
+    math.toDegrees(2 * StrictMath.atan(filmback.heightMm / (2.0 * focalLengthMm))).toFloat
+
+  /** Sees this much horizontally: the focal length follows, as in Unreal's cine camera. */
+  def withFov(degrees: Float): Camera = copy(focalLengthMm = filmback.focalLengthMm(degrees))
+
+  /** Within what the lens can. */
+  def withFocalLength(mm: Float): Camera = copy(focalLengthMm = mm.max(lens.shortestMm).min(lens.longestMm))
+
+  def withLens(lens: Lens): Camera = copy(lens = lens).withFocalLength(focalLengthMm)
+
+  def withDistortion(index: Int, value: Float): Camera = copy(distortion = distortion.updated(index, value))
+
+  /** As AirSim tells it, carried by a vehicle at this place. */
+  def info(vehicle: Vector3, attitude: Quaternion): CameraInfo = CameraInfo(
+    Pose(
+      Vector3r(vehicle + Frames.intoWorld(position, attitude)),
+      Quaternionr(Frames.composed(attitude, orientation))
+    ),
+    fovDeg,
+    ProjectionMatrix(projection)
+  )
+
+  /** From front, right, down into Unreal's clip space with its inverted depth, near plane 10 cm
+    * (`APIPCamera::getProjectionMatrix`), for pictures of the default 256 × 144.
+    */
+  private def projection: Seq[Seq[Float]] =
+    val across = (1 / StrictMath.tan(math.toRadians(fovDeg) / 2)).toFloat
+    Seq(
+      Seq(0f, across, 0f, 0f),
+      Seq(0f, 0f, -across * Camera.AspectRatio, 0f),
+      Seq(0f, 0f, 0f, Camera.NearPlaneCm),
+      Seq(-1f, 0f, 0f, 0f)
+    )
+
+private[simulator] object Camera:
+  val DefaultFovDeg   = 90f
+  val DistortionNames = Vector("K1", "K2", "K3", "P1", "P2")
+
+  private val AspectRatio = 256f / 144
+  private val NearPlaneCm = 10f
+
+  /** Those of AirSim's multirotor. Its places are in a binary file that nobody can read here, but for the 25 cm between the
+    * front left and the front right one; so these are ours.
+    */
+  val Defaults: Map[String, Camera] = Map(
+    "front_center"  -> looking(Vector3(0.25, 0, 0), yawDeg = 0),
+    "front_right"   -> looking(Vector3(0.25, 0.125, 0), yawDeg = 0),
+    "front_left"    -> looking(Vector3(0.25, -0.125, 0), yawDeg = 0),
+    "bottom_center" -> looking(Vector3(0, 0, 0.05), pitchDeg = -90),
+    "back_center"   -> looking(Vector3(-0.25, 0, 0), yawDeg = 180)
+  )
+
+  /** Numbers that older clients use, and other names of the same cameras. */
+  private val Aliases = Map(
+    ""    -> "front_center",
+    "fpv" -> "front_center",
+    "0"   -> "front_center",
+    "1"   -> "front_right",
+    "2"   -> "front_left",
+    "3"   -> "bottom_center",
+    "4"   -> "back_center"
+  )
+
+  /** The camera's own name, if a multirotor has such a one. */
+  def canonical(name: String): Option[String] =
+    val own = Aliases.getOrElse(name, name)
+    Option.when(Defaults.contains(own))(own)
+
+  private def looking(position: Vector3, yawDeg: Double = 0, pitchDeg: Double = 0): Camera =
+    val yaw   = math.toRadians(yawDeg) / 2
+    val pitch = math.toRadians(pitchDeg) / 2
+    Camera(
+      position,
+      Frames.composed(
+        Quaternion(StrictMath.cos(yaw), 0, 0, StrictMath.sin(yaw)),
+        Quaternion(StrictMath.cos(pitch), 0, StrictMath.sin(pitch), 0)
+      )
+    )
+
+/** A lens of Unreal's cine camera: focal lengths in mm, f-stops. */
+final private[simulator] case class Lens(
+    name: String,
+    shortestMm: Float,
+    longestMm: Float,
+    widestF: Float,
+    narrowestF: Float
+):
+  /** As AirSim writes it. */
+  def text: String =
+    s"Name: $name;\n\t MinFocalLength: ${Lens.plain(shortestMm)}; \t MaxFocalLength: ${Lens.plain(longestMm)}" +
+      s"\n\t Min FStop: ${Lens.plain(widestF)}; \t Max Fstop: ${Lens.plain(narrowestF)}"
+
+private[simulator] object Lens:
+  val Universal: Lens = Lens("Universal Zoom", 4, 1000, 1.2f, 22)
+
+  /** Unreal's presets. */
+  val Presets: Seq[Lens] = Seq(
+    Lens("12mm Prime f/2.8", 12, 12, 2.8f, 22),
+    Lens("30mm Prime f/1.4", 30, 30, 1.4f, 22),
+    Lens("50mm Prime f/1.8", 50, 50, 1.8f, 22),
+    Lens("85mm Prime f/1.8", 85, 85, 1.8f, 22),
+    Lens("105mm Prime f/2", 105, 105, 2, 22),
+    Lens("200mm Prime f/2", 200, 200, 2, 22),
+    Lens("24-70mm Zoom f/2.8", 24, 70, 2.8f, 22),
+    Lens("70-200mm Zoom f/2.8", 70, 200, 2.8f, 22),
+    Universal
+  )
+
+  /** A number as C++ streams write it: without `.0`. */
+  def plain(number: Float): String =
+    if number == number.toInt.toFloat then number.toInt.toString else number.toString
+
+/** What the lens draws on, mm. */
+final private[simulator] case class Filmback(name: String, widthMm: Float, heightMm: Float):
+  def aspectRatio: Float = widthMm / heightMm
+
+  /** Horizontal field of view of this focal length, degrees. */
+  def fovDeg(focalLengthMm: Float): Float =
+    math.toDegrees(2 * StrictMath.atan(widthMm / (2.0 * focalLengthMm))).toFloat
+
+  def focalLengthMm(fovDeg: Float): Float =
+    (widthMm / (2 * StrictMath.tan(math.toRadians(fovDeg) / 2))).toFloat
+
+  /** As AirSim writes it. */
+  def text: String =
+    s"Name: $name;\n\t Sensor Width: ${Lens.plain(widthMm)}; \t Sensor Height: ${Lens.plain(heightMm)}" +
+      s"\n\t Sensor Aspect Ratio: ${Lens.plain(aspectRatio)}"
+
+private[simulator] object Filmback:
+  val DigitalFilm: Filmback = Filmback("16:9 Digital Film", 23.76f, 13.365f)
+
+  /** Unreal's presets. */
+  val Presets: Seq[Filmback] = Seq(
+    Filmback("16:9 Film", 24, 13.5f),
+    DigitalFilm,
+    Filmback("16:9 DSLR", 36, 20.25f),
+    Filmback("Super 8mm", 5.79f, 4.01f),
+    Filmback("Super 16mm", 12.52f, 7.58f),
+    Filmback("Super 35mm", 24.89f, 18.66f),
+    Filmback("35mm Academy", 21.946f, 16.002f),
+    Filmback("35mm VistaVision", 37.719f, 25.146f),
+    Filmback("IMAX 70mm", 70.41f, 56.63f),
+    Filmback("APS-C (Canon)", 22.2f, 14.8f),
+    Filmback("Full Frame DSLR", 36, 24),
+    Filmback("Micro Four Thirds", 17.3f, 13)
+  )

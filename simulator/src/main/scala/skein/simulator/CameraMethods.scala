@@ -1,0 +1,175 @@
+package skein.simulator
+
+import skein.airsim.wire.*
+
+/** Functions of cameras. Where they sit and how they see is kept and told back; pictures, and what is found in them, are
+  * refused.
+  */
+private[simulator] object CameraMethods:
+  import Method.*
+
+  /** Larger than any film or lens. */
+  private inline val LargestMm = 100_000f
+
+  val all: Seq[Method] = Seq(
+    many[(String, String, Boolean)]("simGetCameraInfo"):
+      case (simulation, (camera, name, external)) =>
+        of(simulation, camera, name, external): (index, camera) =>
+          val vehicle = simulation.world.vehicles(index)
+          answer(
+            simulation.cameras(index, camera).info(
+              vehicle.positionAt(simulation.world.now),
+              vehicle.state.orientation
+            )
+          )
+    ,
+    many[(String, Pose, String, Boolean)]("simSetCameraPose"):
+      case (simulation, (camera, pose, name, external)) =>
+        change(simulation, camera, name, external): camera =>
+          camera.copy(
+            position = pose.position.toVector,
+            orientation = Frames.normalized(pose.orientation.toQuaternion)
+          )
+    ,
+    many[(String, Float, String, Boolean)]("simSetCameraFov"):
+      case (simulation, (camera, degrees, name, external)) =>
+        positive("a field of view", degrees, 179.9f):
+          change(simulation, camera, name, external)(_.withFov(degrees))
+    ,
+    many[(String, String, Float, String, Boolean)]("simSetDistortionParam"):
+      case (simulation, (camera, parameter, value, name, external)) =>
+        val index = Camera.DistortionNames.indexOf(parameter)
+        if index < 0 then
+          Outcome.Threw(
+            s"no distortion parameter '$parameter': it is one of ${Camera.DistortionNames.mkString(", ")}"
+          )
+        else change(simulation, camera, name, external)(_.withDistortion(index, value))
+    ,
+    get("simGetDistortionParams")(camera => answer(camera.distortion)),
+    get("simGetPresetLensSettings")(_ => answer(Lens.Presets.map(_.text))),
+    get("simGetLensSettings")(camera => answer(camera.lens.text)),
+    preset("simSetPresetLensSettings", Lens.Presets, _.name)(_.withLens(_)),
+    get("simGetPresetFilmbackSettings")(_ => answer(Filmback.Presets.map(_.text))),
+    get("simGetFilmbackSettings")(camera => answer(camera.filmback.text)),
+    preset("simSetPresetFilmbackSettings", Filmback.Presets, _.name)((camera, filmback) =>
+      camera.copy(filmback = filmback)
+    ),
+    many[(Float, Float, String, String, Boolean)]("simSetFilmbackSettings"):
+      case (simulation, (width, height, camera, name, external)) =>
+        positive("a sensor's width", width, LargestMm):
+          positive("a sensor's height", height, LargestMm):
+            val film = Filmback("Custom...", width, height)
+            change(simulation, camera, name, external)(_.copy(filmback = film)) match
+              case Outcome.Answered(_) => answer(film.aspectRatio)
+              case refused             => refused
+    ,
+    get("simGetFocalLength")(camera => answer(camera.focalLengthMm)),
+    set("simSetFocalLength", "a focal length", LargestMm)(_.withFocalLength(_)),
+    get("simGetFocusDistance")(camera => answer(camera.focusDistanceCm)),
+    set("simSetFocusDistance", "a focus distance", Float.MaxValue)((camera, cm) =>
+      camera.copy(focusDistanceCm = cm)
+    ),
+    get("simGetFocusAperture")(camera => answer(camera.apertureF)),
+    set("simSetFocusAperture", "an aperture", LargestMm)((camera, stop) => camera.copy(apertureF = stop)),
+    get("simGetCurrentFieldOfView")(camera =>
+      answer(
+        s"Current Field Of View:\n\tHorizontal Field Of View: ${Lens.plain(camera.fovDeg)};\n\t " +
+          s"Vertical Field Of View: ${Lens.plain(camera.verticalFovDeg)}"
+      )
+    ),
+    switch("simEnableManualFocus"),
+    switch("simEnableFocusPlane"),
+    many[(Seq[ImageRequest], String, Boolean)]("simGetImages"):
+      case (simulation, (requests, name, _)) =>
+        simulated(simulation, name)((_, _) => if requests.isEmpty then answer(Seq.empty[Int]) else Blind)
+    ,
+    many[(String, Int, String, Boolean)]("simGetImage"):
+      case (simulation, (camera, _, name, external)) =>
+        of(simulation, camera, name, external)((_, _) => Blind)
+    ,
+    many[(String, Int, String, Boolean)]("simGetDetections"):
+      case (simulation, (camera, _, name, external)) =>
+        of(simulation, camera, name, external)((_, _) => Blind)
+    ,
+    many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
+      case (simulation, (camera, kind, mesh, name, external)) =>
+        detecting(simulation, camera, kind, name, external): filter =>
+          if filter.meshes.size < Detection.MostMeshes then Right(filter.copy(meshes = filter.meshes + mesh))
+          else Left(s"a detection filter holds at most ${Detection.MostMeshes} names")
+    ,
+    many[(String, Int, Float, String, Boolean)]("simSetDetectionFilterRadius"):
+      case (simulation, (camera, kind, radiusCm, name, external)) =>
+        detecting(simulation, camera, kind, name, external)(filter => Right(filter.copy(radiusCm = radiusCm)))
+    ,
+    many[(String, Int, String, Boolean)]("simClearDetectionMeshNames"):
+      case (simulation, (camera, kind, name, external)) =>
+        detecting(simulation, camera, kind, name, external)(filter => Right(filter.copy(meshes = Set.empty)))
+  )
+
+  /** Kinds of pictures, from 0. */
+  private val ImageTypes = 10
+
+  private val Blind = Outcome.Threw("the built-in simulator draws no images, and finds nothing in them")
+
+  private def get(method: String)(read: Camera => Outcome): Method =
+    many[(String, String, Boolean)](method):
+      case (simulation, (camera, name, external)) =>
+        of(simulation, camera, name, external)((index, camera) => read(simulation.cameras(index, camera)))
+
+  private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): Method =
+    many[(Float, String, String, Boolean)](method):
+      case (simulation, (value, camera, name, external)) =>
+        positive(what, value, largest):
+          CameraMethods.change(simulation, camera, name, external)(change(_, value))
+
+  private def preset[A](
+      method: String,
+      presets: Seq[A],
+      named: A => String
+  )(change: (Camera, A) => Camera): Method =
+    many[(String, String, String, Boolean)](method):
+      case (simulation, (preset, camera, name, external)) =>
+        // As in AirSim, a name that is no preset's changes nothing.
+        CameraMethods.change(simulation, camera, name, external): camera =>
+          presets.find(named(_) == preset).fold(camera)(change(camera, _))
+
+  /** Accepted; nothing is drawn that would be in focus. */
+  private def switch(method: String): Method =
+    many[(Boolean, String, String, Boolean)](method):
+      case (simulation, (_, camera, name, external)) => of(simulation, camera, name, external)((_, _) => Nil)
+
+  private def positive(what: String, value: Float, largest: Float)(run: => Outcome): Outcome =
+    if value > 0 && value <= largest then run
+    else Outcome.Threw(s"$what is above 0 and at most $largest, not $value")
+
+  private def change(simulation: Simulated, camera: String, name: String, external: Boolean)(
+      change: Camera => Camera
+  ): Outcome =
+    of(simulation, camera, name, external): (index, camera) =>
+      simulation.cameras(index, camera) = change(simulation.cameras(index, camera))
+      Nil
+
+  private def detecting(simulation: Simulated, camera: String, kind: Int, name: String, external: Boolean)(
+      change: Detection => Either[String, Detection]
+  ): Outcome =
+    of(simulation, camera, name, external): (index, camera) =>
+      if kind < 0 || kind >= ImageTypes then
+        Outcome.Threw(s"an image type is 0 to ${ImageTypes - 1}, not $kind")
+      else
+        change(simulation.cameras.detection(index, camera, kind)) match
+          case Left(refusal) => Outcome.Threw(refusal)
+          case Right(filter) =>
+            simulation.cameras.setDetection(index, camera, kind, filter)
+            Nil
+
+  /** The vehicle's index and the camera's own name. AirSim ends itself on a camera that is not there. */
+  private def of(simulation: Simulated, camera: String, name: String, external: Boolean)(
+      run: (Int, String) => Outcome
+  ): Outcome =
+    if external then Outcome.Threw(s"No external camera with name $camera exist")
+    else
+      simulated(simulation, name): (index, _) =>
+        Camera.canonical(camera).fold(Outcome.Threw(s"No camera with name $camera exist on vehicle"))(run(
+          index,
+          _
+        ))

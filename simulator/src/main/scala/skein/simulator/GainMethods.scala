@@ -1,0 +1,28 @@
+package skein.simulator
+
+import skein.vehicle.{AxisGains, CascadeGains, Pid}
+
+/** Functions that set the gains of a vehicle's flight controller. Each takes the proportional gains of three axes, then
+  * the integral ones, then the derivative ones. All controllers then start anew, as AirSim's do. Gains outlive a reset.
+  */
+private[simulator] object GainMethods:
+  import Method.*
+
+  val all: Seq[Method] = Seq(
+    gains("setAngleRateControllerGains")((set, axes) => set.copy(rate = axes)),
+    gains("setAngleLevelControllerGains")((set, axes) => set.copy(angle = axes)),
+    gains("setVelocityControllerGains")((set, axes) => set.copy(velocity = axes)),
+    gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
+  )
+
+  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): Method =
+    many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
+      case (simulation, (p, i, d, name)) =>
+        vehicle(simulation, name): (_, vehicle) =>
+          // AirSim reads past the end of a shorter one.
+          if Seq(p, i, d).exists(_.size < 3) then
+            Outcome.Threw("gains are three lists of three numbers: P, I, D")
+          else
+            def axis(n: Int) = Pid(p(n), i(n), d(n))
+            vehicle.tune(change(vehicle.gains, AxisGains(axis(0), axis(1), axis(2))))
+            Nil

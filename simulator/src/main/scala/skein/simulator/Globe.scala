@@ -1,0 +1,84 @@
+package skein.simulator
+
+import skein.units.{GeoLocation, Metres, Vector3}
+
+/** The Earth as AirSim has it: a sphere with a standard atmosphere and a magnetic dipole (`EarthUtils`). */
+private[simulator] object Globe:
+  /** m */
+  val RadiusM = 6378137.0
+
+  /** Pa */
+  val SeaLevelPressure = 101325.0
+
+  /** The geographic place of a point given in NED, m, around `origin`. */
+  def locate(pointNed: Vector3, origin: GeoLocation): GeoLocation =
+    val altitude = Metres(origin.altitude.value - pointNed.z)
+    val north    = pointNed.x / RadiusM
+    val east     = pointNed.y / RadiusM
+    val angle    = StrictMath.hypot(north, east)
+    if angle < 1e-12 then origin.copy(altitude = altitude)
+    else
+      val latitude = math.toRadians(origin.latitudeDeg)
+      val sine     = StrictMath.sin(angle) / angle
+      val there    = StrictMath.asin(
+        StrictMath.cos(angle) * StrictMath.sin(latitude) + north * sine * StrictMath.cos(latitude)
+      )
+      val around = StrictMath.atan2(
+        east * sine,
+        StrictMath.cos(latitude) * StrictMath.cos(angle) - north * StrictMath.sin(latitude) * sine
+      )
+      GeoLocation(math.toDegrees(there), origin.longitudeDeg + math.toDegrees(around), altitude)
+
+  /** The point in NED, m, around `origin` of a nearby place (`GeodeticToNedFast`). */
+  def toNed(place: GeoLocation, origin: GeoLocation): Vector3 = Vector3(
+    math.toRadians(place.latitudeDeg - origin.latitudeDeg) * RadiusM,
+    math.toRadians(place.longitudeDeg - origin.longitudeDeg) * RadiusM * StrictMath.cos(
+      math.toRadians(place.latitudeDeg)
+    ),
+    origin.altitude.value - place.altitude.value
+  )
+
+  /** Standard temperature below 11 km, K. */
+  def temperatureK(altitudeM: Double): Double = 288.15 - 6.5 * geopotentialKm(altitudeM)
+
+  /** Standard pressure below 11 km, Pa (Stull, Practical Meteorology). */
+  def pressurePa(altitudeM: Double): Double =
+    SeaLevelPressure * StrictMath.pow(288.15 / temperatureK(altitudeM), -5.255877)
+
+  /** kg/m³ */
+  def airDensity(altitudeM: Double): Double = pressurePa(altitudeM) / 287.053 / temperatureK(altitudeM)
+
+  /** Altitude of a pressure, m: the altimeter's formula. */
+  def pressureAltitudeM(pressurePa: Double): Double =
+    (1 - StrictMath.pow(pressurePa / SeaLevelPressure, 0.190284)) * 145366.45 * 0.3048
+
+  /** The field of a dipole whose pole lies at 80.31° N, 72.62° W, NED, gauss. Its direction errs by some 10°, its
+    * strength by up to a third.
+    */
+  def magneticFieldNed(place: GeoLocation): Vector3 =
+    val latitude = math.toRadians(place.latitudeDeg)
+    val fromPole = math.toRadians(place.longitudeDeg + 72.62)
+    val pole     = math.toRadians(80.31)
+    val cosColat =
+      StrictMath.cos(latitude) * StrictMath.cos(
+        pole
+      ) + StrictMath.sin(latitude) * StrictMath.sin(pole) * StrictMath.cos(fromPole)
+    val colatitude = StrictMath.acos(cosColat)
+    val strength   = 0.312 * StrictMath.pow(RadiusM / (RadiusM + place.altitude.value), 3) *
+      math.sqrt(1 + 3 * cosColat * cosColat)
+    val ratio       = StrictMath.cos(pole) / StrictMath.sin(colatitude)
+    val declination =
+      if cosColat > StrictMath.sin(pole) * StrictMath.sin(latitude) then
+        StrictMath.asin(StrictMath.sin(fromPole) * ratio)
+      else StrictMath.asin(StrictMath.cos(fromPole) * ratio)
+    val inclination = StrictMath.atan(2 / StrictMath.tan(colatitude))
+    Vector3(
+      strength * StrictMath.cos(inclination) * StrictMath.cos(declination),
+      strength * StrictMath.cos(inclination) * StrictMath.sin(declination),
+      strength * StrictMath.sin(inclination)
+    )
+
+  private def geopotentialKm(altitudeM: Double): Double =
+    val kilometres = altitudeM / 1000
+    val radius     = RadiusM / 1000
+    radius * kilometres / (radius + kilometres)

@@ -1,0 +1,50 @@
+package skein.simulator
+
+import skein.airsim.wire.{RcData, YawMode}
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** Flies where the remote control's sticks point, in the frame that the vehicle had at the start
+  * (`MultirotorApiBase::moveByManual`). Sticks that are not valid set no goal.
+  */
+final private[simulator] class ManualMove private (
+    speedX: Double,
+    speedY: Double,
+    down: Double,
+    duration: Span,
+    drivetrain: Int,
+    yaw: YawMode,
+    start: Quaternion
+) extends Move:
+  import ManualMove.*
+
+  override def lastsAtLeast: Span = duration
+
+  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+    val goal = Option.when(vehicle.sticks.is_valid)(towards(vehicle.sticks, vehicle.state.z))
+    if elapsed >= duration then Progress.Ended(true, goal)
+    else goal.fold(Progress.Idle)(Progress.Going(_))
+
+  private def towards(sticks: RcData, z: Double): Setpoint =
+    val wanted   = Vector3(sticks.pitch * speedY / FullStick, sticks.roll * speedX / FullStick, 0)
+    val velocity = Frames.intoBody(wanted, start)
+    val turned   = yaw.copy(yaw_or_rate = yaw.yaw_or_rate + sticks.yaw * 100 / FullStick)
+    Move.withYaw(
+      Setpoint.velocityZ(velocity.x, velocity.y, z + sticks.throttle / FullStick * down),
+      Move.facing(drivetrain, turned, velocity)
+    )
+
+private[simulator] object ManualMove:
+  /** What AirSim takes for a stick at its end. */
+  private val FullStick = 10000f
+
+  def order(
+      speedX: Float,
+      speedY: Float,
+      down: Float,
+      seconds: Float,
+      drivetrain: Int,
+      yaw: YawMode
+  ): Move.Order =
+    vehicle =>
+      Right(ManualMove(speedX, speedY, down, Move.span(seconds), drivetrain, yaw, vehicle.state.orientation))

@@ -1,0 +1,76 @@
+package skein.simulator
+
+import scala.util.control.NonFatal
+import skein.units.Span
+import upack.Msg
+import upickle.default.{Writer, writeMsg}
+
+/** What a call leads to. */
+private[simulator] enum Outcome:
+  case Answered(result: Msg)
+
+  /** The function throws; `text` is the exception's. */
+  case Threw(text: String)
+
+  /** A move: it answers when it ends. */
+  case Flies(vehicle: Int, order: Move.Order)
+
+  /** Physics is to run for this long and then stand; that answers. */
+  case Steps(span: Span)
+
+/** A function that the simulator's server has, with as many parameters as AirSim's.
+  *
+  * @param arguments
+  *   how each is read; throws [[BadArgument]] if it cannot be taken
+  * @param run
+  *   what to do with what was read
+  */
+final private[simulator] class Method(
+    val name: String,
+    val arguments: List[Argument[?]],
+    run: (Simulated, Tuple) => Outcome
+):
+  def arity: Int = arguments.size
+
+  /** Never throws: a function that fails answers with its exception, as AirSim's do. */
+  def apply(simulation: Simulated, params: IndexedSeq[Msg]): Outcome =
+    try run(simulation, Tuple.fromArray(arguments.iterator.zip(params).map(_.read(_)).toArray[Any]))
+    catch
+      case bad: BadArgument  => Outcome.Threw(bad.getMessage)
+      case NonFatal(failure) => Outcome.Threw(failure.toString)
+
+private[simulator] object Method:
+
+  def none(name: String)(run: Simulated => Outcome): Method =
+    Method(name, List.empty, (simulation, _) => run(simulation))
+
+  def one[A](name: String)(run: (Simulated, A) => Outcome)(using argument: Argument[A]): Method =
+    Method(name, List(argument), (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1))
+
+  /** A function of several parameters, read as the tuple that `run` takes. */
+  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => Outcome): Method =
+    Method(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
+
+  def answer[A: Writer](value: A): Outcome = Outcome.Answered(writeMsg(value))
+
+  val Nil: Outcome = Outcome.Answered(upack.Null)
+
+  /** The vehicle of this name, or the default one if it is empty. */
+  def vehicle(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => Outcome): Outcome =
+    find(simulation, name, "Vehicle API", "this is simulation-only API")(run)
+
+  /** The same, with the words of AirSim's functions that exist in simulation only. */
+  def simulated(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => Outcome): Outcome =
+    find(simulation, name, "Vehicle Sim-API", "this is not a simulation")(run)
+
+  private def find(simulation: Simulated, name: String, what: String, reason: String)(
+      run: (Int, SimulatedVehicle) => Outcome
+  ): Outcome =
+    val vehicles = simulation.world.vehicles
+    val wanted   = if name.isEmpty then simulation.settings.world.defaultVehicle.name else name
+    val index    = vehicles.indexWhere(_.settings.name == wanted)
+    if index >= 0 then run(index, vehicles(index))
+    else
+      Outcome.Threw(
+        s"$what for '${name}' is not available. This could either because $reason or this vehicle does not exist"
+      )

@@ -1,0 +1,101 @@
+package skein.simulator
+
+import skein.airsim.wire.YawMode
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** A move under way. AirSim's calls loop every 20 ms of simulated time: look at the vehicle, renew its goal, end when
+  * done or when their time is over (`MultirotorApiBase`).
+  */
+private[simulator] trait Move:
+  /** One turn of that loop.
+    *
+    * @param elapsed
+    *   since the move began; zero at the first turn
+    */
+  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress
+
+  /** It does not end before this much time has elapsed. */
+  def lastsAtLeast: Span = Span.Zero
+
+private[simulator] enum Progress:
+  case Going(goal: Setpoint)
+
+  /** It goes on and leaves the goal as it is. */
+  case Idle
+
+  /** The call answers `result`; a goal that is still set holds for 60 ms. */
+  case Ended(result: Boolean, goal: Option[Setpoint])
+
+private[simulator] object Move:
+  /** Time between two turns. */
+  val Period: Span = Span.ofMillis(20)
+
+  /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text of the
+    * exception that AirSim throws.
+    */
+  type Order = SimulatedVehicle => Either[String, Move]
+
+  /** Keeps one goal for a duration. Without any, it ends at once with `ifNone`. */
+  def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedVehicle => Setpoint): Order = vehicle =>
+    val setpoint = goal(vehicle)
+    val duration = span(seconds)
+    Right(new Move:
+      override def lastsAtLeast: Span = duration
+
+      def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+        if duration <= Span.Zero then Progress.Ended(ifNone, None)
+        else if elapsed >= duration then Progress.Ended(true, Some(setpoint))
+        else Progress.Going(setpoint))
+
+  /** Sinks at 0.2 m/s until it has not sunk for eleven turns. */
+  def land(timeoutS: Float): Order = _ =>
+    var still = 0
+    val sink  = Setpoint.velocity(0, 0, 0.2)
+    Right: (vehicle, elapsed) =>
+      still = if vehicle.state.vz <= ApproximatelyZeroMps then still + 1 else 0
+      if still > 10 then Progress.Ended(true, Some(sink))
+      else if elapsed >= span(timeoutS) then Progress.Ended(false, Some(sink))
+      else Progress.Going(sink)
+
+  /** Turns on the spot to a heading, then stops turning. */
+  def rotate(yawDeg: Float, timeoutS: Float, marginDeg: Float): Order = start =>
+    val goal   = Setpoint.hold(start.state.positionNed)
+    val target = normalized(yawDeg)
+    Right: (vehicle, elapsed) =>
+      val there = math.abs(math.toDegrees(vehicle.state.yawRad) - target) <= marginDeg
+      val next  = if there then goal else goal.withYaw(math.toRadians(target))
+      if timeoutS <= 0 then Progress.Ended(true, None)
+      else if there && math.abs(vehicle.state.wz) <= 0.01 then Progress.Ended(true, Some(next))
+      else if elapsed >= span(timeoutS) then Progress.Ended(false, Some(next))
+      else Progress.Going(next)
+
+  /** The goal with a yaw or yaw rate in degrees. */
+  def withYaw(goal: Setpoint, yaw: YawMode): Setpoint =
+    val radians = math.toRadians(yaw.yaw_or_rate)
+    if yaw.is_rate then goal.withYawRate(radians) else goal.withYaw(radians)
+
+  /** The yaw of a vehicle that is to look where it goes, if the drivetrain says so. */
+  def facing(drivetrain: Int, yaw: YawMode, travelNed: Vector3): YawMode =
+    if drivetrain != ForwardOnly || yaw.is_rate then yaw
+    else if travelNed.norm <= DistanceAccuracyM then YawMode.Still
+    else
+      YawMode(
+        false,
+        normalized(yaw.yaw_or_rate + math.toDegrees(StrictMath.atan2(travelNed.y, travelNed.x)).toFloat)
+      )
+
+  val ForwardOnly = 1
+
+  /** Nearer than this AirSim takes two places for one. */
+  val DistanceAccuracyM = 0.5
+
+  val ApproximatelyZeroMps = 0.05
+
+  /** At most three years: AirSim's "no limit" is the greatest 32-bit float, more than a clock in nanoseconds can count. */
+  def span(seconds: Float): Span = Span.ofSeconds(math.min(seconds.toDouble, 1e8))
+
+  /** Degrees, −180 to 180. */
+  def normalized(degrees: Float): Float =
+    val within = degrees % 360
+    if within > 180 then within - 360 else if within < -180 then within + 360 else within

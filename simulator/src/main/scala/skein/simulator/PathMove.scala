@@ -1,0 +1,143 @@
+package skein.simulator
+
+import skein.airsim.wire.YawMode
+import skein.units.*
+import skein.units.Decimals.fixed
+import skein.vehicle.Setpoint
+
+/** How a path is flown.
+  *
+  * @param lookaheadM
+  *   how far ahead on the path to aim; negative: by the speed
+  * @param adaptive
+  *   how much of the distance from the path is added to that
+  */
+final private[simulator] case class Travel(
+    drivetrain: Int,
+    yaw: YawMode,
+    lookaheadM: Float,
+    adaptive: Float
+)
+
+private[simulator] object Travel:
+  /** What AirSim's own moves use. */
+  val Plain: Travel = Travel(0, YawMode.Still, -1, 1)
+
+/** Flies along a path by aiming at a point ahead on it, with a velocity command (`MultirotorApiBase::moveOnPath`).
+  *
+  * @param points
+  *   the first is where the vehicle was at the start
+  */
+final private[simulator] class PathMove private (
+    points: Vector[Vector3],
+    speedMps: Double,
+    timeout: Span,
+    travel: Travel,
+    lookaheadM: Double
+) extends Move:
+  import PathMove.*
+
+  private val last    = points.size - 1
+  private val lengths = points.zip(points.tail).map((from, to) => (to - from).norm) :+ 0.0
+  private val before  = lengths.scanLeft(0.0)(_ + _)
+
+  private var reached  = Place(0, 0, points.head)
+  private var aim      = ahead(reached, lookaheadM)
+  private var progress = 0.0
+  private var complete = false
+
+  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+    val position = vehicle.state.positionNed
+    if elapsed > Span.Zero then follow(position)
+    if elapsed >= timeout || (aim.segment >= last && progress <= 0) then Progress.Ended(complete, None)
+    else Progress.Going(towardsAim(position))
+
+  /** How far the vehicle has come towards the point it aimed at, and the next one. */
+  private def follow(position: Vector3): Unit =
+    val wanted = aim.point - reached.point
+    val length = wanted.norm
+    val strays =
+      if length == 0 then
+        complete = true
+        progress = 0
+        0.0
+      else
+        val actual    = position - reached.point
+        val direction = wanted * (1 / length)
+        progress = dot(actual, direction)
+        (actual - direction * progress).norm * travel.adaptive
+    // Progress on the path is never taken back, even if the vehicle is pushed back.
+    if progress >= 0 then reached = ahead(reached, progress)
+    aim = ahead(reached, lookaheadM + strays)
+
+  private def towardsAim(position: Vector3): Setpoint =
+    val way       = aim.point - position
+    val distance  = way.norm
+    val remaining = before(last) - before(reached.segment) - reached.offsetM
+    val speed     = if speedMps > 3 && remaining <= 0 then 1.0 else speedMps
+    val velocity  =
+      if distance < Move.DistanceAccuracyM then Vector3.Zero
+      else way * (math.min(speed, distance / Move.Period.toSeconds) / distance)
+    val down = if math.abs(way.z) <= Move.DistanceAccuracyM then 0.0 else velocity.z
+    Move.withYaw(
+      Setpoint.velocity(velocity.x, velocity.y, down),
+      Move.facing(travel.drivetrain, travel.yaw, way)
+    )
+
+  private def ahead(from: Place, distanceM: Double): Place =
+    var segment = from.segment
+    var offset  = from.offsetM + distanceM
+    while segment < last && (lengths(segment) == 0 || lengths(segment) < offset) do
+      offset -= lengths(segment)
+      segment += 1
+    if segment == last then Place(last, 0, points(last))
+    else
+      val along = (points(segment + 1) - points(segment)) * (offset / lengths(segment))
+      Place(segment, offset, points(segment) + along)
+
+private[simulator] object PathMove:
+
+  /** A place on the path: the segment that starts at that point, and how far along it. */
+  private case class Place(segment: Int, offsetM: Double, point: Vector3)
+
+  def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>
+    val perTurn   = speedMps * Move.Period.toSeconds
+    val lookahead = travel.lookaheadM
+    if path.isEmpty then Right((_, _) => Progress.Ended(true, None))
+    else if travel.drivetrain == Move.ForwardOnly && travel.yaw.is_rate then
+      Left("Yaw cannot be specified as rate if drivetrain is ForwardOnly")
+    else if lookahead == 0 then Left("lookahead distance cannot be 0")
+    else if lookahead > 0 && perTurn > lookahead then
+      Left(
+        s"lookahead value ${lookahead.fixed(6)} is too small for velocity ${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
+      )
+    else if lookahead > 0 && Move.DistanceAccuracyM > lookahead then
+      Left(
+        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's distance accuracy ${Move.DistanceAccuracyM.fixed(6)}."
+      )
+    else
+      val distance =
+        if lookahead > 0 then lookahead.toDouble
+        else math.max(perTurn * (if travel.adaptive > 0 then 30 else 40), Move.DistanceAccuracyM * 1.5)
+      Right(PathMove(
+        vehicle.state.positionNed +: path.toVector,
+        speedMps,
+        Move.span(timeoutS),
+        travel,
+        distance
+      ))
+
+  /** AirSim's takeoff: a path 2 m up, which it ends half a metre short. */
+  def takeoff(timeoutS: Float): Move.Order = vehicle =>
+    val speed = vehicle.state.velocityNed.norm
+    if speed > Move.ApproximatelyZeroMps then
+      Left(s"Cannot perform takeoff because vehicle is already moving with velocity ${speed.fixed(6)} m/s")
+    else
+      order(
+        Seq(vehicle.state.positionNed + Vector3(0, 0, -2)),
+        0.5f,
+        timeoutS,
+        Travel.Plain
+      )(vehicle)
+
+  private def dot(a: Vector3, b: Vector3): Double = a.x * b.x + a.y * b.y + a.z * b.z

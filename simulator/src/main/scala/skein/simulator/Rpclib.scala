@@ -1,0 +1,15 @@
+package skein.simulator
+
+/** Error texts of rpclib, AirSim's RPC library. */
+private[simulator] object Rpclib:
+  def unknown(method: String, arguments: Int): String =
+    s"rpclib: server could not find function '$method' with argument count $arguments."
+
+  /** rpclib swaps the two numbers, and so do we. */
+  def arity(method: String, passed: Int, wanted: Int): String =
+    s"rpclib: client error C0002: Function '$method' was called with an invalid number of arguments. " +
+      s"Expected: $passed, got: $wanted"
+
+  def threw(method: String, arguments: Int, text: String): String =
+    s"rpclib: function '$method' (called with $arguments arg(s)) threw an exception. " +
+      s"The exception contained this information: $text."

@@ -1,0 +1,131 @@
+package skein.simulator
+
+import skein.airsim.VehicleSettings
+import skein.airsim.WorldSettings
+import skein.airsim.wire.*
+import skein.units.*
+
+/** Functions of what is in the scene, and where: vehicles and the ground. There are no assets, levels or meshes. */
+private[simulator] object SceneMethods:
+  import Method.*
+
+  val all: Seq[Method] = Seq(
+    many[(String, String, Pose, String)]("simAddVehicle"):
+      case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
+    ,
+    many[(KinematicsState, Boolean, String)]("simSetKinematics"):
+      case (simulation, (state, _, name)) =>
+        simulated(simulation, name): (_, vehicle) =>
+          if !isFlyable(state) then
+            Outcome.Threw(
+              "kinematics within 1000 km, 10 km/s, 1000 rad/s, 1000 km/s² and 1000000 rad/s² are wanted"
+            )
+          else
+            vehicle.setKinematics(state, simulation.world.now)
+            Nil
+    ,
+    one[String]("simListSceneObjects"): (simulation, regex) =>
+      val pattern = NamePattern(regex)
+      answer(simulation.objects.names.filter(pattern.matches))
+    ,
+    one[String]("simGetObjectPose"): (simulation, name) =>
+      answer(
+        if name == SceneObjects.Ground then Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0))
+        else simulation.objects.vehicle(name).fold(Nowhere)(simulation.objects.pose)
+      ),
+    many[(String, Pose, Boolean)]("simSetObjectPose"):
+      case (simulation, (name, pose, _)) =>
+        val vehicle = simulation.objects.vehicle(name)
+        for vehicle <- vehicle do
+          val position = pose.position.toVector - vehicle.settings.startNed
+          vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
+        answer(vehicle.nonEmpty)
+    ,
+    one[String]("simGetObjectScale")((simulation, name) =>
+      answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
+    ),
+    many[(String, Vector3r)]("simSetObjectScale"):
+      case (simulation, (name, scale)) => answer(simulation.objects.setScale(name, scale.toVector))
+    ,
+    many[(String, String, Pose, Vector3r, Boolean, Boolean)]("simSpawnObject"):
+      case (_, (_, asset, _, _, _, _)) =>
+        Outcome.Threw(s"There were no objects with name $asset found in the Registry")
+    ,
+    one[String]("simDestroyObject")((_, _) => answer(false)),
+    none("simListAssets")(_ => answer(Seq.empty[String])),
+    one[String]("simLoadLevel")((_, _) => answer(false)),
+    none("simGetMeshPositionVertexBuffers")(_ => answer(Seq.empty[Int])),
+    many[(String, Int, Boolean)]("simSetSegmentationObjectID"):
+      case (simulation, (name, id, isRegex)) =>
+        val which: String => Boolean =
+          if isRegex then NamePattern(name, ignoreCase = true).matches else _ == name
+        answer(simulation.objects.setId(which, id))
+    ,
+    one[String]("simGetSegmentationObjectID")((simulation, name) =>
+      answer(simulation.objects.id(name).getOrElse(-1))
+    ),
+    many[(GeoPoint, String)]("simTestLineOfSightToPoint"):
+      case (simulation, (point, name)) =>
+        simulated(simulation, name): (index, vehicle) =>
+          val from = vehicle.worldPosition(simulation.world.now)
+          answer(simulation.objects.scene.sees(from, place(simulation, point), except = Some(index)))
+    ,
+    many[(GeoPoint, GeoPoint)]("simTestLineOfSightBetweenPoints"):
+      case (simulation, (from, to)) =>
+        answer(simulation.objects.scene.sees(place(simulation, from), place(simulation, to)))
+    ,
+    none("simGetWorldExtents"): simulation =>
+      def corner(sign: Int, down: Double) =
+        val there =
+          Globe.locate(Vector3(sign * ExtentM, sign * ExtentM, down), simulation.settings.world.origin)
+        GeoPoint(there.latitudeDeg, there.longitudeDeg, there.altitude.value.toFloat)
+      answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
+    ,
+    many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
+      case (simulation, (centre, x, y, z, edge, path)) =>
+        VoxelGrid.render(simulation.objects.scene, centre.toVector, (x, y, z), edge) match
+          case Left(refusal) => Outcome.Threw(refusal)
+          case Right(grid)   => answer(simulation.save(path, grid))
+  )
+
+  /** Vehicles at most; clients can add until then. */
+  val MostVehicles = 256
+
+  private val LongestName = 100
+
+  /** The world has no edge; this far from the origin, and this high, is told, m. */
+  private val ExtentM = 10_000.0
+
+  private val Nowhere =
+    Pose(Vector3r(Float.NaN, Float.NaN, Float.NaN), Quaternionr(Float.NaN, Float.NaN, Float.NaN, Float.NaN))
+
+  private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): Outcome =
+    val start = pose.position.toVector
+    if name.isEmpty || name.length > LongestName then
+      Outcome.Threw(s"a vehicle's name has 1 to $LongestName characters, not ${name.length}")
+    else if simulation.world.vehicles.size >= MostVehicles then
+      Outcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
+    else if start.norm > FarthestM then Outcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
+    else
+      val known = kind.equalsIgnoreCase(WorldSettings.SimpleFlight) && !simulation.objects.exists(name)
+      if known then
+        val q   = Frames.normalized(pose.orientation.toQuaternion)
+        val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+        simulation.addVehicle(VehicleSettings(name, start, Radians(yaw)))
+      answer(known)
+
+  /** Beyond it, and faster, numbers would soon be none. */
+  private val FarthestM = 1e6
+
+  private def isFlyable(state: KinematicsState): Boolean =
+    state.position.toVector.norm <= FarthestM &&
+      state.linear_velocity.toVector.norm <= 1e4 &&
+      state.angular_velocity.toVector.norm <= 1e3 &&
+      state.linear_acceleration.toVector.norm <= 1e6 &&
+      state.angular_acceleration.toVector.norm <= 1e6
+
+  private def place(simulation: Simulated, point: GeoPoint): Vector3 =
+    Globe.toNed(
+      GeoLocation(point.latitude, point.longitude, Metres(point.altitude)),
+      simulation.settings.world.origin
+    )

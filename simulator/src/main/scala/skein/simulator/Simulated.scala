@@ -1,0 +1,29 @@
+package skein.simulator
+
+import skein.airsim.VehicleSettings
+
+/** What functions of the simulator's server act upon. */
+private[simulator] trait Simulated:
+  def settings: SimulatorSettings
+
+  def world: World
+
+  def isPaused: Boolean
+
+  private[simulator] def setPaused(on: Boolean): Unit
+
+  private[simulator] def addVehicle(vehicle: VehicleSettings): Unit
+
+  private[simulator] def objects: SceneObjects
+
+  private[simulator] def cameras: Cameras
+
+  private[simulator] def appearance: Appearance
+
+  /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the controller's. */
+  private[simulator] def recording: Boolean
+
+  private[simulator] def recording_=(on: Boolean): Unit
+
+  /** Writes a file that a client has asked for to a path, and says whether it could. */
+  private[simulator] def save: (String, Array[Byte]) => Boolean

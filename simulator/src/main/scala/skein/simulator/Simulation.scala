@@ -1,0 +1,214 @@
+package skein.simulator
+
+import scala.collection.mutable.ArrayBuffer
+import skein.airsim.VehicleSettings
+import skein.units.*
+import upack.{Bool, Msg}
+
+/** A call as it came: `token` names it in its answer. */
+final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
+
+/** What a call is answered: its result, or the text of its error. */
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg])
+
+/** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
+  * ends. A pure function of what it is told; equal calls at equal times give equal answers.
+  *
+  * Its own clock is the world's. While it runs, that advances with the time it is told, `speed` times as fast; while it
+  * is paused, only as far as calls continue it. A call of `simContinueForTime` is answered as soon as physics has been
+  * computed, which is far sooner than the time it advances by; AirSim takes that time on the wall clock.
+  *
+  * @param startedAt
+  *   when it starts, by the clock that all later times are told of, and the simulator's clock at that moment
+  * @param save
+  *   writes a file that a client has asked for to a path, and says whether it could
+  */
+final class Simulation(
+    val settings: SimulatorSettings,
+    startedAt: Instant,
+    private[simulator] val save: (String, Array[Byte]) => Boolean = (_, _) => false
+) extends Simulated:
+  import Simulation.*
+
+  val world: World = World(settings.world, startedAt)
+
+  private[simulator] val objects    = SceneObjects(world)
+  private[simulator] val cameras    = Cameras()
+  private[simulator] val appearance = Appearance()
+  private[simulator] var recording  = false
+
+  private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
+  private val answers    = ArrayBuffer.empty[SimulatorAnswer]
+  private val continuing = ArrayBuffer.empty[Long]
+  private val speed      = settings.speed * settings.world.clockSpeed
+  private var until      = startedAt
+  private var paused     = false
+  private var lag        = Span.Zero
+
+  // The simulator's clock showed `anchored` at `anchoredAt`.
+  private var anchoredAt = startedAt
+  private var anchored   = startedAt
+
+  /** Whether a call is run as soon as it is received, rather than waiting for a worker. */
+  def isFree: Boolean = workers.isFree
+
+  /** Takes a call in at `at`, no earlier than any time told before. */
+  def receive(call: SimulatorCall, at: Instant): Unit =
+    // Else every call that comes while a long step is computed would wait for its share of it.
+    if continuing.isEmpty then advance(at)
+    workers.offer(call)
+    settle(at)
+
+  /** Lets time pass up to `at`. Its work is bounded: what does not fit is done by the next calls of it while time stands
+    * still, or else skipped, and counted by [[behind]].
+    */
+  def advance(at: Instant): Unit =
+    var handover = workers.nextHandover
+    while handover.exists(_ <= at) do
+      handover.foreach: due =>
+        runTo(due)
+        handOver(due, due)
+      handover = workers.nextHandover
+    runTo(at)
+    settle(at)
+
+  /** When to call [[advance]] at the latest. None: not before the next call. */
+  def nextWake(at: Instant): Option[Instant] =
+    if continuing.nonEmpty then Some(at)
+    else
+      val running =
+        if paused then None else Some(world.nextEndAt.fold(at + KeepUp)(wallTime(_).min(at + KeepUp)))
+      val handover = workers.nextHandover
+      val next     = if running.isEmpty then handover else running.map(end => handover.fold(end)(_.min(end)))
+      next.map(_.max(at))
+
+  /** The answers since this was asked before. */
+  def takeAnswers(): Seq[SimulatorAnswer] =
+    val all = answers.toSeq
+    answers.clear()
+    all
+
+  def isPaused: Boolean = paused && continuing.isEmpty
+
+  /** Simulated time that was skipped because it was too much to compute at once: the simulator's clock is that much
+    * behind.
+    */
+  def behind: Span = lag
+
+  private[simulator] def addVehicle(vehicle: VehicleSettings): Unit =
+    world.add(vehicle)
+    workers.addVehicle()
+
+  private[simulator] def setPaused(on: Boolean): Unit =
+    paused = on
+    if !on then finishStep()
+
+  /** Runs the world as far as the time says, or as far as it was told to continue. */
+  private def runTo(at: Instant): Unit =
+    if continuing.nonEmpty then
+      world.advanceTo(until.min(world.now + longestStretch))
+      if world.now >= until then finishStep()
+    else if !paused then
+      val target = anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed))
+      val able   = world.now + longestRun
+      if target <= able then world.advanceTo(target)
+      else
+        lag = lag + target.since(able)
+        world.advanceTo(able)
+        anchor(at)
+    if paused || continuing.nonEmpty then anchor(at)
+
+  private def anchor(at: Instant): Unit =
+    anchoredAt = at
+    anchored = world.now
+
+  private def finishStep(): Unit =
+    continuing.foreach(token => answers += SimulatorAnswer(token, Right(upack.Null)))
+    continuing.clear()
+
+  /** Answers what has ended and runs what has become possible, until nothing is left to do. */
+  private def settle(at: Instant): Unit =
+    var again = true
+    while again do
+      for World.Ended(vehicle, token, result) <- world.takeEnded() do
+        answers += SimulatorAnswer(token, Right(Bool(result)))
+        workers.release(vehicle, at)
+      handOver(at, at)
+      val job = workers.take()
+      job.foreach(run(_, at))
+      again = job.nonEmpty || world.hasEnded
+
+  /** Starts the moves whose lock arrives by `due`. */
+  private def handOver(due: Instant, at: Instant): Unit =
+    var next = workers.handOver(due)
+    while next.nonEmpty do
+      next.foreach((vehicle, waiting) => start(vehicle, waiting, at))
+      next = workers.handOver(due)
+
+  private def run(call: SimulatorCall, at: Instant): Unit =
+    def fail(text: String): Unit = answers += SimulatorAnswer(call.token, Left(text))
+    named.get(call.method) match
+      case None => fail(Rpclib.unknown(call.method, call.params.size))
+      case Some(method) if method.arity != call.params.size =>
+        fail(Rpclib.arity(call.method, passed = call.params.size, wanted = method.arity))
+      case Some(method) =>
+        method(this, call.params) match
+          case Outcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
+          case Outcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
+          case Outcome.Steps(span)           => continueFor(span, call.token, at)
+          case Outcome.Flies(vehicle, order) =>
+            val flight = Waiting(call, order)
+            if workers.acquire(vehicle, flight) then start(vehicle, flight, at)
+            else if !settings.losesCancel() then world.cancelMove(vehicle)
+
+  private def start(vehicle: Int, flight: Waiting, at: Instant): Unit =
+    flight.order(world.vehicles(vehicle)) match
+      case Right(move) => world.startMove(vehicle, flight.call.token, move)
+      case Left(text)  =>
+        val call = flight.call
+        answers += SimulatorAnswer(call.token, Left(Rpclib.threw(call.method, call.params.size, text)))
+        workers.release(vehicle, at)
+
+  /** Physics takes far longer than a lock's way to its next holder, so that the moves that wait for one have it first. */
+  private def continueFor(span: Span, token: Long, at: Instant): Unit =
+    workers.lastHandover.foreach(handOver(_, at))
+    val first = continuing.isEmpty
+    until = if first then world.now + span else until.max(world.now + span)
+    paused = true
+    continuing += token
+    if first then runTo(at)
+
+  /** When, told as time, the simulator's clock shows `simulated`. */
+  private def wallTime(simulated: Instant): Instant =
+    val ahead = simulated.since(anchored).toNanos
+    anchoredAt + Span.ofNanos(if speed == 1.0 then ahead else scaled(ahead, 1 / speed) + 1)
+
+  private def scaled(nanos: Long, factor: Double): Long =
+    if factor == 1.0 then nanos else (nanos * factor).toLong
+
+  private def longestRun: Span     = stepsOf(LongestRunSteps)
+  private def longestStretch: Span = stepsOf(LongestStretchSteps)
+
+  private def stepsOf(all: Int): Span = world.step * (all / world.vehicles.size).max(1).toLong
+
+object Simulation:
+
+  /** A running simulator is looked after at least this often, so that a call never finds much to compute. */
+  private val KeepUp = Span.ofMillis(50)
+
+  /** Steps of one vehicle that one call may compute: some 30 ms. */
+  private val LongestRunSteps = 200_000
+
+  /** Of a step that was asked for, so many at a time: some 4 ms, between which others are answered. */
+  private val LongestStretchSteps = 30_000
+
+  final private case class Waiting(call: SimulatorCall, order: Move.Order)
+
+  private[simulator] val methods: Seq[Method] =
+    SimulatorMethods.all ++ VehicleMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
+      CameraMethods.all ++ AppearanceMethods.all
+
+  private val named: Map[String, Method] = methods.map(method => method.name -> method).toMap
+
+  /** The functions it has. */
+  val methodNames: Set[String] = named.keySet

@@ -1,0 +1,38 @@
+package skein.simulator
+
+import skein.airsim.wire.*
+import skein.units.*
+
+/** Functions that concern the whole simulator. */
+private[simulator] object SimulatorMethods:
+  import Method.*
+
+  val all: Seq[Method] = Seq(
+    none("ping")(_ => answer(true)),
+    none("getServerVersion")(_ => answer(1)),
+    none("getMinRequiredClientVersion")(_ => answer(1)),
+    one[Boolean]("simPause"): (simulation, on) =>
+      simulation.setPaused(on)
+      Nil
+    ,
+    none("simIsPaused")(simulation => answer(simulation.isPaused)),
+    one[Double]("simContinueForTime")((_, seconds) => steps(Span.ofSeconds(math.min(seconds, LongestStepS)))),
+    one[Argument.Unsigned32]("simContinueForFrames")((simulation, frames) =>
+      steps(simulation.world.step * math.min(frames, LongestStepS.toLong * 1000))
+    ),
+    none("reset"): simulation =>
+      simulation.world.reset()
+      Nil
+    ,
+    // AirSim keeps them sorted by name.
+    none("listVehicles")(simulation => answer(simulation.world.vehicles.map(_.settings.name).sorted)),
+    none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
+    one[Vector3r]("simSetWind"): (simulation, wind) =>
+      simulation.world.setWind(wind.toVector)
+      Nil
+  )
+
+  /** A day: far beyond use, and far below what would overflow a clock. */
+  private val LongestStepS = 86400.0
+
+  private def steps(span: Span): Outcome = Outcome.Steps(span.max(Span.Zero))

@@ -1,0 +1,154 @@
+package skein.simulator
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.actor.typed.scaladsl.adapter.*
+import org.apache.pekko.actor.typed.scaladsl.{Behaviors, TimerScheduler}
+import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
+import scala.collection.mutable
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.control.NonFatal
+import skein.link.{Address, Transport}
+import skein.rpc.{CallLines, RpcRequest, RpcServer, ServerEvent, ServerStats}
+import skein.units.*
+import upack.Msg
+
+/** The built-in simulator behind a socket, or whatever a [[Transport]] has: it speaks AirSim's wire, so that any of its
+  * clients can fly it.
+  *
+  * One actor holds the [[Simulation]]. Physics is computed up to the clock's present whenever a call comes and whenever
+  * a move may end, and every 50 ms at the latest; while the simulator is paused, nothing runs.
+  *
+  * Calls are run in rounds over the connections ([[CallLines]]), so that no client waits for all that another has sent,
+  * and one that asks now and then goes first; those of a connection that has closed before their turn are not run. If
+  * the simulation itself fails, which is a defect, it stops listening, closes every connection and says so through
+  * [[failed]].
+  */
+final class SimulatorServer private (
+    server: RpcServer,
+    simulator: ActorRef[SimulatorServer.Message],
+    lines: CallLines[?],
+    behindNanos: AtomicLong,
+    broken: Future[Throwable]
+):
+
+  /** Where it listens, with the actual port. */
+  def address: Address = server.address
+
+  def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
+
+  /** Completes if it ends without having been closed, with the reason. */
+  val failed: Future[Throwable] =
+    given ExecutionContext = ExecutionContext.parasitic
+    Future.firstCompletedOf(Seq(broken, server.failed))
+
+  /** Simulated time skipped so far because the machine was too slow, or asleep. */
+  def behind: Span = Span.ofNanos(behindNanos.get)
+
+  /** Stops listening and closes all connections; moves under way are not answered. */
+  def close(): Future[Done] =
+    simulator ! SimulatorServer.Message.Stop
+    server.close()
+
+object SimulatorServer:
+
+  /** Starts a simulator. The future fails with the transport's error if it cannot listen there, such as
+    * [[skein.link.TransportError.PortTaken]].
+    */
+  def start(settings: SimulatorSettings, transport: Transport, clock: Clock)(using
+      system: ActorSystem
+  ): Future[SimulatorServer] =
+    given ExecutionContext = ExecutionContext.parasitic
+    val behind             = AtomicLong()
+    val broken             = Promise[Throwable]()
+    val lines              = CallLines[Call]()
+    val work               = AtomicBoolean()
+    val simulator          = system.spawnAnonymous(
+      Behaviors.withTimers(Running(Simulation(settings, clock.now(), VoxelGrid.save), clock, lines, work, behind, broken).behavior)
+    )
+    def forget(event: ServerEvent): Unit = event match
+      case ServerEvent.Closed(connection, _) => lines.forget(connection)
+      case _                                 => ()
+    val bound = RpcServer.bind(transport, settings.address, settings.limits, observer = forget): request =>
+      val answer = Promise[Either[String, Msg]]()
+      lines.put(request.connection, Call(request, answer))
+      if work.compareAndSet(false, true) then simulator ! Message.Work
+      answer.future
+    bound.failed.foreach(_ => simulator ! Message.Stop)
+    for server <- bound; failure <- broken.future do
+      system.log.error(failure, "the simulator has failed; it closes its port")
+      server.close()
+    bound.map(SimulatorServer(_, simulator, lines, behind, broken.future))
+
+  private[simulator] enum Message:
+    /** Calls wait. */
+    case Work
+    case Wake
+    case Stop
+
+  final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg]])
+
+  /** Calls run before other work of the process has its turn: some 0.5 ms. */
+  private val CallsAtOnce = 32
+
+  /** @param work
+    *   whether [[Message.Work]] is on its way
+    */
+  final private class Running(
+      simulation: Simulation,
+      clock: Clock,
+      lines: CallLines[Call],
+      work: AtomicBoolean,
+      behind: AtomicLong,
+      broken: Promise[Throwable]
+  ):
+    private val waiting   = mutable.LongMap.empty[Promise[Either[String, Msg]]]
+    private var nextToken = 0L
+    private var wakeAt    = Option.empty[Instant]
+
+    def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
+      def goOn(): Behavior[Message] =
+        takeCalls()
+        for answer <- simulation.takeAnswers() do
+          waiting.remove(answer.token).foreach(_.success(answer.result))
+        behind.set(simulation.behind.toNanos)
+        val now = clock.now()
+        for at <- simulation.nextWake(now) if wakeAt.forall(at < _) do
+          wakeAt = Some(at)
+          // A timer is late by up to its scheduler's tick.
+          if at <= now then context.self ! Message.Wake
+          else timers.startSingleTimer(Message.Wake, at.since(now).toDuration)
+        if simulation.isFree && !lines.isEmpty && work.compareAndSet(false, true) then context.self ! Message.Work
+        Behaviors.same
+
+      def orEnd(next: => Behavior[Message]): Behavior[Message] =
+        try next
+        catch
+          case NonFatal(failure) =>
+            val _ = broken.trySuccess(failure)
+            Behaviors.stopped
+
+      val _ = orEnd(goOn())
+      Behaviors.receiveMessage:
+        case Message.Work =>
+          work.set(false)
+          orEnd(goOn())
+        case Message.Wake =>
+          wakeAt = None
+          orEnd:
+            simulation.advance(clock.now())
+            goOn()
+        case Message.Stop => Behaviors.stopped
+
+    /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection. */
+    private def takeCalls(): Unit =
+      var left = CallsAtOnce
+      while left > 0 && simulation.isFree do
+        lines.take() match
+          case None                       => left = 0
+          case Some(Call(request, answer)) =>
+            left -= 1
+            waiting.update(nextToken, answer)
+            simulation.receive(SimulatorCall(nextToken, request.method, request.params), clock.now())
+            nextToken += 1

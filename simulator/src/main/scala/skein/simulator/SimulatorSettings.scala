@@ -1,0 +1,67 @@
+package skein.simulator
+
+import skein.airsim.{SettingsError, WorldSettings}
+import skein.link.Address
+import skein.rpc.{FrameLimits, ServerLimits}
+import skein.units.*
+
+/** How AirSim's server deals with moves that come faster than they end; see [[Workers]]. */
+enum Overload:
+  /** As AirSim does, with this many workers. */
+  case Workers(count: Int)
+
+  /** As AirSim does, with its number: one worker for each vehicle and four more. */
+  case AirSim
+
+  /** Not at all: the newest move wins at once and nothing waits. */
+  case Never
+
+/** What a built-in simulator is.
+  *
+  * @param address
+  *   where it listens; port 0 takes a free one
+  * @param speed
+  *   of its clock against the machine's, on top of the settings' `ClockSpeed`
+  * @param losesCancel
+  *   asked whenever a move comes that replaces another, for tests of clients: where it says so, the other one is not
+  *   cancelled. AirSim loses a cancel that comes while a move is about to begin
+  */
+final case class SimulatorSettings(
+    world: WorldSettings = WorldSettings.Default,
+    address: Address = Address("127.0.0.1", 41451),
+    overload: Overload = Overload.AirSim,
+    speed: Double = 1.0,
+    limits: ServerLimits = SimulatorSettings.Limits,
+    losesCancel: () => Boolean = () => false
+):
+  require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
+
+  private[simulator] def newWorkers[Job, Flight](): Workers[Job, Flight] =
+    val vehicles = world.vehicles.size
+    overload match
+      case Overload.Workers(count) => Workers(count, vehicles, SimulatorSettings.Handover)
+      case Overload.AirSim         => Workers(vehicles + 4, vehicles, SimulatorSettings.Handover)
+      case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
+
+object SimulatorSettings:
+  /** Requests are small: the largest, a path, has 14 values a point. At most 192 MiB are held for all clients. */
+  val Limits: ServerLimits = ServerLimits(
+    frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
+    heldBytesInCommon = 64 << 20
+  )
+
+  /** Time from a move's cancellation to its successor's start, measured at AirSim's server: below 0.3 ms. */
+  val Handover: Span = Span.ofMillis(0.3)
+
+  /** Checks that the built-in simulator can fly these vehicles. */
+  def supported(world: WorldSettings): Either[SettingsError, WorldSettings] =
+    world.vehicles
+      .find(!_.vehicleType.equalsIgnoreCase(WorldSettings.SimpleFlight))
+      .map(vehicle =>
+        SettingsError.Unexpected(
+          s"Vehicles.${vehicle.name}.VehicleType",
+          WorldSettings.SimpleFlight,
+          vehicle.vehicleType
+        )
+      )
+      .toLeft(world)

@@ -1,0 +1,187 @@
+package skein.simulator
+
+import skein.airsim.SensorKind
+import skein.airsim.wire.*
+import skein.units.*
+
+/** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay; AirSim's GPS
+  * tells it 0.2 s late.
+  */
+private[simulator] object VehicleMethods:
+  import Method.*
+
+  val all: Seq[Method] = Seq(
+    many[(Boolean, String)]("enableApiControl"):
+      case (simulation, (on, name)) =>
+        vehicle(simulation, name): (_, vehicle) =>
+          vehicle.setApiControl(on)
+          Nil
+    ,
+    one[String]("isApiControlEnabled")((simulation, name) =>
+      vehicle(simulation, name)((_, vehicle) => answer(vehicle.apiControl))
+    ),
+    many[(Boolean, String)]("armDisarm"):
+      case (simulation, (on, name)) => vehicle(simulation, name)((_, vehicle) => answer(vehicle.arm(on)))
+    ,
+    many[(RcData, String)]("moveByRC"):
+      case (simulation, (sticks, name)) =>
+        vehicle(simulation, name): (_, vehicle) =>
+          vehicle.steer(sticks)
+          Nil
+    ,
+    one[String]("cancelLastTask"): (simulation, name) =>
+      vehicle(simulation, name): (index, _) =>
+        simulation.world.cancelMove(index)
+        Nil
+    ,
+    one[String]("getMultirotorState")((simulation, name) =>
+      vehicle(simulation, name)((_, vehicle) => answer(state(vehicle, simulation.world.now)))
+    ),
+    one[String]("getRotorStates")((simulation, name) =>
+      vehicle(simulation, name)((_, vehicle) => answer(rotors(vehicle, simulation.world.now)))
+    ),
+    one[String]("getHomeGeoPoint")((simulation, name) =>
+      vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
+    ),
+    one[String]("simGetGroundTruthKinematics")((simulation, name) =>
+      simulated(simulation, name)((_, vehicle) => answer(kinematics(vehicle, simulation.world.now)))
+    ),
+    one[String]("simGetGroundTruthEnvironment")((simulation, name) =>
+      simulated(simulation, name)((_, vehicle) => answer(environment(vehicle, simulation.world.now)))
+    ),
+    one[String]("simGetVehiclePose")((simulation, name) =>
+      simulated(simulation, name)((_, vehicle) => answer(pose(vehicle, simulation.world.now)))
+    ),
+    many[(Pose, Boolean, String)]("simSetVehiclePose"):
+      case (simulation, (pose, _, name)) =>
+        simulated(simulation, name): (_, vehicle) =>
+          vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now)
+          Nil
+    ,
+    one[String]("simGetCollisionInfo")((simulation, name) =>
+      simulated(simulation, name)((_, vehicle) => answer(collision(vehicle.takeTouch())))
+    ),
+    many[(Pose, String)]("skeinHoverAt"):
+      case (simulation, (pose, name)) =>
+        simulated(simulation, name): (_, vehicle) =>
+          val place = pose.position.toVector
+          if !vehicle.apiControl then Outcome.Threw("only a vehicle under api control can hover")
+          else if !vehicle.isAboveGround(place) then
+            Outcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
+          else
+            val turn = pose.orientation.toQuaternion
+            vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now)
+            Nil
+    ,
+    sensor("getImuData", SensorKind.Imu, "IMU")((vehicle, at) => answer(imu(vehicle, at))),
+    sensor("getGpsData", SensorKind.Gps, "gps")((vehicle, at) => answer(Gps.read(vehicle, at))),
+    sensor("getBarometerData", SensorKind.Barometer, "barometer")((vehicle, at) =>
+      answer(barometer(vehicle, at))
+    ),
+    sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")((vehicle, at) =>
+      answer(magnetometer(vehicle, at))
+    ),
+    sensorless("getLidarData", "lidar"),
+    sensorless("getDistanceSensorData", "distance sensor")
+  )
+
+  /** The empty name means the first of its kind. */
+  private def sensor(method: String, kind: SensorKind, called: String)(
+      read: (SimulatedVehicle, Instant) => Outcome
+  ): Method =
+    many[(String, String)](method):
+      case (simulation, (sensor, name)) =>
+        vehicle(simulation, name): (_, vehicle) =>
+          if vehicle.settings.sensors.exists((has, is) => is == kind && (sensor.isEmpty || sensor == has))
+          then
+            read(vehicle, simulation.world.now)
+          else missing(called, sensor)
+
+  private def sensorless(method: String, kind: String): Method =
+    many[(String, String)](method):
+      case (simulation, (sensor, name)) =>
+        vehicle(simulation, name)((_, _) => missing(kind, sensor))
+
+  private def missing(kind: String, sensor: String): Outcome =
+    Outcome.Threw(s"No $kind with name $sensor exist on vehicle")
+
+  private def state(vehicle: SimulatedVehicle, at: Instant) = MultirotorState(
+    CollisionInfo.None,
+    kinematics(vehicle, at),
+    GeoPoint(vehicle.locationAt(at)),
+    at,
+    if vehicle.flying then 1 else 0,
+    vehicle.sticks
+  )
+
+  private def kinematics(vehicle: SimulatedVehicle, at: Instant) = KinematicsState(
+    Vector3r(vehicle.positionAt(at)),
+    Quaternionr(vehicle.state.orientation),
+    Vector3r(vehicle.velocityAt(at)),
+    Vector3r(vehicle.state.angularVelocityFrd),
+    Vector3r(vehicle.state.accelerationNed),
+    Vector3r(vehicle.state.angularAccelerationFrd)
+  )
+
+  private def pose(vehicle: SimulatedVehicle, at: Instant) =
+    Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.state.orientation))
+
+  private def collision(touch: Option[Touch]) = touch.fold(CollisionInfo.None): touch =>
+    val place = Vector3r(touch.positionNed)
+    CollisionInfo(true, 0, touch.at, Vector3r(0, 0, -1), place, place, "Ground", -1)
+
+  private def imu(vehicle: SimulatedVehicle, at: Instant) =
+    // The ground carries a vehicle that stands, and physics does not move it.
+    val acceleration = if vehicle.state.grounded then Vector3.Zero else vehicle.state.accelerationNed
+    val force        = acceleration - Vector3(0, 0, Gravity)
+    ImuData(
+      at,
+      Quaternionr(vehicle.state.orientation),
+      Vector3r(vehicle.state.angularVelocityFrd),
+      Vector3r(Frames.intoBody(force, vehicle.state.orientation))
+    )
+
+  private def barometer(vehicle: SimulatedVehicle, at: Instant) =
+    val pressure = Globe.pressurePa(vehicle.locationAt(at).altitude.value)
+    BarometerData(
+      at,
+      Globe.pressureAltitudeM(pressure).toFloat,
+      pressure.toFloat,
+      (Globe.SeaLevelPressure / 100).toFloat
+    )
+
+  private def magnetometer(vehicle: SimulatedVehicle, at: Instant) =
+    val field = Frames.intoBody(Globe.magneticFieldNed(vehicle.locationAt(at)), vehicle.state.orientation)
+    MagnetometerData(at, Vector3r(field), Seq.empty)
+
+  private def environment(vehicle: SimulatedVehicle, at: Instant) =
+    val place    = vehicle.locationAt(at)
+    val altitude = place.altitude.value
+    EnvironmentState(
+      Vector3r(vehicle.positionAt(at)),
+      GeoPoint(place),
+      Vector3r(0, 0, Gravity.toFloat),
+      Globe.pressurePa(altitude).toFloat,
+      Globe.temperatureK(altitude).toFloat,
+      Globe.airDensity(altitude).toFloat
+    )
+
+  /** Thrust and torque as at sea level: AirSim tells them before it scales them by the density of the air. The torque is
+    * that on the body, whose sign AirSim counts upwards: negative for the two rotors that turn counter-clockwise.
+    */
+  private def rotors(vehicle: SimulatedVehicle, at: Instant) =
+    val thrusts =
+      Seq(vehicle.state.thrust0, vehicle.state.thrust1, vehicle.state.thrust2, vehicle.state.thrust3)
+    val rotors =
+      for (thrust, turn) <- thrusts.zip(Seq(-1, -1, 1, 1))
+      yield RotorState(
+        (thrust * vehicle.airframe.maxThrustN).toFloat,
+        (thrust * vehicle.airframe.maxTorqueNm * turn).toFloat,
+        (math.sqrt(thrust) * MaxRotorSpeed).toFloat
+      )
+    RotorStates(rotors, at)
+
+  private val Gravity = skein.vehicle.Airframe.Gravity
+
+  /** AirSim's rotors reach 6396.667 turns a minute; rad/s. */
+  private val MaxRotorSpeed = 6396.667 * 2 * math.Pi / 60

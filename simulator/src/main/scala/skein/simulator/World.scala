@@ -1,0 +1,131 @@
+package skein.simulator
+
+import scala.collection.mutable.ArrayBuffer
+import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.units.*
+import skein.vehicle.Quadrotor
+
+/** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time it is.
+  *
+  * Physics keeps a grid of whole steps from `start`, while the clock may stand anywhere between two of them: physics
+  * has then been stepped up to the last grid point, and readings are carried on from there. So the clock advances by
+  * exactly what it is told, and how that is cut into pieces does not change the flight.
+  *
+  * @param start
+  *   the clock's first reading
+  */
+final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor = Quadrotor.AirSim):
+  import World.*
+
+  private var flying     = settings.vehicles.map(SimulatedVehicle(_, quadrotor, settings.origin))
+  private val moves      = ArrayBuffer.fill(flying.size)(Option.empty[Running])
+  private val ended      = ArrayBuffer.empty[Ended]
+  private val stepLength = Span.ofSeconds(quadrotor.stepS)
+  private var clock      = start
+  private var nextStep   = start + stepLength
+
+  private var wind = settings.windNed
+
+  flying.foreach(_.reset(start))
+  setWind(wind)
+
+  /** Those of the settings, then those added. */
+  private[simulator] def vehicles: Vector[SimulatedVehicle] = flying
+
+  /** One more vehicle, at rest at its start. */
+  private[simulator] def add(vehicle: VehicleSettings): Unit =
+    val added = SimulatedVehicle(vehicle, quadrotor, settings.origin)
+    added.reset(clock)
+    added.setWind(wind)
+    moves += None
+    flying = flying :+ added
+
+  /** The simulator's clock. */
+  def now: Instant = clock
+
+  /** Length of one step of physics. */
+  def step: Span = stepLength
+
+  /** Advances physics and moves up to this time, in order. Cost: 0.13 µs a vehicle and step. */
+  def advanceTo(to: Instant): Unit =
+    var due = nextTurn
+    while due.exists(_._1 <= to) do
+      due.foreach: (at, vehicle) =>
+        stepTo(at)
+        takeTurn(vehicle)
+      due = nextTurn
+    stepTo(to)
+
+  /** Starts a move, in place of none: [[cancelMove]] first. It may end at once.
+    *
+    * @param token
+    *   given back when the move ends
+    */
+  private[simulator] def startMove(vehicle: Int, token: Long, move: Move): Unit =
+    moves(vehicle) = Some(Running(token, move, clock, clock))
+    takeTurn(vehicle)
+
+  /** Ends the vehicle's move, if there is one, with false. */
+  def cancelMove(vehicle: Int): Unit = end(vehicle, result = false)
+
+  /** The moves that have ended since this was asked before. */
+  def takeEnded(): Seq[Ended] =
+    val all = ended.toSeq
+    ended.clear()
+    all
+
+  /** Whether [[takeEnded]] has anything to give. */
+  def hasEnded: Boolean = ended.nonEmpty
+
+  /** When, at the earliest, the next move can end. */
+  def nextEndAt: Option[Instant] =
+    var next = Option.empty[Instant]
+    for move <- moves; running <- move do
+      val end = running.dueAt.max(running.startedAt + running.move.lastsAtLeast)
+      if next.forall(end < _) then next = Some(end)
+    next
+
+  def reset(): Unit =
+    vehicles.indices.foreach(cancelMove)
+    vehicles.foreach(_.reset(clock))
+
+  /** Velocity of the air, NED, m/s. */
+  def setWind(windNed: Vector3): Unit =
+    wind = windNed
+    vehicles.foreach(_.setWind(windNed))
+
+  private def nextTurn: Option[(Instant, Int)] =
+    var next = Option.empty[(Instant, Int)]
+    for vehicle <- moves.indices; move <- moves(vehicle) do
+      if next.forall(move.dueAt < _._1) then next = Some((move.dueAt, vehicle))
+    next
+
+  private def stepTo(to: Instant): Unit =
+    while nextStep <= to do
+      vehicles.foreach(_.step(nextStep))
+      nextStep = nextStep + stepLength
+    clock = clock.max(to)
+
+  private def takeTurn(vehicle: Int): Unit =
+    for running <- moves(vehicle) do
+      running.move.turn(vehicles(vehicle), clock.since(running.startedAt)) match
+        case Progress.Going(goal) =>
+          vehicles(vehicle).command(goal, clock)
+          goOn(vehicle, running)
+        case Progress.Idle                => goOn(vehicle, running)
+        case Progress.Ended(result, goal) =>
+          goal.foreach(vehicles(vehicle).command(_, clock))
+          end(vehicle, result)
+
+  private def goOn(vehicle: Int, running: Running): Unit =
+    moves(vehicle) = Some(running.copy(dueAt = clock + Move.Period))
+
+  private def end(vehicle: Int, result: Boolean): Unit =
+    moves(vehicle).foreach(running => ended += Ended(vehicle, running.token, result))
+    moves(vehicle) = None
+
+object World:
+  /** A move that has ended, and how: what its call answers. */
+  final case class Ended(vehicle: Int, token: Long, result: Boolean)
+
+  private case class Running(token: Long, move: Move, startedAt: Instant, dueAt: Instant)

@@ -1,0 +1,42 @@
+"""Prints every function that the official multirotor client calls, with its number of arguments: `name arity`.
+
+The client's methods are called one after another on a connection that only writes down what it is asked for.
+"""
+
+import inspect
+import logging
+
+import airsim
+
+logging.disable()
+
+
+class Called(Exception):
+    pass
+
+
+class Notebook:
+    def __init__(self):
+        self.functions = {}
+
+    def call(self, function, *arguments):
+        self.functions.setdefault(function, set()).add(len(arguments))
+        raise Called
+
+    call_async = call
+
+
+client = object.__new__(airsim.MultirotorClient)
+client.client = Notebook()
+for name, method in inspect.getmembers(client, inspect.ismethod):
+    wanted = [p for p in inspect.signature(method).parameters.values() if p.default is p.empty]
+    arguments = [{"K1": 0.0} if p.name == "distortion_params" else 1 for p in wanted]
+    if not name.startswith("_"):
+        try:
+            method(*arguments)
+        except Called:
+            pass
+
+for function, arities in sorted(client.client.functions.items()):
+    (arity,) = arities
+    print(function, arity)

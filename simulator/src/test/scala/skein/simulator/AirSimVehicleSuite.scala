@@ -1,0 +1,102 @@
+package skein.simulator
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.util.ByteString
+import scala.concurrent.Future
+import skein.policy.Action
+import skein.airsim.*
+import skein.link.*
+import skein.port.VehicleError
+import skein.rpc.{Framed, Framer, Message, RpcClient}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Answers to moves that are lost on a connection that lives. */
+class AirSimVehicleSuite extends munit.FunSuite:
+  private val address = Address("simulator", 41451)
+
+  /** The simulator's transport; of the messages that it sends, `isLost` takes away some. Messages are whole segments here.
+    */
+  private final class Lossy(transport: Transport, isLost: Message => Boolean) extends Transport:
+    def connect(to: Address) = transport.connect(to)
+    def listen(at: Address)  =
+      transport.listen(at).map(incoming => incoming.copy(flow = losing.via(incoming.flow)))
+
+    private def losing = Flow[ByteString]
+      .statefulMap(() => new Framer())(
+        (framer, bytes) =>
+          framer.offer(bytes)
+          val frames = Vector.unfold(framer): framer =>
+            framer.next() match
+              case Framed.Complete(frame) => Some((frame, framer))
+              case _                      => None
+          (framer, frames)
+        ,
+        _ => None
+      )
+      .mapConcat(identity)
+      .filterNot(frame => isLost(Message.fromServer(frame)))
+      .map(ByteString.fromArrayUnsafe)
+
+  /** Two moves 100 ms apart over a link of 40 ms there and back, and then nothing: when, in ms from the second's sending,
+    * and how the first ended, and what was said of lost answers.
+    */
+  private def firstOfTwo(isLost: Message => Boolean): (Long, Either[VehicleError, Boolean], Vector[String]) =
+    VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem = system
+        import system.dispatcher
+        val clock = Clock.ofNanos(VirtualTime.clock(system))
+        val link  =
+          LinkProfile.symmetric(skein.signal.LatencyProfile.parse("constant:40ms", Left(_)).toOption.get)
+        val network  = MemoryNetwork(NetworkPlan(links = Map(("controller", "simulator") -> link)), 1, clock)
+        val settings = SimulatorSettings(address = address)
+        var noted    = Vector.empty[String]
+        var lossy    = false
+        val client   = AirSimClient(RpcClient(network.host("controller"), address, clock), Span.ofMillis(500))
+        for
+          server <- SimulatorServer.start(
+            settings,
+            Lossy(network.host("simulator"), message => lossy && isLost(message)),
+            clock
+          )
+          multirotor <-
+            Multirotor.named(
+              client,
+              settings.world.vehicles.head.name
+            ).map(_.fold(e => fail(e.message), identity))
+          _ <- multirotor.enableApiControl()
+          _ <- multirotor.arm()
+          craft = AirSimVehicle(multirotor, noted :+= _)
+          _     = lossy = true
+          first = craft.act(Action.VelocityAt(5, 0, Metres(-20)), Span.ofSeconds(10))
+          _ <- after(Span.ofMillis(100).toDuration)(Future.unit)
+          sentAt = clock.now()
+          _      = craft.act(Action.VelocityAt(0, 5, Metres(-20)), Span.ofSeconds(10))
+          result <- first
+          endedAt = clock.now()
+          _ <- client.close()
+          _ <- server.close()
+        yield (endedAt.since(sentAt).toNanos / 1_000_000, result, noted)
+      .value
+
+  private def isMovesAnswer(message: Message): Boolean = message match
+    case Message.Reply(_, _, upack.False) => true
+    case _                                => false
+
+  test("a move that is replaced ends a round trip later, and nothing is taken for lost"):
+    assertEquals(firstOfTwo(_ => false), (40L, Right(false), Vector.empty))
+
+  test(
+    "where its answer is lost it is taken for replaced, once the next move has come and a further cancel has ended nothing"
+  ):
+    val (afterMs, result, noted) = firstOfTwo(isMovesAnswer)
+    assertEquals((afterMs, result, noted.size), (780L, Right(false), 1))
+
+  test("a vehicle that gives no sign of life is waited for, as long as the move lasts"):
+    val (afterMs, result, noted) = firstOfTwo(_ => true)
+    assert(afterMs > 10_000, s"$afterMs ms")
+    assert(result.left.exists { case VehicleError.TimedOut(_) => true; case _ => false }, result.toString)
+    assertEquals(noted, Vector.empty)

@@ -1,0 +1,55 @@
+package skein.simulator
+
+import scala.util.Random
+import skein.airsim.wire.MultirotorReading
+import upack.{Bool, Msg, Str}
+
+/** Fuzz by method, on the workbench: no sockets, no threads. What [[Siege]] does at length over sockets. */
+class MethodFuzzSuite extends munit.FunSuite:
+  private val vehicles = Seq("Evader", "Pursuer")
+  private val calls    = MethodFuzz.Calls(Simulation.methods, vehicles.head)
+
+  /** Every call is answered: at once, but for moves, which the next move of their vehicle or a cancellation ends. */
+  private def fuzz(all: Iterator[MethodFuzz.FuzzCall], clue: String): Int =
+    val bench  = Bench(vehicles, overload = Overload.Never).ready()
+    var tokens = Vector.empty[(Long, MethodFuzz.FuzzCall)]
+    var count  = 0
+    for call <- all do
+      tokens :+= bench.call(call.method, call.params*) -> call
+      count += 1
+      if count % 50 == 0 then
+        // Ends a step of physics, which may have been asked to last a day.
+        bench.tell("simPause", Bool(false))
+        bench.pass(0.003)
+        // An honest client beside it.
+        val reading = bench.now[MultirotorReading]("getMultirotorState", Str("Pursuer"))
+        assert(reading.timestamp == bench.simulation.world.now, clue)
+      if count % 1000 == 0 then
+        tokens = settle(bench, tokens, clue)
+    settle(bench, tokens, clue)
+    count
+
+  private def settle(
+      bench: Bench,
+      tokens: Vector[(Long, MethodFuzz.FuzzCall)],
+      clue: String
+  ): Vector[(Long, MethodFuzz.FuzzCall)] =
+    bench.tell("simPause", Bool(false))
+    vehicles.foreach(name => bench.tell("cancelLastTask", Str(name)))
+    for (token, call) <- tokens do
+      assert(bench.isAnswered(token), s"never answered: ${short(call)}, $clue")
+      for text <- bench.answerOf(token).left do
+        assert(!MethodFuzz.isDefect(text), s"$text: ${short(call)}, $clue")
+    Vector.empty
+
+  private def short(call: MethodFuzz.FuzzCall): String =
+    s"${call.method}(${call.params.map((value: Msg) => value.toString.take(60)).mkString(", ")})"
+
+  test("each parameter of each method nil, of another type, not finite, huge, deep: all are answered"):
+    val count = fuzz(calls.each, "each in turn")
+    assert(count > 5000, count)
+
+  test("20,000 random calls, with parameters missing and too many: all are answered"):
+    val seed   = 1L
+    val random = Random(seed)
+    assertEquals(fuzz(Iterator.fill(20_000)(calls.random(random)), s"seed $seed"), 20_000)

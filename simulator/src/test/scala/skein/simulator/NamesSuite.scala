@@ -1,0 +1,96 @@
+package skein.simulator
+
+import skein.airsim.wire.*
+import skein.airsim.{SensorKind, VehicleSettings, WorldSettings}
+import skein.units.*
+import upack.{Obj, Str}
+
+/** Which vehicle and which sensor a name means. */
+class NamesSuite extends munit.FunSuite:
+
+  private def north(bench: Bench, name: String): Double =
+    // Homes tell vehicles apart that stand still.
+    bench.now[GeoPoint]("getHomeGeoPoint", Str(name)).latitude
+
+  private val apart = Seq("Pursuer", "Evader", "Zebra").zipWithIndex.map((name, i) =>
+    VehicleSettings(name, Vector3(i * 1000.0, 0, 0))
+  )
+
+  test("vehicles are listed by the alphabet, and the first of them is meant by the empty name"):
+    val bench = Bench.of(apart*)
+    assertEquals(bench.now[Seq[String]]("listVehicles"), Seq("Evader", "Pursuer", "Zebra"))
+    assertEquals(north(bench, ""), north(bench, "Evader"))
+    assertNotEquals(north(bench, "Pursuer"), north(bench, "Evader"))
+
+  test("the one with IsFpvVehicle goes first by the empty name"):
+    val bench = Bench.of(apart.map(vehicle => vehicle.copy(firstPerson = vehicle.name == "Pursuer"))*)
+    assertEquals(north(bench, ""), north(bench, "Pursuer"))
+
+  test("a vehicle type is known in any case"):
+    for kind <- Seq("simpleflight", "SIMPLEFLIGHT", "SimpleFlight") do
+      val world = WorldSettings(Vector(VehicleSettings("A", vehicleType = kind)))
+      assertEquals(SimulatorSettings.supported(world), Right(world))
+    assert(SimulatorSettings.supported(WorldSettings(Vector(VehicleSettings(
+      "A",
+      vehicleType = "PX4"
+    )))).isLeft)
+
+  private val sensors = Seq(
+    ("getImuData", "imu", "IMU"),
+    ("getGpsData", "gps", "gps"),
+    ("getBarometerData", "barometer", "barometer"),
+    ("getMagnetometerData", "magnetometer", "magnetometer")
+  )
+
+  test("a sensor is known by its name or by none; another name is told in AirSim's words"):
+    val bench = Bench()
+    for (method, name, kind) <- sensors do
+      assert(bench.answerOf(bench.call(method, Str(name), Str(""))).isRight)
+      assert(bench.answerOf(bench.call(method, Str(""), Str(""))).isRight)
+      for wrong <- Seq("nosuch", name.toUpperCase(java.util.Locale.ROOT)) do
+        assertEquals(
+          bench.error(method, Str(wrong), Str("")),
+          Rpclib.threw(method, 2, s"No $kind with name $wrong exist on vehicle")
+        )
+
+  test("sensors that the settings name take the place of the default ones of their kind"):
+    val bench =
+      Bench.of(VehicleSettings("A", sensors = SensorKind.Default - "imu" + ("Imu1" -> SensorKind.Imu)))
+    assert(bench.answerOf(bench.call("getImuData", Str("Imu1"), Str(""))).isRight)
+    assert(bench.error("getImuData", Str("imu"), Str("")).contains("No IMU with name imu exist on vehicle"))
+
+  test(
+    "rotor states say thrust and torque as at sea level, the torque by the turning direction, the speed never negative"
+  ):
+    val bench  = Bench().hovering(-20)
+    val answer = bench.answerOf(bench.call("getRotorStates", Str(""))).toOption.get
+    assertEquals(answer.asInstanceOf[Obj].value.keys.toSeq, Seq[upack.Msg](Str("rotors"), Str("timestamp")))
+    val rotors = upickle.default.readBinary[RotorStates](answer).rotors
+    // The hover control at this altitude is 0.5947 of 4.1794 N.
+    rotors.foreach(rotor => assertEqualsDouble(rotor.thrust, 0.5947 * 4.1794, 1e-3))
+    assertEquals(rotors.map(_.torque_scaler.sign.toInt), Seq(-1, -1, 1, 1))
+    rotors.foreach(rotor => assertEqualsDouble(math.abs(rotor.torque_scaler), 0.5947 * 0.05556, 1e-5))
+    rotors.foreach(rotor => assertEqualsDouble(rotor.speed, math.sqrt(0.5947) * 669.857, 0.05))
+
+  test(
+    "the GPS is silent for a second after the start and after a reset; then its dilutions fall from 100 to 0.1"
+  ):
+    val bench = Bench()
+    def gps   = bench.now[GpsData]("getGpsData", Str(""), Str(""))
+    for _ <- 1 to 2 do
+      bench.pass(0.99)
+      val silent = gps
+      assert(!silent.is_valid)
+      assertEquals(silent.gnss.geo_point, GeoPoint(0, 0, 0))
+      assertEquals(silent.gnss.fix_type, 0)
+      bench.pass(0.02)
+      val first = gps
+      assert(first.is_valid)
+      assertEquals(first.gnss.fix_type, 0)
+      assertEqualsDouble(first.gnss.eph, 0.1 + 99.9 * math.exp(-1.01 / 0.9), 0.01)
+      assertEqualsDouble(first.gnss.geo_point.altitude, 122, 0.01)
+      bench.pass(9)
+      val settled = gps
+      assertEqualsDouble(settled.gnss.eph, 0.1, 0.01)
+      assertEquals(settled.gnss.fix_type, 3)
+      bench.tell("reset")

@@ -1,0 +1,313 @@
+package skein.simulator
+
+import java.io.IOException
+import java.net.{InetAddress, Socket}
+import java.nio.file.Files
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
+import java.util.concurrent.{ConcurrentLinkedQueue, Semaphore}
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.util.ByteString
+import scala.concurrent.Await
+import scala.concurrent.duration.*
+import scala.jdk.CollectionConverters.*
+import scala.util.Random
+import skein.link.{Address, TcpTransport}
+import skein.rpc.*
+import skein.units.*
+import upack.{Msg, Null, Str}
+
+/** The built-in simulator besieged over loopback sockets, beside an honest client that polls a vehicle's state: fuzz by
+  * method first, then each attack on its own. Every row says how long the honest client waited while it lasted, and
+  * after the attackers had left.
+  *
+  * Three processes, since a greedy client is not in the server's: this one is the server (its workers unlimited, for
+  * endless moves hold AirSim's workers for ever, by its design) and the honest client, the attackers run in a second.
+  *
+  * Arguments: calls of the fuzz (default 1,000,000), seconds for each attack (default 20), seed (default 1).
+  */
+object Siege:
+  def main(args: Array[String]): Unit =
+    val calls                 = args.headOption.fold(1_000_000)(_.toInt)
+    val seconds               = args.lift(1).fold(20)(_.toInt)
+    val seed                  = args.lift(2).fold(1L)(_.toLong)
+    given system: ActorSystem = ActorSystem("siege")
+    val settings = SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never)
+    val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
+    val honest   = Honest(server.address.port)
+    println(s"seed $seed; honest client: getMultirotorState every 5 ms; waits in ms")
+    println(
+      f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s ${"max"}%7s | 2 s after: ${"p99"}%6s ${"max"}%7s | held MiB"
+    )
+    def row(what: String)(attack: => String): Unit =
+      honest.reset()
+      val said   = attack
+      val during = honest.reset()
+      Thread.sleep(2000)
+      val _ = honest.reset()
+      Thread.sleep(3000)
+      val after = honest.reset()
+      val held  = server.stats.mostHeldBytes / 1048576.0
+      println(
+        f"$what%-12s ${during.length}%6d ${at(during, 0.5)}%6.1f ${at(during, 0.99)}%6.1f ${at(during, 1)}%7.1f |" +
+          f"            ${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of ${settings.limits.heldBytes >> 20}  $said"
+      )
+    row("nobody") { Thread.sleep(5000); "" }
+    row("fuzz"):
+      val folder = Files.createTempDirectory("siege")
+      val grid   = folder.resolve("grid.binvox")
+      try
+        val said = child("fuzz", server.address.port, calls, seed, grid.toString)
+        s"$said; voxel grid written: ${Files.exists(grid)}; heap ${heapMiB()} MiB"
+      finally
+        Files.deleteIfExists(grid): Unit
+        Files.delete(folder)
+    for attack <- Seq("pipelining", "colliding", "unfinished", "idle", "deaf") do
+      row(attack)(s"${child(attack, server.address.port, seconds, seed)}; heap ${heapMiB()} MiB")
+    println(server.stats)
+    println(s"simulation failed: ${server.failed.value}; honest answers wrong: ${honest.wrong}")
+    honest.stop()
+    Await.result(server.close(), 10.seconds)
+    val _ = Await.result(system.terminate(), 20.seconds)
+
+  private def at(sorted: Array[Double], quantile: Double): Double =
+    if sorted.isEmpty then Double.NaN
+    else sorted(math.min((quantile * sorted.length).toInt, sorted.length - 1))
+
+  /** What is alive, after a collection. */
+  private def heapMiB(): Long =
+    System.gc()
+    (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20
+
+  private def child(attack: String, port: Int, amount: Int, seed: Long, more: String*): String =
+    val java    = ProcessHandle.current.info.command.get
+    val command = Seq(
+      java,
+      "--add-modules",
+      "jdk.incubator.vector",
+      "-Xmx1g",
+      "-cp",
+      System.getProperty("java.class.path"),
+      "skein.simulator.Attackers",
+      attack,
+      s"$port",
+      s"$amount",
+      s"$seed"
+    ) ++ more
+    val process = ProcessBuilder(command.asJava).redirectErrorStream(true).start()
+    val said = String(process.getInputStream.readAllBytes())
+    val code = process.waitFor()
+    said.linesIterator.filterNot(_.startsWith("WARNING")).mkString(" ") + (if code == 0 then ""
+                                                                           else s" EXIT $code")
+
+  /** Polls in a thread of its own; waits are in ms. */
+  private final class Honest(port: Int):
+    private val waits      = ConcurrentLinkedQueue[Double]()
+    private val stopped    = AtomicBoolean()
+    @volatile var wrong    = 0
+    private val connection = Connection(port)
+    private val thread     = Thread.ofPlatform().daemon().start: () =>
+      var id = 0L
+      while !stopped.get do
+        val start = System.nanoTime()
+        id += 1
+        connection.ask(id, "getMultirotorState", Seq(Str("")))
+        connection.reply() match
+          case Message.Reply(answered, Null, _) if answered == id => ()
+          case _                                                  => wrong += 1
+        val _ = waits.add((System.nanoTime() - start) * 1e-6)
+        Thread.sleep(5)
+
+    /** The waits since this was asked before, sorted. */
+    def reset(): Array[Double] =
+      Iterator.continually(Option(waits.poll())).takeWhile(_.nonEmpty).flatten.toArray.sorted
+
+    def stop(): Unit =
+      stopped.set(true)
+      thread.join()
+
+/** A blocking connection. */
+private final class Connection(port: Int):
+  private val socket  = Socket(InetAddress.getLoopbackAddress, port)
+  private val framer  = new Framer()
+  private val writer  = new MessageWriter
+  private val segment = new Array[Byte](65536)
+
+  def ask(id: Long, method: String, params: Seq[Msg]): Unit =
+    writer.request(id, method, params)
+    send(writer.take().toArrayUnsafe())
+
+  def send(bytes: Array[Byte]): Unit = socket.getOutputStream.write(bytes)
+
+  /** The next reply; [[IOException]] when closed. */
+  def reply(): Message =
+    framer.next() match
+      case Framed.Complete(frame)   => Message.fromServer(frame)
+      case Framed.Malformed(reason) => throw IOException(reason)
+      case Framed.NeedsMore         =>
+        val count = socket.getInputStream.read(segment)
+        if count < 0 then throw IOException("closed")
+        framer.offer(ByteString.fromArray(segment, 0, count))
+        reply()
+
+  def close(): Unit = socket.close()
+
+/** The other side of [[Siege]], in a process of its own; loopback only. Arguments: attack, port, amount, seed; for the fuzz, a file
+  * that voxel grids may be written to.
+  */
+object Attackers:
+  def main(args: Array[String]): Unit =
+    val Array(attack, port, amount, seed) = args.take(4): @unchecked
+    attack match
+      case "fuzz"       => fuzz(port.toInt, amount.toInt, seed.toLong, args.lift(4))
+      case "pipelining" => many(200, port.toInt, amount.toInt)(pipelining)
+      case "colliding"  => many(20, port.toInt, amount.toInt)(colliding)
+      case "unfinished" => many(200, port.toInt, amount.toInt)(unfinished)
+      case "idle"       => many(256, port.toInt, amount.toInt)(_ => Thread.sleep(200))
+      case "deaf"       => many(200, port.toInt, amount.toInt)(deaf)
+    // Leaves as a program does that is killed: with calls under way.
+    Runtime.getRuntime.halt(0)
+
+  /** So many connections at once, each doing this again and again, and connecting again when it is closed. */
+  private def many(connections: Int, port: Int, seconds: Int)(act: Connection => Unit): Unit =
+    val end  = System.nanoTime() + seconds * 1_000_000_000L
+    val acts = AtomicLong()
+    val lost = AtomicLong()
+    val all  =
+      for _ <- 1 to connections yield Thread.ofVirtual().start: () =>
+        while System.nanoTime() < end do
+          try
+            val connection = Connection(port)
+            try
+              while System.nanoTime() < end do
+                act(connection)
+                val _ = acts.incrementAndGet()
+            finally if System.nanoTime() < end then connection.close()
+          catch
+            case _: IOException =>
+              val _ = lost.incrementAndGet()
+              Thread.sleep(10)
+    Thread.sleep(math.max(0, (end - System.nanoTime()) / 1_000_000))
+    println(s"${acts.get} times, $connections connections, closed on them ${lost.get} times")
+    val _ = all
+
+  private val burst: Array[Byte] =
+    val writer = new MessageWriter
+    for id <- 0 until 256 do writer.request(id, "getMultirotorState", Seq(Str("")))
+    writer.take().toArray
+
+  private def pipelining(connection: Connection): Unit =
+    connection.send(burst)
+    for _ <- 0 until 256 do connection.reply()
+
+  private def deaf(connection: Connection): Unit =
+    connection.send(burst)
+
+  /** 40,000 keys of equal hashes: Aa and BB have the same. */
+  private lazy val collisions: Array[Byte] =
+    val out  = java.io.ByteArrayOutputStream()
+    val keys = Iterator.range(0, 40_000).map(i =>
+      (0 until 16).map(bit => if (i >> bit & 1) == 1 then "Aa" else "BB").mkString
+    )
+    out.write(Array[Byte](
+      0x94.toByte,
+      0,
+      1,
+      0xa4.toByte,
+      'p',
+      'i',
+      'n',
+      'g',
+      0x91.toByte,
+      0xde.toByte,
+      0x9c.toByte,
+      0x40
+    ))
+    for key <- keys do
+      out.write(Array[Byte](0xd9.toByte, 32))
+      out.write(key.getBytes)
+      out.write(1)
+    out.toByteArray
+
+  private def colliding(connection: Connection): Unit =
+    connection.send(collisions)
+    val _ = connection.reply()
+
+  /** 3.9 MB of a message of 4 MB. */
+  private val begun: Array[Byte] =
+    val bytes = new Array[Byte](3_900_000)
+    Array[Byte](
+      0x94.toByte,
+      0,
+      1,
+      0xa4.toByte,
+      'p',
+      'i',
+      'n',
+      'g',
+      0x91.toByte,
+      0xc6.toByte,
+      0,
+      0x3d,
+      0x09,
+      0
+    ).copyToArray(bytes)
+    bytes
+
+  private def unfinished(connection: Connection): Unit =
+    connection.send(begun)
+    val _ = connection.reply()
+
+  private def fuzz(port: Int, calls: Int, seed: Long, file: Option[String]): Unit =
+    val lanes   = 8
+    val left    = AtomicLong(calls)
+    val ended   = AtomicLong()
+    val refused = AtomicLong()
+    val defects = ConcurrentLinkedQueue[String]()
+    val start   = System.nanoTime()
+    val threads =
+      for lane <- 0 until lanes yield Thread.ofPlatform().start: () =>
+        val random     = Random(seed * 1000 + lane)
+        val source     = MethodFuzz.Calls(Simulation.methods, "SimpleFlight", file)
+        val connection = Connection(port)
+        // Of the largest messages some 80 fit into what a server holds for all.
+        val window = Semaphore(16)
+        val mine   = AtomicLong()
+        val reader = Thread.ofPlatform().daemon().start: () =>
+          while true do
+            connection.reply() match
+              case Message.Reply(_, error, _) =>
+                ended.incrementAndGet(): Unit
+                mine.decrementAndGet(): Unit
+                if error != Null then
+                  refused.incrementAndGet(): Unit
+                  val text = Message.errorText(error)
+                  if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
+                window.release()
+              case _ => ()
+        var id = 0L
+        while left.getAndDecrement() > 0 do
+          val call = source.random(random)
+          while !window.tryAcquire(20, java.util.concurrent.TimeUnit.MILLISECONDS) do
+            // Moves of its own wait, or a step of a day: both are ended.
+            connection.ask(1_000_000_000L, "simPause", Seq(upack.Bool(false)))
+            connection.ask(1_000_000_000L, "cancelLastTask", Seq(Str("")))
+            ended.addAndGet(-2): Unit
+            mine.addAndGet(2): Unit
+          id += 1
+          mine.incrementAndGet(): Unit
+          connection.ask(id, call.method, call.params)
+        var patience = 500
+        while mine.get > 0 && patience > 0 do
+          connection.ask(1_000_000_000L, "simPause", Seq(upack.Bool(false)))
+          connection.ask(1_000_000_000L, "cancelLastTask", Seq(Str("")))
+          ended.addAndGet(-2): Unit
+          mine.addAndGet(2): Unit
+          Thread.sleep(20)
+          patience -= 1
+        if mine.get > 0 then defects.add(s"${mine.get} calls never answered on connection $lane"): Unit
+        val _ = reader
+    threads.foreach(_.join())
+    val took = (System.nanoTime() - start) * 1e-9
+    println(
+      f"${ended.get} calls ended, ${refused.get} of them refused, in $took%.0f s; defects: ${defects.asScala.toSeq.distinct.mkString("; ")}"
+    )

@@ -1,0 +1,78 @@
+package skein.simulator
+
+import java.nio.charset.StandardCharsets.US_ASCII
+import java.nio.file.{Files, Path}
+import skein.units.{Quaternion, Vector3}
+
+class VoxelGridSuite extends munit.FunSuite:
+
+  private val ground = Scene(Seq.empty)
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("voxels"),
+    folder =>
+      Files.list(folder).forEach(Files.delete(_))
+      Files.delete(folder)
+  )
+
+  /** The header's lines, and the cells. */
+  private def read(file: Array[Byte]): (Seq[String], Vector[Boolean]) =
+    val text   = String(file, US_ASCII)
+    val start  = text.indexOf("data\n") + 5
+    val header = text.take(start).linesIterator.toSeq
+    val cells  =
+      file.drop(start).grouped(2).flatMap(pair => Vector.fill(pair(1) & 0xff)(pair(0) == 1)).toVector
+    (header, cells)
+
+  test("the ground fills what lies below it, in the order of the format"):
+    val (header, cells) = read(VoxelGrid.render(ground, Vector3(0, 0, 0), (2, 6, 4), 1).toOption.get)
+    assertEquals(header.take(2), Seq("#binvox 1", "dim 2 4 6"))
+    assertEquals(cells.size, 2 * 4 * 6)
+    // x fastest, then up, then y: of four layers around z = 0 the one at the ground's height is touched by it.
+    for j <- 0 until 6; k <- 0 until 4; i <- 0 until 2 do
+      assertEquals(cells(i + 2 * (k + 4 * j)), k <= 2, s"$i $j $k")
+
+  test("a vehicle fills cells in the air"):
+    val flying     = Scene(Seq(Scene.Body(Vector3(3, 0, -50), Quaternion.Identity, Vector3(0.3, 0.3, 0.05))))
+    val (_, cells) = read(VoxelGrid.render(flying, Vector3(0, 0, -50), (10, 10, 10), 1).toOption.get)
+    val filled     = cells.indices.filter(cells)
+    assert(filled.nonEmpty && filled.size < 30, s"${filled.size} cells")
+    assert(filled.contains(8 + 10 * (5 + 10 * 5)))
+
+  test("the most vehicles fill a cell each and little more"):
+    val body  = Scene.Body(Vector3(0, 0, -500), Quaternion.Identity, Vector3(0.3, 0.3, 0.05))
+    val crowd = Scene(Seq.tabulate(256)(i => body.copy(centre = Vector3(i % 16, i / 16.0, -500))))
+    def cells(scene: Scene) =
+      read(VoxelGrid.render(scene, Vector3(0, 0, -500), (128, 128, 128), 1).toOption.get)._2.count(identity)
+    assertEquals(cells(ground), 0)
+    val filled = cells(crowd)
+    assert(filled >= 256 && filled < 256 * 27, s"$filled cells")
+
+  test("long runs are split at 255"):
+    val (_, cells) = read(VoxelGrid.render(ground, Vector3(0, 0, -500), (10, 10, 10), 1).toOption.get)
+    assertEquals(cells, Vector.fill(1000)(false))
+
+  test("a grid without cells, or with too many, is refused"):
+    for (size, edge) <- Seq(
+        (0, 1, 1)            -> 1f,
+        (10, 10, 10)         -> 0f,
+        (10, 10, 10)         -> -1f,
+        (1000, 1000, 1000)   -> 1f,
+        (Int.MaxValue, 1, 1) -> 1e-30f
+      )
+    do
+      assert(VoxelGrid.render(ground, Vector3.Zero, size, edge).isLeft, s"$size $edge")
+
+  folder.test("a grid is written to a new file and over an older grid, and over nothing else"): folder =>
+    val grid  = VoxelGrid.render(ground, Vector3.Zero, (4, 4, 4), 1).toOption.get
+    val fresh = folder.resolve("a.binvox")
+    assert(VoxelGrid.save(fresh.toString, grid))
+    assert(VoxelGrid.save(fresh.toString, grid.take(40)))
+    assertEquals(Files.size(fresh), 40L)
+    val diary = Files.writeString(folder.resolve("diary.binvox"), "dear diary")
+    assert(!VoxelGrid.save(diary.toString, grid))
+    assertEquals(Files.readString(diary), "dear diary")
+    assert(!VoxelGrid.save(folder.resolve("profile").toString, grid))
+    val link = Files.createSymbolicLink(folder.resolve("link.binvox"), fresh)
+    assert(!VoxelGrid.save(link.toString, grid))
+    assert(!VoxelGrid.save(folder.resolve("none").resolve("a.binvox").toString, grid))
+    assert(!VoxelGrid.save("\u0000.binvox", grid))
