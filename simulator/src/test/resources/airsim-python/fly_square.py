@@ -1,41 +1,17 @@
 """Flies the simulator at a port of this machine with the official AirSim client, and checks what it answers."""
 
-import math
 import sys
 import time
 
 import airsim
-from msgpackrpc.error import RPCError
-
-checks = 0
-
-
-def check(what, holds, found=None):
-    global checks
-    if not holds:
-        sys.exit(f"FAILED: {what}; found {found}")
-    checks += 1
-    print(f"ok: {what}" + ("" if found is None else f" ({found})"))
-
-
-def near(a, b, tolerance):
-    return abs(a - b) <= tolerance
+from checking import arrives, check, near, passed, refusal
 
 
 def place(vector):
     return f"{vector.x_val:.2f} {vector.y_val:.2f} {vector.z_val:.2f}"
 
 
-def error_of(call):
-    try:
-        call()
-    except RPCError as error:
-        return str(error.args[0])
-    return "no error"
-
-
 client = airsim.MultirotorClient(port=int(sys.argv[1]))
-started = time.monotonic()
 
 # Connection
 client.confirmConnection()
@@ -60,9 +36,8 @@ check("takes off", state.landed_state == airsim.LandedState.Flying)
 up = state.kinematics_estimated.position
 check("climbs as AirSim does", near(up.z_val, -1.6, 0.3), place(up))
 for x, y in [(5, 0), (5, 5), (0, 5), (0, 0)]:
-    reached = client.moveToPositionAsync(x, y, -5, 3).get()
-    here = client.simGetGroundTruthKinematics().position
-    check(f"flies to corner {x} {y}", reached is True and math.dist((here.x_val, here.y_val), (x, y)) < 1.5, place(here))
+    check("a move to a place ends well", client.moveToPositionAsync(x, y, -5, 3).get() is True)
+    arrives(client, f"flies to corner {x} {y}", (x, y, -5), 3, 1.5)
 
 # State and sensors
 client.hoverAsync().join()
@@ -137,19 +112,21 @@ check("continues for frames", client.getMultirotorState().timestamp - before == 
 client.simPause(False)
 
 # Errors
-wrong = error_of(lambda: client.getMultirotorState("Nope"))
+wrong = refusal(lambda: client.getMultirotorState("Nope"))
 check("a vehicle that is not there", "Vehicle API for 'Nope' is not available" in wrong, wrong)
-wrong = error_of(lambda: client.client.call("nosuch"))
+wrong = refusal(lambda: client.client.call("nosuch"))
 check("a function that is not there", wrong == "rpclib: server could not find function 'nosuch' with argument count 0.", wrong)
-wrong = error_of(lambda: client.client.call("ping", 1))
+wrong = refusal(lambda: client.client.call("ping", 1))
 check("too many arguments", "Expected: 1, got: 0" in wrong, wrong)
-wrong = error_of(lambda: client.getLidarData())
+wrong = refusal(lambda: client.getLidarData())
 check("a sensor that is not there", "No lidar with name  exist on vehicle" in wrong, wrong)
 
 # Pose, landing, reset
+client.simPause(True)
 client.simSetVehiclePose(airsim.Pose(airsim.Vector3r(4, 2, -2), airsim.Quaternionr()), True)
 here = client.simGetVehiclePose().position
 check("is put elsewhere", near(here.x_val, 4, 0.01) and near(here.y_val, 2, 0.01) and near(here.z_val, -2, 0.01), place(here))
+client.simPause(False)
 check("lands", client.landAsync().get() is True)
 touch = client.simGetCollisionInfo()
 check("touched the ground", touch.has_collided is True and touch.object_name == "Ground")
@@ -160,4 +137,4 @@ client.reset()
 check("reset: at its start", client.simGetVehiclePose().position.get_length() == 0)
 check("reset: no api control", client.isApiControlEnabled() is False)
 
-print(f"PASSED {checks} checks in {time.monotonic() - started:.1f} s")
+passed()
