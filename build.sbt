@@ -33,7 +33,12 @@ ThisBuild / Test / testForkedParallel := false
 ThisBuild / Test / javaOptions ++= Jvm.options
 ThisBuild / run / javaOptions ++= Jvm.options
 Global / onChangedBuildSource   := ReloadOnSourceChanges
-Global / concurrentRestrictions := Seq(Tags.limitAll(2), Tags.limit(Tags.ForkedTestGroup, 1))
+// Two at once, since many suites wait for sockets and clocks; those that measure time have the machine to themselves.
+Global / concurrentRestrictions := Seq(
+  Tags.limitAll(2),
+  Tags.limit(Tags.ForkedTestGroup, 2),
+  Tags.exclusive(TestGroups.Timing)
+)
 
 // No sockets, no wall clock, no whole flights: for while one works.
 addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")

@@ -12,7 +12,9 @@ import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 
-/** [[RunningSimulatorSimulation]] over real sockets and on the real clock, shortened. */
+/** [[RunningSimulatorSimulation]] over real sockets and on the real clock, shortened; the simulator's clock runs faster,
+  * since the ways to the starts are most of it.
+  */
 class RunningSimulatorLiveSuite extends munit.FunSuite:
   private given system: ActorSystem             = ActorSystem("RunningSimulatorLiveSuite")
   override def afterAll(): Unit                 = { val _ = Await.result(system.terminate(), 10.seconds) }
@@ -37,7 +39,11 @@ class RunningSimulatorLiveSuite extends munit.FunSuite:
     import system.dispatcher
     val transport = TcpTransport()
     val world     =
-      SimulatorSettings(WorldSettings(duel, text = WorldSettings.render(duel)), Address("127.0.0.1", 0))
+      SimulatorSettings(
+        WorldSettings(duel, text = WorldSettings.render(duel)),
+        Address("127.0.0.1", 0),
+        speed = 5
+      )
     def fly(rigs: FlightRigs, before: Vector[Recording]): Future[Vector[Recording]] =
       if before.size == settings.plans.size then Future.successful(before)
       else
