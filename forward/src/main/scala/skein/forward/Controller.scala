@@ -15,6 +15,12 @@ private[skein] final class DuelSight(count: Int):
   /** Headings sent last, rad. */
   val sent: Array[Double] = Array.ofDim[Double](count)
 
+  /** Which of each vehicle's decisions was sent last; they count from 1, the heading at the start is 0. */
+  val sentDecision: Array[Int] = Array.ofDim[Int](count)
+
+  /** The number of each vehicle's reading, which is that of its question. */
+  val reading: Array[Int] = Array.ofDim[Int](count)
+
   /** The step of the loop that each vehicle's reading belongs to; what a delay is drawn by. */
   val step: Array[Int] = Array.ofDim[Int](count)
 
@@ -28,7 +34,8 @@ private[skein] final class DuelSight(count: Int):
     for vehicle <- 0 until count do
       x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
       vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
-      sent(vehicle) = other.sent(vehicle); step(vehicle) = other.step(vehicle)
+      sent(vehicle) = other.sent(vehicle); sentDecision(vehicle) = other.sentDecision(vehicle)
+      step(vehicle) = other.step(vehicle); reading(vehicle) = other.reading(vehicle)
       validAtNs(vehicle) = other.validAtNs(vehicle)
     forecast = other.forecast
 
@@ -37,7 +44,14 @@ private[skein] final class DuelSight(count: Int):
     x(vehicle) = world.x(slot); y(vehicle) = world.y(slot)
     vx(vehicle) = world.vx(slot); vy(vehicle) = world.vy(slot)
     step(vehicle) = world.stepOf(vehicle, question)
+    reading(vehicle) = question
     validAtNs(vehicle) = world.validAtNs(slot)
+
+  /** Takes the headings sent to all vehicles until now. */
+  def takeSent(controllers: Array[Controller]): Unit =
+    for vehicle <- 0 until count do
+      sent(vehicle) = controllers(vehicle).sentHeading
+      sentDecision(vehicle) = controllers(vehicle).sentDecision
 
 /** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest sight, at
   * least an interval after the last, whenever a command may be sent.
@@ -71,6 +85,7 @@ private[skein] final class Controller(
   private var decided       = 0.0
   private var speed         = 0.0
   private var sent          = 0.0
+  private var sentNumber    = 0
   private var made, unused  = 0
 
   /** What the policy remembers. */
@@ -84,6 +99,9 @@ private[skein] final class Controller(
 
   /** Rad. */
   def sentHeading: Double = sent
+
+  /** Which decision that was, from 1; 0 before any was sent. */
+  def sentDecision: Int = sentNumber
 
   def decisions: Int = made
 
@@ -99,7 +117,7 @@ private[skein] final class Controller(
     decided = world.agents(agent).startHeadingRad
     memory = ObservingPolicy.initialOf(policy)
     speed = world.agents(agent).speed
-    sent = decided
+    sent = decided; sentNumber = 0
     made = 0; unused = 0; turned = 0
     goOn()
 
@@ -149,6 +167,7 @@ private[skein] final class Controller(
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
     made += 1
+    world.decided(agent, elapsed, sight)
 
   private def heading(policy: Policy, sight: DuelSight, elapsedS: Double): Double =
     upon = sight
@@ -184,13 +203,15 @@ private[skein] final class Controller(
       sight.vx(vehicle) = kinematics.velocityNed.x; sight.vy(vehicle) = kinematics.velocityNed.y
 
   /** Notes that a decision was sent without any message. */
-  def sentNow(): Unit = sent = decided
+  def sentNow(): Unit =
+    sent = decided
+    sentNumber = made
 
   private def send(step: Int): Unit =
     mayCommand = false
     mayCommandAt = world.nowNs + minNs
     outstanding += 1
-    sent = decided
+    sentNow()
     onSent.sent(agent, world.send(agent, decided, speed, step), decided, speed)
     goOn()
 

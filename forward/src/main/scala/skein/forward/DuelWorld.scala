@@ -152,13 +152,19 @@ private[skein] final class DuelWorld(
       if handoverNs == 0 then acts(agent, number) else schedule(time + handoverNs, Acts, agent, number)
 
   def acts(agent: Int, number: Int): Unit =
+    observer.acts(agent, number, time)
     command(agent, headings(slot(agent, number)), speeds(slot(agent, number)))
 
   /** Commands a vehicle without any message. */
   def commandNow(agent: Int, headingRad: Double, speedMps: Double): Unit =
     observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
+    observer.acts(agent, commanded(agent), time)
     commanded(agent) += 1
     command(agent, headingRad, speedMps)
+
+  /** A decision was made. */
+  def decided(agent: Int, elapsedS: Double, upon: DuelSight): Unit =
+    observer.decided(agent, time, elapsedS, upon)
 
   private def command(agent: Int, headingRad: Double, speedMps: Double): Unit =
     vehicles(agent).advance(nowS)
@@ -215,8 +221,14 @@ trait LoopObserver:
   /** A vehicle is here when the world is scored, once a period. */
   def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
 
-  /** A command was sent. */
+  /** It was decided for a vehicle, for the first time or so long after the decision before. */
+  private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: DuelSight): Unit = ()
+
+  /** A command was sent: the newest decision for the vehicle. */
   def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()
+
+  /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's dead time. */
+  def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 
 object LoopObserver:
   val Nobody: LoopObserver = new LoopObserver {}

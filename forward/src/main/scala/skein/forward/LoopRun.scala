@@ -36,7 +36,7 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld
   def tick(vehicle: Int, number: Int): Unit =
     for vehicle <- world.vehicles.indices do
       sight.take(world, vehicle, world.readNow(vehicle, number))
-      sight.sent(vehicle) = controllers(vehicle).sentHeading
+    sight.takeSent(controllers)
     for agent <- world.vehicles.indices do
       controllers(agent).decide(sight)
       controllers(agent).sentNow()
@@ -64,7 +64,7 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: D
     if vehicle + 1 < world.count then
       val _ = world.ask(0, vehicle + 1, step)
     else
-      for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      sight.takeSent(controllers)
       for controller <- controllers do controller.offer(sight)
       goOn(step)
 
@@ -120,7 +120,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWor
         sight.take(world, read, its)
         its = before(world.slot(read, its))
         read -= 1
-      for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
+      sight.takeSent(controllers)
       controllers(agent).offer(sight)
       ended()
 

@@ -51,9 +51,8 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
   override def due(number: Int): Unit =
     world.schedule(periodNs / 2 + (number + 1) * periodNs, DuelWorld.Due, 0, number + 1)
     if !known.contains(false) then
-      for vehicle <- world.vehicles.indices do
-        sight.sent(vehicle) = controllers(vehicle).sentHeading
-        sight.step(vehicle) = number
+      sight.takeSent(controllers)
+      java.util.Arrays.fill(sight.step, number)
       sight.forecast = Some(forecast)
       for controller <- controllers do controller.offer(sight)
 

@@ -49,7 +49,7 @@ private[skein] final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld
   private def join(): Unit =
     java.util.Arrays.fill(renewed, false)
     patienceEnds = StreamRun.NoEnd
-    for vehicle <- world.vehicles.indices do sight.sent(vehicle) = controllers(vehicle).sentHeading
+    sight.takeSent(controllers)
     for controller <- controllers do controller.offer(sight)
 
   private def all(flags: Array[Boolean]): Boolean =

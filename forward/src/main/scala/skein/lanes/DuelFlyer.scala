@@ -131,13 +131,13 @@ private final class TimetableFlyer(
   protected def canFly(link: Delays): Boolean = true
 
   protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
-    protected val kernel: TimetableKernel = TimetableKernel(duel, timing, model, pursuers, evaders)
-    private var timetable: Timetable      = null
+    protected val kernel: TimetableDuels = TimetableDuels(duel, timing, model, pursuers, evaders)
+    private var timetable: Timetable     = null
 
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then
         val (link, key) = (worlds.link(world), worlds.key(world))
-        timetable = timetables.getOrMake(link, key)(Timetable.of(duel.durationS, timing, link, key, model))
+        timetable = timetables.getOrMake(link, key)(Timetable.of(2, duel.durationS, timing, link, key, model))
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 

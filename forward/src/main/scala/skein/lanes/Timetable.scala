@@ -1,51 +1,93 @@
 package skein.lanes
 
-import skein.forward.{Delays, Duel, Duelist, LoopTiming, Rollout, Vehicle, VelocityResponse}
-import skein.policy.{Decided, PlanarObservation, ObservingPolicy, Policy}
+import scala.collection.mutable
+import skein.forward.{
+  Delays,
+  DuelSight,
+  Duelist,
+  Engagement,
+  LoopObserver,
+  LoopTiming,
+  Rollout,
+  Vehicle,
+  VelocityResponse
+}
+import skein.policy.{Assignment, KeepHeading, Role}
 
 /** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where the
   * vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies decide.
   *
-  * It is what [[Rollout]] does: the episode is flown once with vehicles that answer with the number of the reading
-  * instead of a position, and policies that answer with the number of the decision instead of a heading. So it holds for
-  * every loop whose decisions rest on readings as they were made.
+  * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer notes what
+  * happens. So it holds for every loop whose decisions rest on readings as they were made.
   *
+  * @param vehicles
+  *   how many fly
   * @param operations
-  *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle or agent; then places
+  *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then places
   * @param times
   *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
-  *   time since the one before, and the ages of the own and of the opponent's reading; of a score, the time; s
+  *   time since the one before, and in a duel the ages of the own and of the opponent's reading; of a score, the time; s
+  * @param pictures
+  *   what is decided and scored upon: the places of all vehicles' readings, one picture after the other
   * @param readings
   *   places that the readings of one vehicle need at a time
   * @param headings
   *   the same for the headings of one vehicle
   */
 private[skein] final class Timetable private (
+    val vehicles: Int,
     val operations: Array[Int],
     val times: Array[Float],
+    val pictures: Array[Int],
     val readings: Int,
     val headings: Int
 ):
   def size: Int = operations.length / Timetable.Fields
 
+  /** About so much memory is held, bytes. */
+  def bytes: Long = 4L * (operations.length + times.length + pictures.length)
+
 private[skein] object Timetable:
-  val Fields: Int  = 7
+  val Fields: Int  = 6
   val Numbers: Int = 3
 
-  /** The timetable of a world of this key, for vehicles of this kind. */
-  def of(durationS: Double, timing: LoopTiming, link: Delays, key: Int, model: TimetableModel): Timetable =
-    val notes               = Notes(model)
-    def duelist(agent: Int) = Duelist(1, agent, 0, 0, 0, notes.policies(agent))
-    Rollout(Duel(duelist(1), duelist(0), durationS), timing, link, notes).fly(key, 0.0, notes): Unit
-    Compiler(notes, durationS, model).result
+  /** The timetable of a world of this key, for so many vehicles of this kind. */
+  def of(
+      vehicles: Int,
+      durationS: Double,
+      timing: LoopTiming,
+      link: Delays,
+      key: Int,
+      model: TimetableModel
+  ): Timetable =
+    val notes = Notes(vehicles, model)
+    Rollout(still(vehicles, durationS), timing, link, Still(model)).fly(key, observer = notes): Unit
+    Compiler(notes, vehicles, durationS, model).result
 
   import TimetableKernel.{ACT, DECIDE, LOOK, SCORE}
 
-  /** Flies along and notes what happens, in the order in which it does. */
-  private final class Notes(model: TimetableModel) extends VelocityResponse, Rollout.Listener:
+  /** An engagement in which nothing moves; its roles and rivals decide no time. */
+  private def still(vehicles: Int, durationS: Double): Engagement = Engagement(
+    Vector.fill(vehicles)(Duelist(0, 0, 0, 0, 0, KeepHeading)),
+    Role.Evader +: Vector.fill(vehicles - 1)(Role.Pursuer),
+    Assignment(Vector.tabulate(vehicles)(self => Vector(if self == 0 then 1 else 0))),
+    durationS
+  )
+
+  private final class Still(model: TimetableModel) extends VelocityResponse:
+    override def handoverS: Double = model.handoverS
+    def create(): Vehicle          = new Vehicle:
+      def start(x: Double, y: Double, z: Double): Unit = ()
+      def command(vx: Double, vy: Double): Unit        = ()
+      def advance(timeS: Double): Unit                 = ()
+      def x: Double                                    = 0
+      def y: Double                                    = 0
+      def vx: Double                                   = 0
+      def vy: Double                                   = 0
+
+  /** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle. */
+  private final class Notes(vehicles: Int, model: TimetableModel) extends LoopObserver:
     var size               = 0
-    var looks              = 0
-    private var now        = 0.0
     private var capacity   = 4096
     var kind: Array[Int]   = Array.ofDim[Int](capacity)
     var agent: Array[Int]  = Array.ofDim[Int](capacity)
@@ -54,11 +96,27 @@ private[skein] object Timetable:
     // Of a decision.
     var elapsedS, ownAgeS, opponentAgeS: Array[Double] = Array.ofDim[Double](capacity)
 
-    /** `LOOK`: the reading's number. `ACT`: the heading's. `DECIDE`: that of the heading before; the new one's is one more. */
+    /** `LOOK`: the reading's number. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one
+      * more.
+      */
     var number: Array[Int] = Array.ofDim[Int](capacity)
 
-    // `DECIDE` and `SCORE`: the numbers of the readings; `DECIDE`: that of the opponent's heading that is known.
-    var evaderSeen, pursuerSeen, opponent: Array[Int] = Array.ofDim[Int](capacity)
+    /** `DECIDE` and `SCORE`: the picture's number. */
+    var picture: Array[Int] = Array.ofDim[Int](capacity)
+
+    /** `DECIDE` in a duel: the number of the opponent's decision that is known. */
+    var opponent: Array[Int] = Array.ofDim[Int](capacity)
+
+    /** By vehicle: how many there are. */
+    val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
+
+    /** By picture, then by vehicle: the readings' numbers. */
+    val pictures: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
+
+    private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+    private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+    private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
+    private val placed     = Array.ofDim[Int](vehicles)
 
     private def note(what: Int, who: Int, time: Double, which: Int): Unit =
       if size == capacity then grow()
@@ -68,70 +126,74 @@ private[skein] object Timetable:
     private def grow(): Unit =
       capacity *= 2
       kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
-      evaderSeen = evaderSeen.padTo(capacity, 0); pursuerSeen = pursuerSeen.padTo(capacity, 0)
-      opponent = opponent.padTo(capacity, 0)
+      picture = picture.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
       atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
       ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
 
-    override def handoverS: Double = model.handoverS
+    private def look(vehicle: Int, timeS: Double): Int =
+      looks(vehicle) += 1
+      note(LOOK, vehicle, timeS, looks(vehicle))
+      looks(vehicle)
 
-    def create(): Vehicle = new Vehicle:
-      private var who                                  = 0
-      private var reading                              = 0
-      def start(x: Double, y: Double, z: Double): Unit = who = x.toInt
-      def command(vx: Double, vy: Double): Unit        =
-        note(ACT, who, now + model.deadTimeS, (StrictMath.atan2(vy, vx) / Turn).round.toInt)
-      def advance(timeS: Double): Unit =
-        now = timeS
-        reading = 0
-      def x: Double =
-        if reading == 0 then
-          looks += 1
-          reading = looks
-          note(LOOK, who, now, reading)
-        if who == 0 then reading else -reading * Pursuers
-      def y: Double  = 0
-      def vx: Double = 0
-      def vy: Double = 0
+    private def pictureOf(seen: Array[Int]): Int =
+      numberOf.getOrElseUpdate(
+        mutable.ArraySeq.make(seen), {
+          pictures += seen
+          pictures.size - 1
+        }
+      )
 
-    val policies: Vector[Policy] = Vector.tabulate(2): who =>
-      new ObservingPolicy[Unit]:
-        def initial: Unit                                          = ()
-        def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
-          val before = (seen.ownHeadingRad / Turn).round.toInt
-          note(DECIDE, who, now, before)
-          noteSeen(seen.dxM.abs)
-          opponent(size - 1) = (seen.opponentHeadingRad / Turn).round.toInt
-          elapsedS(size - 1) = seen.elapsedS
-          ownAgeS(size - 1) = seen.ownAgeS
-          opponentAgeS(size - 1) = seen.opponentAgeS
-          Decided((before + 1) * Turn, ())
+    override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
+      val seen = readingOf(vehicle)
+      while seen.size <= question do seen += 0
+      seen(question) = look(vehicle, atNs * 1e-9)
 
-    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit =
-      note(SCORE, 0, timeS, 0)
-      noteSeen(evaderX - pursuerX)
+    override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: DuelSight): Unit =
+      note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
+      decisions(vehicle) += 1
+      picture(size - 1) = pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+      elapsedS(size - 1) = elapsed
+      if vehicles == 2 then
+        opponent(size - 1) = upon.sentDecision(1 - vehicle)
+        ownAgeS(size - 1) = (atNs - upon.validAtNs(vehicle)) * 1e-9
+        opponentAgeS(size - 1) = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
 
-    private def noteSeen(both: Double): Unit =
-      val pursuer = (both / Pursuers).toInt
-      evaderSeen(size - 1) = (both - pursuer * Pursuers).toInt
-      pursuerSeen(size - 1) = pursuer
+    override def commanded(
+        vehicle: Int,
+        number: Int,
+        atNs: Long,
+        headingRad: Double,
+        speedMps: Double
+    ): Unit = decisionOf(vehicle) += decisions(vehicle)
 
-  /** Makes room for readings of the evader in a number that holds one of each. */
-  private val Pursuers = (1 << 24).toDouble
+    override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
+      note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number))
 
-  /** Heading that stands for one decision, rad: far above the rounding of an arc tangent, and a million make no turn. */
-  private val Turn = 1e-6
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+      placed(vehicle) = look(vehicle, timeS)
+      if vehicle == vehicles - 1 then
+        note(SCORE, 0, timeS, 0)
+        picture(size - 1) = pictureOf(placed.clone)
 
   /** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
     * tells each vehicle when what happens to it.
     */
-  private final class Compiler(notes: Notes, durationS: Double, model: TimetableModel):
+  private final class Compiler(notes: Notes, vehicles: Int, durationS: Double, model: TimetableModel):
     private val order    = inOrder
     private val scores   = notes.kind.iterator.take(notes.size).count(_ == SCORE)
     private val end      = endOf(scores)
-    private val readings = Array.fill(2)(Places(notes.looks + 1))
-    private val headings = Array.fill(2)(Places(notes.size + 1))
-    private val clocks   = Array.fill(2)(model.clock())
+    private val readings = Array.tabulate(vehicles)(vehicle => Places(notes.looks(vehicle) + 1))
+    private val headings = Array.tabulate(vehicles)(vehicle => Places(notes.decisions(vehicle) + 1))
+    private val clocks   = Array.fill(vehicles)(model.clock())
+
+    /** Readings that are decided upon; of others only places count. */
+    private val decidedUpon =
+      Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
+
+    /** The number of each picture among those that are told, or −1. */
+    private val told     = Array.fill(notes.pictures.size)(-1)
+    private val pictures = Array.newBuilder[Int]
+    private var count    = 0
 
     private val operations = Array.ofDim[Int](end * Fields)
     private val times      = Array.ofDim[Float](end * Numbers)
@@ -139,7 +201,7 @@ private[skein] object Timetable:
 
     def result: Timetable =
       for i <- 0 until end do findLastUses(order(i), i)
-      for agent <- 0 to 1 do headings(agent).take(0)
+      for heading <- headings do heading.take(0)
       for i <- 0 until end do
         val event = order(i)
         notes.kind(event) match
@@ -148,8 +210,10 @@ private[skein] object Timetable:
           case ACT    => act(event, i)
           case SCORE  => score(event, i)
       Timetable(
+        vehicles,
         java.util.Arrays.copyOf(operations, size * Fields),
         java.util.Arrays.copyOf(times, size * Numbers),
+        pictures.result(),
         readings.map(_.size).max,
         headings.map(_.size).max
       )
@@ -178,35 +242,55 @@ private[skein] object Timetable:
       val agent = notes.agent(event)
       notes.kind(event) match
         case DECIDE =>
-          readings(0).usedAt(notes.evaderSeen(event), at)
-          readings(1).usedAt(notes.pursuerSeen(event), at)
+          usedAt(notes.picture(event), at)
+          val seen = notes.pictures(notes.picture(event))
+          for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
           headings(agent).usedAt(notes.number(event), at)
-          headings(1 - agent).usedAt(notes.opponent(event), at)
+          if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
         case ACT   => headings(agent).usedAt(notes.number(event), at)
-        case SCORE =>
-          readings(0).usedAt(notes.evaderSeen(event), at)
-          readings(1).usedAt(notes.pursuerSeen(event), at)
-        case LOOK => ()
+        case SCORE => usedAt(notes.picture(event), at)
+        case LOOK  => ()
+
+    private def usedAt(picture: Int, at: Int): Unit =
+      val seen = notes.pictures(picture)
+      for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
+
+    private def releasePicture(picture: Int, at: Int): Unit =
+      val seen = notes.pictures(picture)
+      for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
+
+    /** Its number in the timetable; its readings keep their places until it is used for the last time. */
+    private def tell(picture: Int): Int =
+      if told(picture) < 0 then
+        val seen = notes.pictures(picture)
+        for vehicle <- 0 until vehicles do pictures += readings(vehicle).place(seen(vehicle))
+        told(picture) = count
+        count += 1
+      told(picture)
 
     private def look(event: Int): Unit =
       val vehicle = notes.agent(event)
       val reading = notes.number(event)
       if readings(vehicle).isUsed(reading) then
-        operation(LOOK, vehicle, readings(vehicle).take(reading))
+        operation(
+          LOOK,
+          vehicle,
+          readings(vehicle).take(reading),
+          if decidedUpon(vehicle)(reading) then 1 else 0
+        )
         happens(event, acts = false)
 
     private def decide(event: Int, at: Int): Unit =
-      val agent    = notes.agent(event)
-      val own      = notes.number(event)
-      val opponent = notes.opponent(event)
+      val agent   = notes.agent(event)
+      val own     = notes.number(event)
+      val picture = notes.picture(event)
       operation(
         DECIDE,
         agent,
-        readings(0).place(notes.evaderSeen(event)),
-        readings(1).place(notes.pursuerSeen(event)),
-        headings(1 - agent).place(opponent),
+        tell(picture),
+        if vehicles == 2 then headings(1 - agent).place(notes.opponent(event)) else 0,
         headings(agent).place(own),
         // Taken before the one before is given back: its effort is counted from there.
         headings(agent).take(own + 1)
@@ -214,10 +298,9 @@ private[skein] object Timetable:
       times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
       times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
       took(notes.elapsedS(event))
-      readings(0).release(notes.evaderSeen(event), at)
-      readings(1).release(notes.pursuerSeen(event), at)
+      releasePicture(picture, at)
       headings(agent).release(own, at)
-      headings(1 - agent).release(opponent, at)
+      if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
       headings(agent).release(own + 1, at)
 
     private def act(event: Int, at: Int): Unit =
@@ -227,12 +310,11 @@ private[skein] object Timetable:
       headings(vehicle).release(notes.number(event), at)
 
     private def score(event: Int, at: Int): Unit =
-      val (evader, pursuer) = (notes.evaderSeen(event), notes.pursuerSeen(event))
-      val isLast            = Rollout.isLast10s(notes.atS(event), durationS)
-      operation(SCORE, 0, readings(0).place(evader), readings(1).place(pursuer), if isLast then 1 else 0)
+      val picture = notes.picture(event)
+      val isLast  = Rollout.isLast10s(notes.atS(event), durationS)
+      operation(SCORE, 0, tell(picture), if isLast then 1 else 0)
       took(notes.atS(event))
-      readings(0).release(evader, at)
-      readings(1).release(pursuer, at)
+      releasePicture(picture, at)
 
     private def operation(
         kind: Int,
@@ -240,13 +322,12 @@ private[skein] object Timetable:
         a: Int,
         b: Int = 0,
         c: Int = 0,
-        d: Int = 0,
-        e: Int = 0
+        d: Int = 0
     ): Unit =
       val at = size * Fields
       operations(at) = kind; operations(at + 1) = agent
       operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
-      operations(at + 5) = d; operations(at + 6) = e
+      operations(at + 5) = d
 
     /** Ends an operation that happens to a vehicle. */
     private def happens(event: Int, acts: Boolean): Unit =

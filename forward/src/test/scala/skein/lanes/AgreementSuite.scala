@@ -47,8 +47,8 @@ class AgreementSuite extends munit.FunSuite:
       for world <- 0 until worlds do
         lanes(0).take(world, fleeing(world))
         lanes(1).take(world, hunters(world))
-      TimetableKernel(duel, timing, vehicles, lanes(1), lanes(0))
-        .fly(Timetable.of(duel.durationS, timing, DelayTable.vpn, key, vehicles), worlds, 0)
+      TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0))
+        .fly(Timetable.of(2, duel.durationS, timing, DelayTable.vpn, key, vehicles), worlds, 0)
       var same, parted = 0
       for world <- 0 until worlds do
         val logs   = Vector(Log(fleeing(world)), Log(hunters(world)))

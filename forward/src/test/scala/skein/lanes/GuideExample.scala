@@ -7,7 +7,8 @@ import skein.policy.{Decided, ObservingPolicy, PlanarObservation}
 final case class Bearing(rad: Double, rateRadPerS: Double)
 
 /** Leads the opponent by its bearing's average rate, and believes old readings less. */
-final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double) extends ObservingPolicy[Bearing]:
+final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double)
+    extends ObservingPolicy[Bearing]:
   def initial: Bearing = Bearing(0, 0)
 
   def decide(seen: PlanarObservation, memory: Bearing): Decided[Bearing] =
@@ -38,8 +39,8 @@ object GuideExample:
     ),
     numbers => Lead(numbers(0), numbers(1), numbers(2))
   )
-  val batch     = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
-  val nearest   = Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise)
+  val batch   = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
+  val nearest = Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise)
   val evaluator =
     DuelEvaluator(batch, 60, leads, Role.Pursuer, PaperEvader(), DelayTable.vpn, nearest, seed = 1)
   val candidates = leads.space.random(200, seed = 1)

@@ -46,15 +46,15 @@ class TimetableKernelSuite extends munit.FunSuite:
       key: Int,
       durationS: Double,
       model: VelocityResponse = lag
-  ): TimetableKernel =
+  ): TimetableDuels =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))
     val duel   = paper.copy(durationS = durationS)
     val lanes  = TimetableModel.of(model, duel).fold(fail(_), identity)
-    val kernel = TimetableKernel(duel, timing, lanes, pursuers, evaders)
-    kernel.fly(Timetable.of(durationS, timing, link, key, lanes), worlds, captureM)
+    val kernel = TimetableDuels(duel, timing, lanes, pursuers, evaders)
+    kernel.fly(Timetable.of(2, durationS, timing, link, key, lanes), worlds, captureM)
     kernel
 
   private val loops =

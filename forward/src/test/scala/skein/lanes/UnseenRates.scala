@@ -24,12 +24,12 @@ import skein.signal.SplitMix64
     val random                   = SplitMix64(3)
     val candidates               = Array.fill(DuelKernel.WORLDS)(draw(random))
     val lanes                    = TimetableModel.of(model, Duel.paper).fold(sys.error, identity)
-    val table                    = Timetable.of(60, timing, DelayTable.vpn, 1, lanes)
+    val table                    = Timetable.of(2, 60, timing, DelayTable.vpn, 1, lanes)
     val started                  = System.nanoTime
     val pursuers                 = LanePolicy.of(candidates(0))
     val compiledMs               = (System.nanoTime - started) / 1_000_000
     val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
-    val kernel                   = TimetableKernel(Duel.paper, timing, lanes, pursuers, evaders)
+    val kernel                   = TimetableDuels(Duel.paper, timing, lanes, pursuers, evaders)
     def fly(episodes: Int): Unit = for _ <- 1 to episodes do
       for world <- 0 until DuelKernel.WORLDS do
         pursuers.take(world, candidates(world))

@@ -1,0 +1,94 @@
+package skein.lanes;
+
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import skein.forward.Duelist;
+
+/** One side of a duel in many worlds: decides by the difference of the two vehicles' readings. */
+final class DuelAgents extends TimetableAgents {
+  private final LanePolicy policy;
+  private final float[] effort;
+  private final float startHeading;
+  private final int self;
+  private final LaneSight sight;
+
+  /**
+   * @param self the vehicle's number, 0 or 1
+   * @param effort where the changes of the heading are added up
+   */
+  DuelAgents(
+      int self,
+      Duelist duelist,
+      TimetableModel model,
+      LanePolicy policy,
+      float[] effort,
+      LaneSight sight) {
+    super(model.vehicles(duelist));
+    this.self = self;
+    this.policy = policy;
+    this.effort = effort;
+    this.sight = sight;
+    startHeading = (float) duelist.startHeadingRad();
+  }
+
+  @Override
+  void start(Timetable timetable, int worlds) {
+    super.start(timetable, worlds);
+    // The timetable keeps the first heading at place 0.
+    headings.fill(0, WORLDS, startHeading);
+    policy.start(startHeading);
+    Arrays.fill(effort, 0f);
+  }
+
+  @Override
+  boolean needsVelocity() {
+    return policy.needsVelocity();
+  }
+
+  @Override
+  void decide(
+      TimetableAgents[] all,
+      int[] pictures,
+      int picture,
+      int known,
+      int before,
+      int after,
+      float[] times,
+      int number) {
+    TimetableAgents opponent = all[1 - self];
+    TimetableVehicles ours = vehicles, theirs = opponent.vehicles;
+    int ownSeen = pictures[picture + self] * WORLDS,
+        opponentSeen = pictures[picture + 1 - self] * WORLDS;
+    difference(theirs.seenX, opponentSeen, ours.seenX, ownSeen, sight.dx);
+    difference(theirs.seenY, opponentSeen, ours.seenY, ownSeen, sight.dy);
+    if (policy.needsVelocity()) {
+      difference(theirs.seenVx, opponentSeen, ours.seenVx, ownSeen, sight.dvx);
+      difference(theirs.seenVy, opponentSeen, ours.seenVy, ownSeen, sight.dvy);
+    }
+    Arrays.fill(sight.elapsed, times[number]);
+    if (policy.needsAges()) {
+      Arrays.fill(sight.ownAge, times[number + 1]);
+      Arrays.fill(sight.opponentAge, times[number + 2]);
+    }
+    policy.decide(sight, headings, before, opponent.headings, known, headings, after);
+    policy.commit();
+    add(policy.turned, effort);
+  }
+
+  private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, of, ofAt + i)
+          .sub(FloatVector.fromArray(SPECIES, and, andAt + i))
+          .intoArray(into, i);
+  }
+
+  private static void add(float[] what, float[] to) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, to, i)
+          .add(FloatVector.fromArray(SPECIES, what, i))
+          .intoArray(to, i);
+  }
+}

@@ -1,0 +1,19 @@
+package skein.lanes;
+
+/** Adds up what many worlds come to, once a period. */
+interface TimetableScores {
+  /** Back to the start of an episode. */
+  void start();
+
+  /**
+   * Where all vehicles are now.
+   *
+   * @param agents by the vehicle's number
+   * @param pictures of the timetable; that which is scored begins at {@code picture}
+   * @param isLast whether it counts for the mean of the last 10 s
+   */
+  void score(TimetableAgents[] agents, int[] pictures, int picture, boolean isLast, float timeS);
+
+  /** At the end of the episode. */
+  void finish();
+}
