@@ -1,7 +1,7 @@
 package skein.cli
 
 import mainargs.{ParserForClass, arg}
-import skein.policy.{PolicyFamily, Role, Scenario}
+import skein.policy.{Fleet, PolicyFamily, Role}
 import skein.search.{Conditions, SearchQuestion}
 import skein.settings.PolicyFile
 import skein.units.Span
@@ -41,7 +41,7 @@ final case class ForwardOptions(
       plant.getOrElse("reduced"),
       period.toMillis,
       duration.toNanos / 1e9,
-      altitude.getOrElse(Scenario.DuelAltitudeM)
+      altitude.getOrElse(Fleet.DuelAltitudeM)
     )
 
   def threadCount: Either[String, Int] =

@@ -1,7 +1,7 @@
 package skein.report
 
 import scala.util.Random
-import skein.policy.{Agent, Scenario}
+import skein.policy.{Agent, Fleet}
 import skein.record.*
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
@@ -15,7 +15,7 @@ object SyntheticFlight:
   private val offset = Span.ofSeconds(1_789_000_000.25)
 
   def apply(loop: String, link: String, seed: Long, seconds: Int = 60): Recording =
-    val scenario = Scenario.duel()
+    val scenario = Fleet.duel()
     val random   = Random(seed)
     val profile  = LatencyProfile.parse(link, Left(_)) match
       case Right(LatencyProfile.Steady(_, roundTrip)) => roundTrip
@@ -84,7 +84,7 @@ object SyntheticFlight:
     recorder.recording
 
   private def decide(
-      scenario: Scenario,
+      scenario: Fleet,
       agent: Int,
       sequence: Long,
       readings: Seq[Reading],
@@ -135,7 +135,7 @@ object SyntheticFlight:
       )
     )
 
-  private def heading(loop: String, link: String, seed: Long, seconds: Int, scenario: Scenario): Heading =
+  private def heading(loop: String, link: String, seed: Long, seconds: Int, scenario: Fleet): Heading =
     def vehicle(agent: Agent) = Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
     Heading(
       Flight(

@@ -19,7 +19,7 @@ sealed trait TeamScenario extends Product:
   def settings: Seq[(String, String)] = productElementNames.zip(productIterator.map(_.toString)).toSeq
 
   /** Who flies, and how. */
-  def scenario: Scenario
+  def scenario: Fleet
 
   /** Every setting that cannot be flown. */
   def mistakes: Seq[String] =
@@ -64,13 +64,13 @@ object TeamScenario:
   ) extends TeamScenario:
     override protected def fewest: Int = 3
 
-    def scenario: Scenario =
+    def scenario: Fleet =
       val evader   = agent("Evader", Role.Evader, evaderMps, startM, 0, altitudeM, 0, Flee(evaderMps))
       val policy   = Surrounding(0, ringM, pursuerMps)
       val pursuers = Vector.tabulate(vehicles - 1): pursuer =>
         val eastM = (pursuer - (vehicles - 2) / 2.0) * ringM / 2
         agent(s"Pursuer${pursuer + 1}", Role.Pursuer, pursuerMps, 0, eastM, altitudeM, 0, policy)
-      Scenario(evader +: pursuers)
+      Fleet(evader +: pursuers)
 
   /** A wedge flies a circuit, the leader first, followers behind it to the left and right in turn.
     *
@@ -106,14 +106,14 @@ object TeamScenario:
         val side = if follower % 2 == 0 then 1 else -1
         (-rank * spacingM, side * rank * spacingM)
 
-    def scenario: Scenario =
+    def scenario: Fleet =
       val leading   = LeadOnCircuit(circuit, leaderMps, leaderMps * lagS)
       val leader    = agent("Leader", Role.Leader, leaderMps, 0, 0, altitudeM, 0, leading)
       val followers = slots.zipWithIndex.map:
         case ((aheadM, rightM), follower) =>
           val policy = KeepSlot(0, circuit, aheadM, rightM, mostMps, lagS)
           agent(s"Follower${follower + 1}", Role.Follower, leaderMps, aheadM, rightM, altitudeM, 0, policy)
-      Scenario(leader +: followers)
+      Fleet(leader +: followers)
 
   /** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing.
     *
@@ -153,8 +153,8 @@ object TeamScenario:
     /** Where the vehicles want to be, north and east, m. */
     def goals: Vector[(Double, Double)] = routes.map(route => onLane(route.headingRad, route.goalM))
 
-    def scenario: Scenario =
-      Scenario(routes.zipWithIndex.map: (route, vehicle) =>
+    def scenario: Fleet =
+      Fleet(routes.zipWithIndex.map: (route, vehicle) =>
         val (northM, eastM)         = onLane(route.headingRad, route.startM)
         val (goalNorthM, goalEastM) = onLane(route.headingRad, route.goalM)
         val policy = Avoidance(goalNorthM, goalEastM, cruiseMps, mostMps, minimumM, marginM, horizonS)

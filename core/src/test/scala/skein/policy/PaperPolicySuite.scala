@@ -44,10 +44,10 @@ class PaperPolicySuite extends munit.FunSuite:
       assertEqualsDouble(math.cos(evader(10, 1, turn) - turn - evader(10, 1, 0)), 1.0, 1e-12)
 
   test("each agent plays against the nearest of the other role"):
-    val scenario = Scenario.duels(3)
+    val scenario = Fleet.duels(3)
     val start    = (i: Int) => scenario.agents(i).startPositionNed
     for i <- scenario.agents.indices do
       assertEquals(scenario.opponentOf(i, start), if i % 2 == 0 then i + 1 else i - 1)
 
   test("a scenario without opponents is refused"):
-    intercept[IllegalArgumentException](Scenario(Scenario.duel().agents.take(1)))
+    intercept[IllegalArgumentException](Fleet(Fleet.duel().agents.take(1)))

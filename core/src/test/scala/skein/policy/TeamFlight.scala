@@ -5,7 +5,7 @@ package skein.policy
   * @param lagS
   *   0 for velocities that are at once as commanded
   */
-final class TeamFlight(scenario: Scenario, lagS: Double, stepS: Double = 0.05):
+final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   private val agents  = scenario.agents
   val northM          = agents.map(_.startPositionNed.x).toArray
   val eastM           = agents.map(_.startPositionNed.y).toArray

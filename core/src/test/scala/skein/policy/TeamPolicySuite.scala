@@ -8,7 +8,7 @@ class TeamPolicySuite extends munit.FunSuite:
     val surround = TeamScenario.Surround(vehicles = 6)
     val agents   = surround.scenario.agents
     val still    = agents.head.copy(policy = Flee(0))
-    val flight   = TeamFlight(Scenario(still +: agents.tail), lagS = 1.5)
+    val flight   = TeamFlight(Fleet(still +: agents.tail), lagS = 1.5)
     flight.fly(60)()
     val bearings = (1 to 5)
       .map(pursuer =>
@@ -100,7 +100,7 @@ class TeamPolicySuite extends munit.FunSuite:
       val scenario  = formation.scenario
       // The leader flies the same way in both.
       val leader = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = 1.5).scenario.agents.head
-      val flight = TeamFlight(Scenario(leader +: scenario.agents.tail), lagS = 1.5, stepS = 0.01)
+      val flight = TeamFlight(Fleet(leader +: scenario.agents.tail), lagS = 1.5, stepS = 0.01)
       var worst  = 0.0
       flight.fly(30)()
       flight.fly(20)({ worst = worst.max(slotErrorsM(formation, flight).max) })
@@ -117,7 +117,7 @@ class TeamPolicySuite extends munit.FunSuite:
       Radians(heading),
       Avoidance(-north, -east, cruiseMps = 5, mostMps = 8, minimumM = 2, marginM = 1.5, horizonS = 4)
     )
-    val flight = TeamFlight(Scenario(Vector(one("A", -30, -sideM, 0), one("B", 30, sideM, math.Pi))), lagS)
+    val flight = TeamFlight(Fleet(Vector(one("A", -30, -sideM, 0), one("B", 30, sideM, math.Pi))), lagS)
     flight.fly(30)()
     flight
 

@@ -8,7 +8,7 @@ import skein.airsim.*
 import skein.link.*
 import skein.loop.*
 import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{FlightPlan, FlySettings, PolicyFile, RecordedPlan}
@@ -73,7 +73,7 @@ final class FlightRigs(
   import system.dispatcher
 
   /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
-  private val scenario: Scenario = settings.agents
+  private val scenario: Fleet = settings.agents
 
   /** What a recording of this flight begins with. */
   def heading(plan: FlightPlan, clockKind: String): Heading = Heading(

@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.airsim.*
-import skein.policy.{Agent, Scenario}
+import skein.policy.{Agent, Fleet}
 import skein.rpc.RpcError
 import skein.units.*
 
@@ -15,7 +15,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
   import system.dispatcher
 
   /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
-  def place(scenario: Scenario): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def place(scenario: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
     everyVehicle(scenario): (vehicle, agent) =>
       for
         _ <- call(vehicle.enableApiControl())
@@ -29,7 +29,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
     * straight to a layer of their own, above all starts, and cross over in it when all have come to theirs; when all have
     * crossed over, they go down. So no way crosses another at one altitude.
     */
-  def climb(scenario: Scenario): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def climb(scenario: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
     for
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
@@ -71,7 +71,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
   private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits): Future[Unit] =
     one.approach.to(goalNed, limits).map(_.fold(error => throw NotReady(error), _ => ()))
 
-  private def everyVehicle[A](scenario: Scenario)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
+  private def everyVehicle[A](scenario: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(scenario.agents): agent =>
       Multirotor
         .named(client, agent.name)

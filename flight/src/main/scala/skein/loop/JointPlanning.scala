@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.loop.planning.Plan
 import skein.planning.{Part, PlannerSettings}
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.units.*
 
 /** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its replay uses too.
@@ -51,7 +51,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 object JointPlanning:
 
   /** Absent where nobody plans. */
-  def of(scenario: Scenario, settings: PlanSettings, seed: Long): Option[JointPlanning] =
+  def of(scenario: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
     val (vehicles, plannings) =
       (for
         vehicle  <- scenario.agents.indices.toVector

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Observation, PlanarPolicy, Policy, Role, Scenario, Seen, TeamSight}
+import skein.policy.{Action, AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Role, Seen, TeamSight}
 import skein.forecast.{Estimate, Evidence, Forecast}
 import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sighting, TrueAge}
 import skein.signal.{ClockAlignment, Kinematics}
@@ -77,10 +77,10 @@ final case class Memory(headingRad: Double, decidedAt: Option[Instant], decision
   * @param policy
   *   the agent's own, or one in its place
   */
-final class Decider(scenario: Scenario, self: Int, policy: AgentPolicy):
+final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
   private val agent = scenario.agents(self)
 
-  def this(scenario: Scenario, self: Int) = this(scenario, self, scenario.agents(self).policy)
+  def this(scenario: Fleet, self: Int) = this(scenario, self, scenario.agents(self).policy)
 
   val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
 

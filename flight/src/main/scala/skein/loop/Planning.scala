@@ -1,13 +1,13 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Agent, GoalPolicy, Policy, Role, Scenario}
+import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
 import skein.record.Decision
 import skein.signal.Kinematics
 import skein.units.*
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
-private abstract class Planning(scenario: Scenario, self: Int):
+private abstract class Planning(scenario: Fleet, self: Int):
   protected val agent: Agent     = scenario.agents(self)
   protected val decider: Decider = Decider(scenario, self)
 
@@ -96,5 +96,5 @@ object Planning:
     PredictedTrack.straight(motion, planner.steps, planner.dtS)
 
   /** The vehicles of which nothing is planned, but for one. */
-  private[loop] def unplanned(scenario: Scenario, but: Int): Vector[Int] =
+  private[loop] def unplanned(scenario: Fleet, but: Int): Vector[Int] =
     scenario.agents.indices.toVector.filter(other => other != but && !plans(scenario.agents(other)))

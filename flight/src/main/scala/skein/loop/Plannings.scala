@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{GoalPolicy, Scenario}
+import skein.policy.{Fleet, GoalPolicy}
 
 /** Who plans how. */
 private object Plannings:
@@ -10,7 +10,7 @@ private object Plannings:
     * @param seed
     *   of the search's random numbers
     */
-  def of(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
+  def of(scenario: Fleet, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
     val agent = scenario.agents(self)
     Option.when(Planning.plans(agent)):
       agent.policy match

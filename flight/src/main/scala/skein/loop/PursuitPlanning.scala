@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{PaperEvader, Scenario}
+import skein.policy.{Fleet, PaperEvader}
 import skein.units.*
 
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
@@ -13,7 +13,7 @@ import skein.units.*
   *
   * In its place the vehicle's own policy decides within the turn limit.
   */
-private final class PursuitPlanning(scenario: Scenario, self: Int, settings: PlanSettings, seed: Long)
+private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSettings, seed: Long)
     extends Planning(scenario, self):
   import Planning.{motion, straight}
   private val speed    = agent.speed.value

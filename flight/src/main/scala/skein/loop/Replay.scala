@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.record.*
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -13,7 +13,7 @@ import skein.units.*
   * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
   * against and the heading chosen. The memory from decision to decision is the replay's own.
   */
-final class Replay(scenario: Scenario, recording: Recording, planning: PlanSettings = PlanSettings()):
+final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings = PlanSettings()):
   import Replay.*
 
   private val paused   = recording.flight.isPaused

@@ -10,7 +10,7 @@ import scala.util.{Failure, Success}
 import skein.flow.*
 import skein.forecast.{Commanded, Evidence, Forecast}
 import skein.loop.planning.{Plan, PlanWorkers}
-import skein.policy.{Action, AgentPolicy, Policy, Scenario}
+import skein.policy.{Action, AgentPolicy, Fleet, Policy}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.*
 import skein.units.*
@@ -18,7 +18,7 @@ import skein.vehicle.Setpoint
 
 /** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
 final class Team(
-    val scenario: Scenario,
+    val scenario: Fleet,
     crafts: Vector[VehiclePort],
     clock: Clock,
     recorder: Recorder,

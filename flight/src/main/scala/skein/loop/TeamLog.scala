@@ -3,14 +3,14 @@ package skein.loop
 import scala.util.{Failure, Success, Try}
 import skein.flow.{Miss, Steered, Verified}
 import skein.loop.planning.Plan
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
 /** Tells a recorder what happens to a team in flight. */
-final class TeamLog(scenario: Scenario, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
+final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
 
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))

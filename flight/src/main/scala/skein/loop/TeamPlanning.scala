@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{GoalPolicy, Scenario, TeamSight}
+import skein.policy.{Fleet, GoalPolicy, TeamSight}
 import skein.units.*
 
 /** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
@@ -11,7 +11,7 @@ import skein.units.*
   * models exactly and commands come at other times than expected.
   */
 private final class TeamPlanning(
-    scenario: Scenario,
+    scenario: Fleet,
     self: Int,
     policy: GoalPolicy,
     settings: PlanSettings,

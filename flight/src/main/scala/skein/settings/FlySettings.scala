@@ -7,7 +7,7 @@ import pureconfig.error.CannotConvert
 import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.planning.Planner
-import skein.policy.{Scenario, TeamScenario}
+import skein.policy.{Fleet, TeamScenario}
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -44,7 +44,7 @@ final case class FlySettings(
     pairs: Int,
     asPublished: Boolean,
     scenario: String = FlySettings.Duel,
-    altitudeM: Double = Scenario.DuelAltitudeM,
+    altitudeM: Double = Fleet.DuelAltitudeM,
     surround: TeamScenario.Surround = TeamScenario.Surround(),
     formation: TeamScenario.Formation = TeamScenario.Formation(),
     crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
@@ -67,7 +67,7 @@ final case class FlySettings(
   def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
 
   /** Who flies. */
-  def agents: Scenario = team.fold(Scenario.duels(pairs, asPublished, altitudeM))(_.scenario)
+  def agents: Fleet = team.fold(Fleet.duels(pairs, asPublished, altitudeM))(_.scenario)
 
   /** How the loops are run. */
   def loopSettings: LoopSettings =
@@ -124,7 +124,7 @@ final case class FlightPlan(
     policy: Option[ChosenPolicy] = None
 ):
   /** Who flies, in the scenario of the settings. */
-  def agents(settings: FlySettings): Scenario =
+  def agents(settings: FlySettings): Fleet =
     policy.fold(settings.agents)(_.file.flownIn(settings.agents))
 
   /** Where its recording goes. */

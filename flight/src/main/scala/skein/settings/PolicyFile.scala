@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigValue}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
-import skein.policy.{Policy, PolicyFamily, Role, Scenario}
+import skein.policy.{Fleet, Policy, PolicyFamily, Role}
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
   * how the policy was found) is for people.
@@ -16,8 +16,8 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
   def policy: Policy = family.policy(parameters)
 
   /** The scenario with this policy for all agents of its role. */
-  def flownIn(scenario: Scenario): Scenario =
-    Scenario(scenario.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
+  def flownIn(scenario: Fleet): Fleet =
+    Fleet(scenario.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
 
   /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
   def text: String =

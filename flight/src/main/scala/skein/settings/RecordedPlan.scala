@@ -1,14 +1,14 @@
 package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.policy.{Scenario, TeamScenario}
+import skein.policy.{Fleet, TeamScenario}
 import skein.record.{Parameter, Recording}
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  def scenario: Scenario = plan.agents(settings)
+  def scenario: Fleet = plan.agents(settings)
 
 object RecordedPlan:
   private val Pairs       = "pairs"

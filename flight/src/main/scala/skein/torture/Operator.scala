@@ -7,7 +7,7 @@ import scala.concurrent.Future
 import skein.airsim.*
 import skein.flight.Preparation
 import skein.link.*
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.rpc.RpcClient
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -25,7 +25,7 @@ final case class Run(from: Instant, clockOffset: Span)
   * a connection of its own, without faults.
   */
 final class Operator(
-    scenario: Scenario,
+    scenario: Fleet,
     settings: SimulatorSettings,
     simulatorHost: Transport,
     ownHost: Transport,

@@ -10,7 +10,7 @@ import skein.airsim.*
 import skein.flight.FlightRigs
 import skein.link.*
 import skein.loop.*
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.RpcClient
 import skein.simulator.SimulatorSettings
@@ -45,7 +45,7 @@ object TortureFlight:
     import system.dispatcher
 
     private val clock    = Clock.ofNanos(VirtualTime.clock(system))
-    private val scenario = Scenario.duels(ordeal.pairs, ordeal.asPublished)
+    private val scenario = Fleet.duels(ordeal.pairs, ordeal.asPublished)
     private val start    = clock.now()
     private val faults   = LinkProfile
       .symmetric(ordeal.link)

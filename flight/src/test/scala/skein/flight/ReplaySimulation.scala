@@ -3,7 +3,7 @@ package skein.flight
 import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.policy.Scenario
+import skein.policy.Fleet
 import skein.record.*
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
@@ -86,7 +86,7 @@ class ReplaySimulation extends munit.FunSuite:
     val forged    = recording.decisions(7)
     val heading   = Radians(forged.heading.value + 1e-12)
     val changed   = recording.copy(decisions = recording.decisions.updated(7, forged.copy(heading = heading)))
-    val found     = Replay(Scenario.duel(), changed).firstDifference.getOrElse(fail("no difference found"))
+    val found     = Replay(Fleet.duel(), changed).firstDifference.getOrElse(fail("no difference found"))
     assertEquals(found.where, s"decision ${forged.sequence} of ${forged.vehicle}")
     assertEquals(found.column, "headingRad")
     assertEquals((found.recorded, found.again), (heading.value.toString, forged.heading.value.toString))
@@ -100,7 +100,7 @@ class ReplaySimulation extends munit.FunSuite:
         reading.copy(state =
           state.map(read => read.copy(velocityNed = read.velocityNed + Vector3(0, 0, 1e-9)))
         )
-    val found = Replay(Scenario.duel(), recording.copy(readings = forged)).firstDifference
+    val found = Replay(Fleet.duel(), recording.copy(readings = forged)).firstDifference
     assert(found.exists(_.column.endsWith("Sequence")), found.toString)
 
   folder.test("flying again what was recorded with another seed gives other decisions"): folder =>

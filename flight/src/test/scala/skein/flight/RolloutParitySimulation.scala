@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import scala.concurrent.duration.*
 import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{Scenario, TeamScenario}
+import skein.policy.{Fleet, TeamScenario}
 import skein.record.Reading
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
@@ -50,7 +50,7 @@ class RolloutParitySimulation extends munit.FunSuite:
       seed: Long,
       asPublished: Boolean = false,
       pairs: Int = 1,
-      altitudeM: Double = Scenario.DuelAltitudeM,
+      altitudeM: Double = Fleet.DuelAltitudeM,
       team: String = FlySettings.Duel,
       duration: Span = minute,
       crossing: Int = 8

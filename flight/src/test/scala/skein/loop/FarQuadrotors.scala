@@ -3,7 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{Future, Promise}
-import skein.policy.{Action, Scenario}
+import skein.policy.{Action, Fleet}
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.signal.*
 import skein.units.*
@@ -13,7 +13,7 @@ import skein.vehicle.{Quadrotor, QuadrotorState, Setpoint}
   * of a sampled round trip and keeps the order. Their clock is not the controller's. A move answers when it is
   * replaced; none ends by itself.
   */
-final class FarQuadrotors(scenario: Scenario, link: LatencyProfile, seed: Long, clock: Clock)(using
+final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clock: Clock)(using
     system: ActorSystem
 ) extends SteppedTime:
   import system.dispatcher

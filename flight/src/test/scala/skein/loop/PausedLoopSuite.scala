@@ -2,7 +2,7 @@ package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Scenario}
+import skein.policy.{Action, Fleet}
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.record.{MemoryRecorder, Samples}
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
@@ -75,7 +75,7 @@ class PausedLoopSuite extends munit.FunSuite:
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val scenario           = Scenario.duel()
+      val scenario           = Fleet.duel()
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
       val stepper            = FragileStepper(world, failingStep, failedResumes)
       val crafts             = world.crafts.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))

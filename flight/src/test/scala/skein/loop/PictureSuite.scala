@@ -3,7 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Scenario}
+import skein.policy.{Action, Fleet}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, MemoryRecorder, Reading, Samples}
 import skein.signal.{Kinematics, Stamped}
@@ -24,7 +24,7 @@ class PictureSuite extends munit.FunSuite:
   private def reading(vehicle: Int, sequence: Long, validMs: Double, sentMs: Double, receivedMs: Double) =
     val state =
       Kinematics(Vector3(sequence.toDouble, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
-    val name = Scenario.duel().agents(vehicle).name
+    val name = Fleet.duel().agents(vehicle).name
     Reading(sequence, name, Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs)))
 
   private val first = reading(0, 0, 10, 0, 30)
@@ -40,7 +40,7 @@ class PictureSuite extends munit.FunSuite:
       given ExecutionContext = system.dispatcher
       val recorder           = MemoryRecorder(Samples.heading)
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val team               = Team(Scenario.duel(), Vector(Silent, Silent), clock, recorder, LoopSettings())
+      val team               = Team(Fleet.duel(), Vector(Silent, Silent), clock, recorder, LoopSettings())
       Source(percepts).via(team.picture).runWith(Sink.seq).map: sights =>
         val stale = recorder.recording.events.filter(_.kind == EventKind.Dropped).map(_.detail)
         (sights.toVector, stale)

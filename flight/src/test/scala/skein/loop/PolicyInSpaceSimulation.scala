@@ -33,12 +33,12 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
   private def agent(name: String, north: Double, east: Double, policy: AgentPolicy) =
     Agent(name, Role.Traveller, MetresPerSecond(2), Vector3(north, east, -20), Radians(0), policy)
 
-  private val both = Scenario(Vector(
+  private val both = Fleet(Vector(
     agent("Evader", 0, 0, UpAndDown(topM = 26, bottomM = 15)),
     agent("Pursuer", 10, 10, LookAtTheOther)
   ))
 
-  private def fly(kind: LoopKind, scenario: Scenario = both): Recording = VirtualTime
+  private def fly(kind: LoopKind, scenario: Fleet = both): Recording = VirtualTime
     .run(seed = 3): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -76,7 +76,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       assertEquals(Replay(both, recording).firstDifference, None)
 
   test("a vehicle may fly alone"):
-    val alone     = Scenario(Vector(both.agents.head))
+    val alone     = Fleet(Vector(both.agents.head))
     val altitudes = downs(fly(LoopKind.Stream, alone), "Evader")
     assert(altitudes.max >= 26)
     assertEqualsDouble(altitudes.last, 15, 1)

@@ -5,7 +5,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future}
 import skein.port.{VehicleError, VehiclePort}
 import skein.units.Clock
-import skein.policy.{Action, Scenario}
+import skein.policy.{Action, Fleet}
 import skein.record.{MemoryRecorder, Samples}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -32,7 +32,7 @@ class TeamLiveSuite extends munit.FunSuite:
     given ExecutionContext = ExecutionContext.fromExecutor(pool)
     val craft              = Slow()
     val team               = Team(
-      Scenario.duel(),
+      Fleet.duel(),
       Vector(craft, craft),
       Clock.system,
       MemoryRecorder(Samples.heading),

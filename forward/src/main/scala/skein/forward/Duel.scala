@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Agent, Policy, Role, Scenario, TeamPolicy}
+import skein.policy.{Agent, Fleet, Policy, Role, TeamPolicy}
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
@@ -41,18 +41,18 @@ final case class Duel(pursuer: Duelist, evader: Duelist, durationS: Double = 60.
 
 object Duel:
   /** The duel of a scenario with one pursuer and one evader. */
-  def of(scenario: Scenario, durationS: Double = 60.0): Duel =
+  def of(scenario: Fleet, durationS: Double = 60.0): Duel =
     require(scenario.agents.size == 2, s"a duel has two agents, this scenario ${scenario.agents.size}")
     def the(role: Role) =
       val agent = scenario.agents.find(_.role == role).get
       Duelist.of(agent).copy(policy = agent.duelPolicy)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 
-  val paper: Duel = of(Scenario.duel())
+  val paper: Duel = of(Fleet.duel())
 
   /** The paper's duel at another altitude. */
   def paperAt(altitudeM: Double, durationS: Double): Duel =
-    of(Scenario.duel(altitudeM = altitudeM), durationS)
+    of(Fleet.duel(altitudeM = altitudeM), durationS)
 
 /** What an episode came to. Distances are horizontal, taken once a period.
   *

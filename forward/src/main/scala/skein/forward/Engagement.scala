@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Assignment, Role, Scenario}
+import skein.policy.{Assignment, Fleet, Role}
 
 /** Vehicles in one plane, as a rollout flies them: pursuers and evaders, 1 against 1 up to M against N, or a team without
   * sides. Each plays against the rival that the assignment gives it, as seen at its decision, or regards the whole team,
@@ -44,7 +44,7 @@ object Engagement:
   val Most = 64
 
   /** The agents of a scenario, under its own assignment. */
-  def of(scenario: Scenario, durationS: Double = 60.0): Engagement =
+  def of(scenario: Fleet, durationS: Double = 60.0): Engagement =
     Engagement(
       scenario.agents.map(Duelist.of),
       scenario.agents.map(_.role),

@@ -4,7 +4,7 @@ import skein.policy.*
 import skein.units.*
 
 class EngagementSuite extends munit.FunSuite:
-  private val duel = Scenario.duel().agents
+  private val duel = Fleet.duel().agents
 
   private def agent(role: Role, number: Int, north: Double, east: Double, policy: Policy): Agent =
     duel
@@ -33,13 +33,13 @@ class EngagementSuite extends munit.FunSuite:
 
   test("a scenario of one pursuer and one evader is the duel, to the last bit, in every loop"):
     for loop <- loops do
-      val one  = Rollout(Engagement.of(Scenario.duel()), loop, DelayTable.vpn, Reduced.AirSim).fly(3)
+      val one  = Rollout(Engagement.of(Fleet.duel()), loop, DelayTable.vpn, Reduced.AirSim).fly(3)
       val same = Rollout(Duel.paper, loop, DelayTable.vpn, Reduced.AirSim).fly(3)
       assertEquals(one, same, loop.toString)
 
   test("duels out of each other's sight fly as each does alone"):
     val far      = 4096.0
-    val scenario = Scenario(
+    val scenario = Fleet(
       Vector(0.0, far).zipWithIndex.flatMap((east, i) =>
         duel.map(agent =>
           agent.copy(
@@ -63,7 +63,7 @@ class EngagementSuite extends munit.FunSuite:
 
   test("a pursuer turns to another evader as soon as that one is seen nearer"):
     // The first evader runs north; the second comes in from the east and stays nearer from some moment on.
-    val scenario = Scenario(
+    val scenario = Fleet(
       Vector(
         agent(Role.Evader, 1, 20, 0, LeadAway(0)),
         agent(Role.Evader, 2, 5, 30, LeadAway(math.Pi)),
@@ -87,7 +87,7 @@ class EngagementSuite extends munit.FunSuite:
       agent(Role.Evader, 2, 5, 0, LeadAway(math.Pi / 2)),
       agent(Role.Pursuer, 1, 0, 0, PurePursuit(3))
     )
-    val nearest              = Engagement.of(Scenario(agents), 3)
+    val nearest              = Engagement.of(Fleet(agents), 3)
     val assigned             = nearest.copy(assignment = Assignment(Vector(Vector(2), Vector(2), Vector(0))))
     def last(of: Engagement) =
       places(Rollout(of, LoopTiming.Paused(), DelayTable.none, VelocityResponses.Ideal)).last
@@ -95,7 +95,7 @@ class EngagementSuite extends munit.FunSuite:
     assertEqualsDouble(last(assigned)._3, 0, 1e-9)
 
   test("an evader is captured by whichever pursuer comes near, and each has its own outcome"):
-    val scenario = Scenario(
+    val scenario = Fleet(
       Vector(
         agent(Role.Evader, 1, 0, 0, KeepHeading),
         agent(Role.Evader, 2, 500, 0, KeepHeading),
@@ -147,7 +147,7 @@ class EngagementSuite extends munit.FunSuite:
             Course(if seen.northM(seen.self) > seen.northM(1) then math.Pi else 0, speed)
           agent(Role.Traveller, number, north, 0, KeepHeading).copy(policy = policy)
     val rollout = Rollout(
-      Engagement.of(Scenario(agents), 5),
+      Engagement.of(Fleet(agents), 5),
       LoopTiming.Paused(),
       DelayTable.none,
       VelocityResponses.Ideal
@@ -162,7 +162,7 @@ class EngagementSuite extends munit.FunSuite:
     val mixed = Seq(Role.Evader, Role.Pursuer, Role.Traveller).zipWithIndex.map((role, number) =>
       agent(role, number, 10 * number, 0, KeepHeading)
     )
-    val _ = intercept[IllegalArgumentException](Engagement.of(Scenario(mixed.toVector)))
+    val _ = intercept[IllegalArgumentException](Engagement.of(Fleet(mixed.toVector)))
     val _ = intercept[IllegalArgumentException](
       Engagement(
         Vector(Duel.paper.evader, Duel.paper.evader),

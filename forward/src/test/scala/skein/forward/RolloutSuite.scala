@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{PaperEvader, PaperPursuer, Policy, Scenario}
+import skein.policy.{Fleet, PaperEvader, PaperPursuer, Policy}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
@@ -125,4 +125,4 @@ class RolloutSuite extends munit.FunSuite:
     assertClose(Seq(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy), Seq(x, y, vx, vy), 3e-4)
 
   test("the default duel is the scenario's"):
-    assertEquals(Duel.of(Scenario.duel()).evader.policy, PaperEvader())
+    assertEquals(Duel.of(Fleet.duel()).evader.policy, PaperEvader())

@@ -10,7 +10,7 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
-import skein.policy.{Role, Scenario}
+import skein.policy.{Fleet, Role}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -25,7 +25,7 @@ class AirSimModelSuite extends munit.FunSuite:
       flown += vehicle
       vehicle
     val _ = Rollout(
-      Duel.of(Scenario.duel()),
+      Duel.of(Fleet.duel()),
       LoopTiming.Stream(),
       DelayTable.vpn,
       tapped

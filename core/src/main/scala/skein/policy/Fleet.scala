@@ -10,7 +10,7 @@ object Role:
   /** By its name, in letters of any case. */
   def parse(name: String): Option[Role] = values.find(_.toString.equalsIgnoreCase(name))
 
-/** One vehicle of a scenario and how it behaves.
+/** One vehicle and how it behaves.
   *
   * @param speed
   *   of the velocity it commands, where its policy does not choose one
@@ -44,10 +44,10 @@ final case class Agent(
     case _               =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 
-/** Who takes part. Every agent has an opponent: the nearest one of another role, or, where all have the same role, the
-  * nearest; one that flies alone has itself.
+/** Who flies: what a loop and forward simulation need of a scenario. Every agent has an opponent: the nearest one of
+  * another role, or, where all have the same role, the nearest; one that flies alone has itself.
   */
-final case class Scenario(agents: Vector[Agent]):
+final case class Fleet(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
     val others = agents.indices.filter(_ != self).toVector
     val rivals = others.filter(agents(_).role != agents(self).role)
@@ -57,7 +57,7 @@ final case class Scenario(agents: Vector[Agent]):
 
   require(
     agents.map(_.name).distinct.size == agents.size,
-    "every vehicle of a scenario needs a name of its own"
+    "every vehicle needs a name of its own"
   )
   for (agent, i) <- agents.zipWithIndex do
     require(
@@ -76,7 +76,7 @@ final case class Scenario(agents: Vector[Agent]):
   def opponentOf(self: Int, positionNed: Int => Vector3): Int =
     assignment.opponentOf(self, other => positionNed(self).horizontalDistance(positionNed(other)))
 
-object Scenario:
+object Fleet:
   /** The paper's, m. */
   val DuelAltitudeM = 20.0
 
@@ -87,9 +87,9 @@ object Scenario:
     * @param altitudeM
     *   −z
     */
-  def duel(asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Scenario =
+  def duel(asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Fleet =
     val pursuer = if asPublished then PaperPursuer.asPublished else PaperPursuer()
-    Scenario(
+    Fleet(
       Vector(
         // The evader's initial heading is cos(0.5) in the published code, where 0.5 may have been meant.
         Agent(
@@ -105,7 +105,7 @@ object Scenario:
     )
 
   /** `pairs` duels side by side, 60 m apart: for teams of any size. The vehicles of several are numbered from 1. */
-  def duels(pairs: Int, asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Scenario =
+  def duels(pairs: Int, asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Fleet =
     if pairs == 1 then duel(asPublished, altitudeM)
     else
       val agents =
@@ -116,4 +116,4 @@ object Scenario:
           name = s"${agent.name}${pair + 1}",
           startPositionNed = agent.startPositionNed + Vector3(0, 60.0 * pair, 0)
         )
-      Scenario(agents.toVector)
+      Fleet(agents.toVector)
