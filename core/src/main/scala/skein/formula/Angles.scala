@@ -19,8 +19,16 @@ import skein.formula.Op.*
   *   what stands for an input
   * @param direction
   *   of an input that is an angle: cosine and sine
+  * @param parameter
+  *   what stands for a parameter of the new expression, by its number
   */
-final class Angles(source: Trace, target: Trace, leaf: Int => Node, direction: Int => Option[(Node, Node)]):
+final class Angles(
+    source: Trace,
+    target: Trace,
+    leaf: Int => Node,
+    direction: Int => Option[(Node, Node)],
+    parameter: Int => Node
+):
   private val done       = mutable.HashMap.empty[Node, Node]
   private val plain      = mutable.HashMap.empty[Node, Node]
   private val directions = mutable.HashMap.empty[Node, Option[Direction]]
@@ -65,7 +73,7 @@ final class Angles(source: Trace, target: Trace, leaf: Int => Node, direction: I
 
   private def converted(node: Node): Node =
     if isFixed(node) && !node.isConst && !node.op.isCondition && node.op != Always then
-      parameters.getOrElseUpdate(node, target.param(parameters.size))
+      parameters.getOrElseUpdate(node, parameter(parameters.size))
     else
       node.op match
         case Input => leaf(node.index)

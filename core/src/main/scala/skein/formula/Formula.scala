@@ -54,6 +54,8 @@ object Formula:
     *   of arguments that are arrays, by name
     * @param arguments
     *   the types of its arguments, where a class has several methods of the name
+    * @param known
+    *   arguments that are whole numbers, by name: which they are
     * @return
     *   or why it cannot be traced
     */
@@ -61,7 +63,8 @@ object Formula:
       target: AnyRef,
       method: String,
       sizes: Map[String, Int] = Map.empty,
-      arguments: Option[Seq[Class[?]]] = None
+      arguments: Option[Seq[Class[?]]] = None,
+      known: Map[String, Int] = Map.empty
   ): Either[Untraceable, Formula] =
     val candidates = methodsOf(target.getClass).filter: each =>
       each.getName == method && !Modifier.isAbstract(each.getModifiers) && !each.isBridge &&
@@ -69,11 +72,16 @@ object Formula:
     candidates.distinctBy(each =>
       java.lang.invoke.MethodType.methodType(each.getReturnType, each.getParameterTypes)
     ) match
-      case Seq(one) => of(target, one, sizes)
+      case Seq(one) => of(target, one, sizes, known)
       case Seq()    => Left(Untraceable(s"${target.getClass.getName} has no method $method"))
       case _        => Left(Untraceable(s"${target.getClass.getName} has several methods $method"))
 
-  private def of(target: AnyRef, method: Method, sizes: Map[String, Int]): Either[Untraceable, Formula] =
+  private def of(
+      target: AnyRef,
+      method: Method,
+      sizes: Map[String, Int],
+      known: Map[String, Int]
+  ): Either[Untraceable, Formula] =
     try
       val loader = Option(target.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
       val files  = ClassFiles(loader)
@@ -89,6 +97,7 @@ object Formula:
 
       def argument(kind: Class[?], name: String): Value =
         if kind == classOf[Double] then Number(input(name))
+        else if kind == classOf[Int] && known.contains(name) then Whole(trace.const(known(name)))
         else if kind == classOf[Object] then
           throw Untraceable(s"the type of the argument $name is not known; make it a case class of doubles")
         else if kind == classOf[Array[Double]] then

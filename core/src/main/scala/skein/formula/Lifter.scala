@@ -153,7 +153,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       case (Boxed(x), Boxed(y))   => Boxed(value(x, y))
       case (Made(x), Made(y))     => pairs.getOrElseUpdate(
           (x, y),
-          (yes(x), no(y)) match
+          alikeOf(yes(x), no(y)) match
             case (Record(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
             case (Thing.Either(of, x), Record(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
             case (Record(of, x), Thing.Either(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
@@ -164,6 +164,24 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
             case _ => Undecided
         )
       case _ => Undecided
+
+    /** A tuple of two numbers has a class of its own where one of them is a constant. */
+    private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
+      case (Some(x), Some(y)) if x != y => (unspecialised(a), unspecialised(b))
+      case _                            => (a, b)
+
+    private def classOf(thing: Thing) = thing match
+      case Record(of, _)       => Some(of)
+      case Thing.Either(of, _) => Some(of)
+      case _                   => None
+
+    private def unspecialised(thing: Thing): Thing = thing match
+      case Record(Specialised(of), fields)       => Record(of, boxed(fields))
+      case Thing.Either(Specialised(of), fields) => Thing.Either(of, boxed(fields))
+      case other                                 => other
+
+    private def boxed(fields: Map[String, Value]) = fields.collect:
+      case (SpecialisedField(name), value) => name -> Boxed(value)
 
   private def step(frame: Frame, instruction: java.lang.classfile.Instruction): Unit = instruction match
     case load: LoadInstruction           => frame.push(frame.locals(load.slot))
@@ -709,6 +727,10 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
 private[formula] object Lifter:
   private val MostSteps = 5_000_000
   private val MostDepth = 200
+
+  /** Scala's classes of tuples of primitive numbers, and their fields. */
+  private val Specialised      = """(scala/Tuple[12])\$mc[A-Z]+\$sp""".r
+  private val SpecialisedField = """(\w+)\$mc[A-Z]\$sp""".r
 
   private enum End:
     case Reached

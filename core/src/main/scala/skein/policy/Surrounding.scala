@@ -53,11 +53,19 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
 final case class Flee(speedMps: Double) extends TeamPolicy:
 
   def course(seen: TeamSight): Course =
-    val self                  = seen.self
-    def distanceM(other: Int) =
-      StrictMath.hypot(seen.northM(other) - seen.northM(self), seen.eastM(other) - seen.eastM(self))
-    val nearest               = (0 until seen.count).filter(_ != self).minBy(distanceM)
-    val (awayNorth, awayEast) =
-      (seen.northM(self) - seen.northM(nearest), seen.eastM(self) - seen.eastM(nearest))
+    val self      = seen.self
+    var least     = Double.PositiveInfinity
+    var awayNorth = 0.0
+    var awayEast  = 0.0
+    var other     = 0
+    while other < seen.count do
+      val north    = seen.northM(self) - seen.northM(other)
+      val east     = seen.eastM(self) - seen.eastM(other)
+      val distance = StrictMath.hypot(north, east)
+      if other != self && distance < least then
+        least = distance
+        awayNorth = north
+        awayEast = east
+      other += 1
     if awayNorth == 0 && awayEast == 0 then Course(seen.headingRad, speedMps)
     else Course(StrictMath.atan2(awayEast, awayNorth), speedMps)

@@ -18,8 +18,6 @@ import skein.vehicle.ReducedModel;
  * last of these began. The scalar reference is {@link ReducedFlight}; the formulas stand there.
  */
 final class TimetableDragVehicles extends TimetableVehicles {
-  private final float startX, startY;
-
   /** 1/lag along and across the command, 1/s; drag, 1/m. */
   private final FloatVector perLag, perTurnLag, drag;
 
@@ -55,8 +53,7 @@ final class TimetableDragVehicles extends TimetableVehicles {
       newVy = new float[WORLDS];
 
   TimetableDragVehicles(Duelist duelist, ReducedModel model) {
-    startX = (float) duelist.startX();
-    startY = (float) duelist.startY();
+    super(duelist);
     perLag = constant((float) (1 / model.lagS()));
     perTurnLag = constant((float) (1 / model.turnLagS()));
     drag = constant((float) model.dragPerM());
@@ -66,10 +63,8 @@ final class TimetableDragVehicles extends TimetableVehicles {
 
   @Override
   void start(int worlds) {
-    Arrays.fill(x, startX);
-    Arrays.fill(y, startY);
-    Arrays.fill(newX, startX);
-    Arrays.fill(newY, startY);
+    for (float[] north : new float[][] {x, newX}) System.arraycopy(startX, 0, north, 0, WORLDS);
+    for (float[] east : new float[][] {y, newY}) System.arraycopy(startY, 0, east, 0, WORLDS);
     Arrays.fill(newVx, 0f);
     Arrays.fill(newVy, 0f);
     isCommanded = false;

@@ -16,7 +16,7 @@ import skein.forward.Reduced;
  * over the error, and what remains of it. The scalar reference is {@link Reduced}'s vehicle.
  */
 final class TimetableLagVehicles extends TimetableVehicles {
-  private final float startX, startY, perLag;
+  private final float perLag;
   private final FloatVector speed;
   private final float[] x = new float[WORLDS],
       y = new float[WORLDS],
@@ -29,18 +29,17 @@ final class TimetableLagVehicles extends TimetableVehicles {
    * @param model lag above 0
    */
   TimetableLagVehicles(Duelist duelist, Reduced model) {
+    super(duelist);
     if (!(model.lagS() > 0))
       throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
-    startX = (float) duelist.startX();
-    startY = (float) duelist.startY();
     perLag = (float) (1 / model.lagS());
     speed = constant((float) (duelist.speed() * model.gain()));
   }
 
   @Override
   void start(int worlds) {
-    Arrays.fill(x, startX);
-    Arrays.fill(y, startY);
+    System.arraycopy(startX, 0, x, 0, WORLDS);
+    System.arraycopy(startY, 0, y, 0, WORLDS);
     for (float[] zero : new float[][] {askedX, askedY, errorX, errorY}) Arrays.fill(zero, 0f);
   }
 

@@ -20,13 +20,12 @@ import skein.vehicle.Quadrotor;
  */
 final class TimetableQuadrotors extends TimetableVehicles {
   private final QuadrotorKernel kernel = new QuadrotorKernel();
-  private final FloatVector startX, startY, speed;
+  private final FloatVector speed;
   private final float downM;
   private final Vector3 hold;
 
   TimetableQuadrotors(Duelist duelist) {
-    startX = constant((float) duelist.startX());
-    startY = constant((float) duelist.startY());
+    super(duelist);
     speed = constant((float) duelist.speed());
     double down = duelist.altitudeDownM();
     downM = (float) down;
@@ -52,15 +51,23 @@ final class TimetableQuadrotors extends TimetableVehicles {
   }
 
   private static void lookAlong(
-      float[] place, float[] velocity, float[] acceleration, FloatVector start, float sinceS,
-      float[] seen, int into) {
+      float[] place,
+      float[] velocity,
+      float[] acceleration,
+      float[] start,
+      float sinceS,
+      float[] seen,
+      int into) {
     FloatVector since = constant(sinceS), halfSquare = constant(sinceS * sinceS / 2);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector moved =
           FloatVector.fromArray(SPECIES, acceleration, i)
               .mul(halfSquare)
               .add(FloatVector.fromArray(SPECIES, velocity, i).mul(since));
-      FloatVector.fromArray(SPECIES, place, i).add(moved).add(start).intoArray(seen, into + i);
+      FloatVector.fromArray(SPECIES, place, i)
+          .add(moved)
+          .add(FloatVector.fromArray(SPECIES, start, i))
+          .intoArray(seen, into + i);
     }
   }
 

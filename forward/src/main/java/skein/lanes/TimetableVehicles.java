@@ -1,5 +1,7 @@
 package skein.lanes;
 
+import skein.forward.Duelist;
+
 /**
  * The vehicles of one role in many worlds, flown by a {@link Timetable}: what happens to them
  * happens in all worlds at once, so that all that depends on time alone is a number of the
@@ -10,6 +12,19 @@ abstract class TimetableVehicles {
 
   /** How the vehicles answered, by place: positions, m, and velocities, m/s, north and east. */
   float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
+
+  /** Where each world's vehicle starts, north and east, m. */
+  final float[] startX = new float[WORLDS], startY = new float[WORLDS];
+
+  TimetableVehicles(Duelist duelist) {
+    for (int world = 0; world < WORLDS; world++) place(world, duelist);
+  }
+
+  /** A world's vehicle starts where this one does. */
+  final void place(int world, Duelist duelist) {
+    startX[world] = (float) duelist.startX();
+    startY[world] = (float) duelist.startY();
+  }
 
   /**
    * Back to the start of an episode.

@@ -35,7 +35,8 @@ private[lanes] final class PolicyLanes private (formula: Formula):
       case OwnHeading      => Some((trace.input(In.OwnCos), trace.input(In.OwnSin)))
       case OpponentHeading => Some((trace.input(In.KnownCos), trace.input(In.KnownSin)))
       case _               => None
-    }
+    },
+    trace.param
   )
 
   private lazy val heading = angles.factored(formula.outputs(0)._2)

@@ -14,7 +14,11 @@ private[skein] trait TimetableModel:
   /** Of one vehicle in one episode. */
   def clock(): VehicleClock
 
-  /** All worlds' vehicles of one role. */
+  /** All worlds' vehicles of one number; what differs between worlds is told to them.
+    *
+    * @param duelist
+    *   its speed is that of a direction of length 1
+    */
   def vehicles(duelist: Duelist): TimetableVehicles
 
 /** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
@@ -30,7 +34,13 @@ private[skein] object TimetableModel:
   /** @return
     *   or why this model does not fly by lanes
     */
-  def of(model: VelocityResponse, duel: Duel): Either[String, TimetableModel] = model match
+  def of(model: VelocityResponse, duel: Duel): Either[String, TimetableModel] =
+    of(model, Seq(duel.pursuer, duel.evader))
+
+  /** @return
+    *   or why these do not fly by lanes with this model
+    */
+  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, TimetableModel] = model match
     case lag: Reduced if lag.lagS > 0 => Right(LagTimetables(lag))
     case ReducedResponse(drag)        =>
       Either.cond(
@@ -39,7 +49,7 @@ private[skein] object TimetableModel:
         s"the lanes fly models with lags of $LeastLagS s at least"
       )
     case quadrotor: QuadrotorResponse =>
-      val lowest = -duel.pursuer.altitudeDownM.max(duel.evader.altitudeDownM)
+      val lowest = -vehicles.map(_.altitudeDownM).max
       for
         _ <- Either.cond(
           quadrotor.quadrotor eq Quadrotor.AirSim,

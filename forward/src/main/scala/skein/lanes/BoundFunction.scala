@@ -1,0 +1,85 @@
+package skein.lanes
+
+import java.util.concurrent.ConcurrentHashMap
+import scala.collection.mutable
+import skein.formula.{Node, Op, Trace}
+import skein.simd.{LaneCompiler, LaneFunction}
+
+/** A compiled function, and which inputs of the expressions it was compiled from are its inputs. Expressions that are
+  * alike but for the numbers of their inputs share the code.
+  *
+  * @param inputs
+  *   numbers in the expressions, in the order of the function's inputs
+  * @param outputs
+  *   how many there are
+  */
+private[lanes] final class BoundFunction private (
+    val inputs: Array[Int],
+    val outputs: Int,
+    val function: LaneFunction,
+    val operations: Int
+)
+
+private[lanes] object BoundFunction:
+  private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int])
+  private val compiled = ConcurrentHashMap[Key, LaneFunction]()
+
+  /** @param outputs
+    *   of inputs and constants alone
+    */
+  def of(outputs: Vector[Node]): BoundFunction =
+    val trace  = Trace()
+    val number = mutable.LinkedHashMap.empty[Int, Int]
+    val made   = mutable.HashMap.empty[Node, Node]
+    for node <- Trace.needed(outputs) do
+      made(node) = node.op match
+        case Op.Input => trace.input(number.getOrElseUpdate(node.index, number.size))
+        case Op.Param => throw IllegalArgumentException("expected inputs, came a parameter")
+        case _        => trace.again(node, node.args.map(made))
+    val own      = outputs.map(made)
+    val needed   = Trace.needed(own)
+    val key: Key = (needed.map(node => (node.op, node.args.map(_.id), leafOf(node))), own.map(_.id))
+    val function = compiled.computeIfAbsent(key, _ => LaneCompiler.compile(number.size, own))
+    BoundFunction(number.keys.toArray, outputs.size, function, needed.count(_.args.nonEmpty))
+
+  private def leafOf(node: Node): Long =
+    if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong
+
+/** Calls a [[BoundFunction]] on arrays that are put in the places of its inputs and outputs. Mutable. */
+private[lanes] final class LaneCall(bound: BoundFunction):
+  private val arrays  = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)
+  private val offsets = Array.ofDim[Int](arrays.length)
+  private val scratch = Array.ofDim[Float](bound.function.scratch)
+  private val none    = Array.emptyFloatArray
+
+  /** Where an input's numbers begin, by the function's number of it. */
+  def input(number: Int, array: Array[Float], offset: Int): Unit =
+    arrays(number) = array; offsets(number) = offset
+
+  def output(number: Int, array: Array[Float], offset: Int): Unit =
+    input(bound.inputs.length + number, array, offset)
+
+  def apply(): Unit = bound.function.apply(arrays, offsets, none, scratch)
+
+/** A function of what a picture shows, and of other numbers that stay where they are. */
+private[lanes] final class PictureCall(bound: BoundFunction, lanes: Int => Option[(Int, Int)]):
+  val call: LaneCall = LaneCall(bound)
+
+  // The function's inputs that are read from pictures, with the vehicle and the field.
+  private val (places, vehicles, fields) =
+    bound.inputs.zipWithIndex
+      .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
+      .unzip3
+
+  def look(all: Array[TimetableAgents], pictures: Array[Int], picture: Int): Unit =
+    var i = 0
+    while i < places.length do
+      val vehicle = vehicles(i)
+      val craft   = all(vehicle).vehicles
+      val from    = fields(i) match
+        case 0 => craft.seenX
+        case 1 => craft.seenY
+        case 2 => craft.seenVx
+        case _ => craft.seenVy
+      call.input(places(i), from, pictures(picture + vehicle) * LaneFunction.COUNT)
+      i += 1
