@@ -47,7 +47,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
-    .aggregate(ownGraph, virtualTime)
+    .aggregate(ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -207,3 +207,9 @@ lazy val virtualTime = project
   .in(file("examples/virtual-time"))
   .dependsOn(vtime % Test)
   .settings(publish / skip := true, underAgent, libraryDependencies ++= pekkoStream ++ munit)
+
+/** Ground robots with a simulator and a protocol of their own, driven by our loops. */
+lazy val ownVehicle = project
+  .in(file("examples/own-vehicle"))
+  .dependsOn(cli)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)

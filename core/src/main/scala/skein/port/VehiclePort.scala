@@ -13,7 +13,8 @@ trait VehiclePort:
   /** Where the vehicle is and how it moves, world NED, by its own estimate.
     *
     * @return
-    *   with the moment at which that was so, on the vehicle's clock, and when it was asked for and answered, on the
+    *   with the moment at which that was so, on the vehicle's clock, which is one for all vehicles of a flight (vehicles
+    *   with clocks of their own are brought to one by their adapter, see [[skein.signal.ClockAlignment]]), and when it was asked for and answered, on the
     *   controller's
     */
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]]

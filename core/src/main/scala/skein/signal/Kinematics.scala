@@ -24,4 +24,3 @@ final case class Kinematics(
     def all(v: Vector3) = v.x.isFinite && v.y.isFinite && v.z.isFinite
     val turn            = Seq(orientation.w, orientation.x, orientation.y, orientation.z)
     all(positionNed) && all(velocityNed) && all(angularVelocityFrd) && turn.forall(_.isFinite)
-

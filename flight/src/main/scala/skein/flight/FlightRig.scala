@@ -91,9 +91,7 @@ final class FlightRigs(
       FlightRigs.version,
       clock.now()
     ),
-    scenario.agents.map(agent =>
-      Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
-    ),
+    scenario.agents.map(Vehicle.of),
     RecordedPlan.parameters(settings, plan)
   )
 
@@ -147,7 +145,7 @@ final class FlightRigs(
         val flight = Flight.start(
           plan.loop,
           team,
-          AirSimTime(client),
+          Some(AirSimTime(client)),
           settings.duration,
           clock,
           watch,
@@ -243,7 +241,7 @@ object FlightRigs:
 
   private val anyPort = Address("127.0.0.1", 0)
 
-  private val version = Option(getClass.getPackage.getImplementationVersion).getOrElse("development")
+  private[flight] val version = Option(getClass.getPackage.getImplementationVersion).getOrElse("development")
 
   /** What of the client's events a recording keeps; failed calls are recorded by whoever called. */
   private def eventOf(event: RpcEvent): Option[(EventKind, String)] = event match

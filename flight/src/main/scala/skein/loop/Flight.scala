@@ -44,13 +44,15 @@ object Flight:
 
   /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the flight.
     *
+    * @param time
+    *   what lets the simulator's time pass; only `paused` needs it
     * @param onTime
     *   how it has ended when its time is over
     */
   def start(
       kind: LoopKind,
       team: Team,
-      stepper: SteppedTime,
+      time: Option[SteppedTime],
       duration: Span,
       clock: Clock,
       recorder: Recorder,
@@ -59,9 +61,10 @@ object Flight:
       system: ActorSystem
   ): Flight =
     import system.dispatcher
+    require(kind != LoopKind.Paused || time.isDefined, "paused needs a simulator whose time passes in steps")
     val switch   = KillSwitches.shared("flight")
     val stopping = Promise[Outcome]()
-    val graph    = loop(kind, team, stepper, duration, clock, switch, () => stopping.isCompleted)
+    val graph    = loop(kind, team, time, duration, clock, switch, () => stopping.isCompleted)
     val running  = graph.run()
 
     recorder.failure.foreach(error => stopping.trySuccess(Outcome.Failed(error.message)))
@@ -93,7 +96,7 @@ object Flight:
   private def loop(
       kind: LoopKind,
       team: Team,
-      stepper: SteppedTime,
+      time: Option[SteppedTime],
       duration: Span,
       clock: Clock,
       switch: SharedKillSwitch,
@@ -102,7 +105,7 @@ object Flight:
     import system.dispatcher
     kind match
       case LoopKind.Paused =>
-        PausedLoop(team, stepper, duration.toNanos / team.settings.period.toNanos, clock, stopped)
+        PausedLoop(team, time.get, duration.toNanos / team.settings.period.toNanos, clock, stopped)
       case LoopKind.Sequential => SequentialLoop(team, switch)
       case LoopKind.Futures    => FuturesLoop(team, switch)
       case LoopKind.Stream     => StreamLoop(team, switch)

@@ -39,4 +39,3 @@ object PlanningSummary:
       plans.count(_.candidates == 0),
       plans.count(_.breaches > 0)
     )
-

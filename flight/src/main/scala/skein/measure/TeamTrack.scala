@@ -21,7 +21,10 @@ final case class TeamTrack private (
   def timeS(instant: Int): Double = instant * stepS
 
   def distanceM(one: Int, other: Int, instant: Int): Double =
-    StrictMath.hypot(northM(one)(instant) - northM(other)(instant), eastM(one)(instant) - eastM(other)(instant))
+    StrictMath.hypot(
+      northM(one)(instant) - northM(other)(instant),
+      eastM(one)(instant) - eastM(other)(instant)
+    )
 
   def distanceM(vehicle: Int, north: Double, east: Double, instant: Int): Double =
     StrictMath.hypot(northM(vehicle)(instant) - north, eastM(vehicle)(instant) - east)

@@ -94,7 +94,7 @@ object TortureFlight:
         loopSettings = if ordeal.asPublished then LoopSettings().asPublished else LoopSettings()
         team         = Team(scenario, crafts, clock, recorder, loopSettings)
         flight       =
-          Flight.start(ordeal.loop, team, stepper, ordeal.duration, clock, recorder)
+          Flight.start(ordeal.loop, team, Some(stepper), ordeal.duration, clock, recorder)
         _         = ordeal.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
         restarted = Future.traverse(ordeal.restarts)(restart =>
           at(restart.at)(operator.restart(restart))

@@ -72,7 +72,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       val world =
         SimulatorSettings(WorldSettings(duel, text = WorldSettings.render(duel)), Address("simulator", 41451))
       // Where a flight begins is not known before; its link is stalled from outside then.
-      var gate    = Option.empty[Instant]
+      var gate = Option.empty[Instant]
       // `paused` has no link of its own: with answers that take no time it would have flown at once.
       val between = if loop == LoopKind.Paused then LatencyProfile.direct else LatencyProfile.none
       val network = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(between)), 1, clock)

@@ -16,9 +16,9 @@ import skein.units.*
   * since the ways to the starts are most of it.
   */
 class RunningSimulatorLiveSuite extends munit.FunSuite:
-  private given system: ActorSystem             = ActorSystem("RunningSimulatorLiveSuite")
-  override def afterAll(): Unit                 = { val _ = Await.result(system.terminate(), 10.seconds) }
-  override val munitTimeout: Duration        = 3.minutes
+  private given system: ActorSystem   = ActorSystem("RunningSimulatorLiveSuite")
+  override def afterAll(): Unit       = { val _ = Await.result(system.terminate(), 10.seconds) }
+  override val munitTimeout: Duration = 3.minutes
 
   private val settings = FlySettings(
     List(LoopKind.Stream, LoopKind.Futures),

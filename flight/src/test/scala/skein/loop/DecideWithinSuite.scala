@@ -78,7 +78,7 @@ class DecideWithinSuite extends munit.FunSuite:
       val settings = LoopSettings(deadline = Some(skein.loop.Deadline(Span.ofMillis(20), Fallback.Hold)))
       val team     = Team(scenario, world.crafts, clock, recorder, settings)
       skein.loop.Flight
-        .start(LoopKind.Stream, team, world, Span.ofSeconds(2), clock, recorder)
+        .start(LoopKind.Stream, team, Some(world), Span.ofSeconds(2), clock, recorder)
         .outcome
         .map(outcome => (outcome, recorder.recording))
     val (outcome, recording) = run.value

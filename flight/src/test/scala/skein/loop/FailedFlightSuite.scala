@@ -68,7 +68,7 @@ class FailedFlightSuite extends munit.FunSuite:
       val recorder = MemoryRecorder(Samples.heading)
       val team     = Team(scenario, crafts, clock, recorder, LoopSettings())
       Flight
-        .start(kind, team, world, Span.ofSeconds(30), clock, recorder)
+        .start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder)
         .outcome
         .map(Landed(_, crafts, recorder.recording))
     .value

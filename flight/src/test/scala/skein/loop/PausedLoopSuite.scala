@@ -82,7 +82,7 @@ class PausedLoopSuite extends munit.FunSuite:
       val recorder           = MemoryRecorder(Samples.heading)
       val team               = Team(scenario, crafts, clock, recorder, LoopSettings())
       Flight
-        .start(LoopKind.Paused, team, stepper, Span.ofSeconds(1), clock, recorder)
+        .start(LoopKind.Paused, team, Some(stepper), Span.ofSeconds(1), clock, recorder)
         .outcome
         .map: outcome =>
           val recording = recorder.recording

@@ -47,7 +47,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       val heading            = Samples.heading.copy(flight = Samples.heading.flight.copy(loop = kind.label))
       val recorder           = MemoryRecorder(heading)
       val team               = Team(scenario, world.crafts, clock, recorder, LoopSettings())
-      Flight.start(kind, team, world, Span.ofSeconds(30), clock, recorder).outcome.map(_ =>
+      Flight.start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder).outcome.map(_ =>
         recorder.recording
       )
     .value

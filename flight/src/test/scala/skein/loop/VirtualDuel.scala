@@ -53,7 +53,7 @@ object VirtualDuel:
       val recorder = MemoryRecorder(Samples.heading)
       val workers  = CountedPlanWorkers(settings.planning.searches, slices)
       val team     = Team(scenario, world.crafts, clock, recorder, settings, workers)
-      Flight.start(kind, team, world, duration, clock, recorder).outcome.map((_, recorder.recording))
+      Flight.start(kind, team, Some(world), duration, clock, recorder).outcome.map((_, recorder.recording))
     VirtualDuel(sum / steps, run.value._1, run.value._2)
 
   lazy val truth: VirtualDuel = fly(LoopKind.Paused, LatencyProfile.none, 1)

@@ -161,7 +161,7 @@ private[record] object Columns:
 
   /** A column that a file of an older format has in another way. */
   def migrated[A](columns: Columns[A], older: String): Columns[A] = new Columns[A]:
-    val definitions: Vector[Column] = columns.definitions.map(_.copy(older = Some(older)))
+    val definitions: Vector[Column]           = columns.definitions.map(_.copy(older = Some(older)))
     def append(value: A, to: RowWriter): Unit = columns.append(value, to)
     def read(cells: Cells): A                 = columns.read(cells)
 

@@ -42,10 +42,10 @@ object Difference:
   private def cells(record: Record): Vector[String] =
     val texts = Vector.newBuilder[String]
     val row   = new RowWriter:
-      def text(value: String): Unit   = texts += value
-      def long(value: Long): Unit     = texts += value.toString
-      def double(value: Double): Unit = texts += value.toString
+      def text(value: String): Unit         = texts += value
+      def long(value: Long): Unit           = texts += value.toString
+      def double(value: Double): Unit       = texts += value.toString
       def longs(values: Vector[Long]): Unit = texts += values.mkString(",")
-      def nothing(): Unit             = texts += "absent"
+      def nothing(): Unit                   = texts += "absent"
     Table.columnsOf(record).append(record, row)
     texts.result()

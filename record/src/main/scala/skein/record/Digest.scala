@@ -53,11 +53,11 @@ object Digest:
       put(1, utf8.length)
       sha256.update(utf8)
 
-    def long(value: Long): Unit     = put(2, value)
-    def double(value: Double): Unit = put(3, java.lang.Double.doubleToLongBits(value))
+    def long(value: Long): Unit           = put(2, value)
+    def double(value: Double): Unit       = put(3, java.lang.Double.doubleToLongBits(value))
     def longs(values: Vector[Long]): Unit = text(values.mkString(","))
-    def nothing(): Unit             = put(0, 0)
-    override def nothingYet(): Unit = ()
+    def nothing(): Unit                   = put(0, 0)
+    override def nothingYet(): Unit       = ()
 
     private def put(kind: Byte, value: Long): Unit =
       sha256.update(bytes.clear().put(kind).putLong(value).flip())

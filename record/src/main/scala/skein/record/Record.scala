@@ -1,6 +1,6 @@
 package skein.record
 
-import skein.policy.Action
+import skein.policy.{Action, Agent}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
@@ -59,6 +59,10 @@ final case class Parameter(name: String, value: String) extends Record
   *   the origin of its own frame in the world frame
   */
 final case class Vehicle(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
+
+object Vehicle:
+  def of(agent: Agent): Vehicle =
+    Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
 /** One answer of the simulator.
   *

@@ -18,8 +18,8 @@ private[record] trait RowWriter:
 
 /** Writes into the row that the appender has begun. */
 private[record] final class AppenderRow(appender: DuckDBAppender) extends RowWriter:
-  def text(value: String): Unit   = { val _ = appender.append(value) }
-  def long(value: Long): Unit     = { val _ = appender.append(value) }
-  def double(value: Double): Unit = { val _ = appender.append(value) }
+  def text(value: String): Unit         = { val _ = appender.append(value) }
+  def long(value: Long): Unit           = { val _ = appender.append(value) }
+  def double(value: Double): Unit       = { val _ = appender.append(value) }
   def longs(values: Vector[Long]): Unit = { val _ = appender.append(values.toArray) }
-  def nothing(): Unit             = { val _ = appender.appendNull() }
+  def nothing(): Unit                   = { val _ = appender.appendNull() }

@@ -217,7 +217,13 @@ private[record] object Table:
 
   val event: Table[Event] = Table(
     "event",
-    product[Event]((instantNs("at"), eventKind("kind"), optional(text("vehicle")), text("detail"), added(migrated(optional(long("decision")), decisionInDetail))))
+    product[Event]((
+      instantNs("at"),
+      eventKind("kind"),
+      optional(text("vehicle")),
+      text("detail"),
+      added(migrated(optional(long("decision")), decisionInDetail))
+    ))
   )
 
   val truth: Table[Truth] =

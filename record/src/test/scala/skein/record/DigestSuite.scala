@@ -65,8 +65,8 @@ class DigestSuite extends munit.FunSuite:
       Metres(-20),
       Instant.ofNanos(99)
     )
-    val event    = Event(Instant.ofNanos(5), EventKind.DeadlineMissed, None, "late")
-    val planned  = Planned("Pursuer", 7, 1024, Vector(3, 2), None, Span.ofMillis(1.5), 0)
+    val event   = Event(Instant.ofNanos(5), EventKind.DeadlineMissed, None, "late")
+    val planned = Planned("Pursuer", 7, 1024, Vector(3, 2), None, Span.ofMillis(1.5), 0)
     assertEquals(
       digest(Latency("vpn·1", Instant.ofNanos(12), Span.ofMillis(34.5)), command, event, planned),
       Digest(expected)

@@ -38,15 +38,16 @@ class RecordingSuite extends munit.FunSuite:
     assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, older)))
     assert(Export.parquet(file, folder.resolve("parquet")).isRight)
 
-  folder.test("up to format 4 slices were text, and a fallback's decision was in the event's text alone"): folder =>
-    val file = folder.resolve("flight.duckdb")
-    record(file, Samples.oneOfEach*)
-    val today = Digest.ofFile(file)
-    execute(file, "ALTER TABLE event DROP COLUMN decision")
-    execute(file, "ALTER TABLE plan ALTER slices TYPE VARCHAR USING array_to_string(slices, ',')")
-    execute(file, "UPDATE format SET version = 4")
-    assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
-    assertEquals(Digest.ofFile(file), today)
+  folder.test("up to format 4 slices were text, and a fallback's decision was in the event's text alone"):
+    folder =>
+      val file = folder.resolve("flight.duckdb")
+      record(file, Samples.oneOfEach*)
+      val today = Digest.ofFile(file)
+      execute(file, "ALTER TABLE event DROP COLUMN decision")
+      execute(file, "ALTER TABLE plan ALTER slices TYPE VARCHAR USING array_to_string(slices, ',')")
+      execute(file, "UPDATE format SET version = 4")
+      assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
+      assertEquals(Digest.ofFile(file), today)
 
   folder.test("rows are numbered through all tables in the order of their records"): folder =>
     val file = folder.resolve("flight.duckdb")
@@ -103,12 +104,21 @@ class RecordingSuite extends munit.FunSuite:
         "UPDATE decision SET ownAgeMs = '-Infinity'",
         "table decision, row 5: ownAgeMs: expected a finite number, came -Infinity"
       ),
-      ("an unknown word", "UPDATE event SET kind = 'Odd'", "table event, row 6: kind: expected one of Dropped, Skipped")
+      (
+        "an unknown word",
+        "UPDATE event SET kind = 'Odd'",
+        "table event, row 6: kind: expected one of Dropped, Skipped"
+      )
     )
   do
     folder.test(s"$what in a recording is told with its place, in one line"): folder =>
       val file = folder.resolve("flight.duckdb")
-      record(file, Samples.reading(1), Samples.decision(1), Event(Samples.at(6), EventKind.Skipped, None, "late"))
+      record(
+        file,
+        Samples.reading(1),
+        Samples.decision(1),
+        Event(Samples.at(6), EventKind.Skipped, None, "late")
+      )
       execute(file, change)
       RecordingReader.read(file) match
         case Left(RecordError.NotARecording(`file`, found)) =>

@@ -1,0 +1,84 @@
+package rovers
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.flight.PortFlight
+import skein.link.{MemoryNetwork, NetworkPlan, TcpTransport, Transport}
+import skein.loop.{LoopKind, LoopSettings}
+import skein.policy.*
+import skein.record.{ClockKind, MemoryRecorder, Recorder}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Drives from corner to corner; remembers which is the next. */
+final case class Patrol(corners: Vector[Vector3], mps: Double) extends AgentPolicy:
+  type Memory = Int
+  def start: Int                                            = 0
+  def choose(seen: Observation, memory: Int): (Action, Int) =
+    val here = seen.own.kinematics.positionNed
+    val next = if here.horizontalDistance(corners(memory)) < 1 then (memory + 1) % corners.size else memory
+    val way  = corners(next) - here
+    val mps  = this.mps / way.norm.max(1e-9)
+    (Action.VelocityAt(way.x * mps, way.y * mps, Metres(0)), next)
+
+/** Drives towards its opponent, the slower the nearer it is, and stops at a distance. */
+final case class Heel(distanceM: Double, mps: Double) extends AgentPolicy:
+  type Memory = Unit
+  def start: Unit                                             = ()
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val way   = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
+    val speed = (way.norm - distanceM).max(0).min(mps) / way.norm.max(1e-9)
+    (Action.VelocityAt(way.x * speed, way.y * speed, Metres(0)), ())
+
+/** Two robots: one patrols, the other stays at its heels. */
+object Chase:
+  private val corners = Vector(Vector3(12, 0, 0), Vector3(12, 8, 0), Vector3(0, 8, 0), Vector3(0, 0, 0))
+
+  val fleet: Fleet = Fleet(Vector(
+    Agent("Hare", Role.Evader, MetresPerSecond(1.5), Vector3(4, 0, 0), Radians(0), Patrol(corners, 1.5)),
+    Agent("Hound", Role.Pursuer, MetresPerSecond(3), Vector3(-4, -4, 0), Radians(0), Heel(1, 3))
+  ))
+
+  def flight(kind: LoopKind, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
+    PortFlight(
+      s"${kind.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
+      kind,
+      fleet,
+      duration,
+      clockKind,
+      clock,
+      LoopSettings.every(Span.ofMillis(100)),
+      name = "rovers",
+      simulator = "rovers"
+    )
+
+  /** Over a transport: simulated robots listen, the loop connects. */
+  private def drive(flight: PortFlight, transport: Transport, recorder: Recorder)(using system: ActorSystem) =
+    import system.dispatcher
+    val start = flight.clock.now()
+    for
+      addresses <- Future.traverse(fleet.agents): agent =>
+        val at = agent.startPositionNed
+        RoverSimulator(at.x, at.y, flight.clock, start).listen(transport)
+      vehicles = addresses.map(Rover(transport, _, flight.clock))
+      landed <- flight.start(vehicles, recorder).landed
+    yield landed
+
+  /** Over TCP on loopback, in real time. */
+  def live(kind: LoopKind, duration: Span)(recorder: PortFlight => Future[Recorder])(using
+      system: ActorSystem
+  ) =
+    import system.dispatcher
+    val planned = flight(kind, duration, ClockKind.Real, Clock.system)
+    recorder(planned).flatMap(drive(planned, TcpTransport(), _))
+
+  /** The same in virtual time, in a moment. Equal seeds give equal recordings. */
+  def virtual(kind: LoopKind, duration: Span, seed: Long): MemoryRecorder = VirtualTime
+    .run(seed): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock    = Clock.ofNanos(VirtualTime.clock(system))
+      val planned  = flight(kind, duration, ClockKind.Virtual, clock)
+      val recorder = MemoryRecorder(planned.heading)
+      drive(planned, MemoryNetwork(NetworkPlan(), seed, clock).host("localhost"), recorder).map(_ => recorder)
+    .value

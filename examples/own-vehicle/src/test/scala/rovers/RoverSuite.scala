@@ -1,0 +1,76 @@
+package rovers
+
+import java.nio.file.Files
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.{Address, MemoryNetwork, NetworkPlan}
+import skein.loop.{LoopKind, Replay}
+import skein.measure.FlightSummary
+import skein.policy.Action
+import skein.port.VehicleError
+import skein.record.Recording
+import skein.report.Report
+import skein.units.*
+import skein.vtime.VirtualTime
+
+class RoverSuite extends munit.FunSuite:
+  private val loops = Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream)
+
+  private def distances(recording: Recording): Seq[(Double, Double)] =
+    FlightSummary.of(recording).distance.get.points.map((atS, distance) => (atS, distance))
+
+  for loop <- loops do
+    test(
+      s"${loop.label}: after 10 s the hound is at the hare's heels, and everything is decided again from the recording"
+    ):
+      val recording = Chase.virtual(loop, Span.ofSeconds(40), seed = 1).recording
+      assertEquals(recording.ending.map(_.how.toString), Some("Completed"))
+      for (atS, distance) <- distances(recording) if atS > 10 do
+        assert(distance > 0.5 && distance < 3.5, s"$distance m at $atS s")
+      assertEquals(Replay(Chase.fleet, recording).firstDifference, None)
+
+  test("equal seeds give equal recordings"):
+    def digest = Chase.virtual(LoopKind.Stream, Span.ofSeconds(10), seed = 7).digest
+    assertEquals(digest, digest)
+
+  test("recordings become a report"):
+    val folder = Files.createTempDirectory("rovers")
+    val file   = folder.resolve("virtual.duckdb")
+    assert(Chase.virtual(LoopKind.Stream, Span.ofSeconds(12), seed = 1).writeTo(file).isRight)
+    val set    = Report.read(Seq(file)).fold(errors => fail(errors.mkString), identity)
+    val report = Report.write(set, folder).fold(fail(_), identity)
+    assert(Files.readString(report.page).contains("stream-rovers-virtual"))
+
+  private def inVirtualTime[A](body: ActorSystem ?=> (MemoryNetwork, Clock) => Future[A]): A =
+    VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem = system
+        val clock         = Clock.ofNanos(VirtualTime.clock(system))
+        body(MemoryNetwork(NetworkPlan(), 1, clock), clock)
+      .value
+
+  test("what the robot cannot do, an end of the connection and silence are told as errors"):
+    val (climbing, nobody) = inVirtualTime: (network, clock) =>
+      given ExecutionContext = ExecutionContext.parasitic
+      val host               = network.host("localhost")
+      val nobody             = Rover(host, Address("localhost", 9), clock)
+      for
+        address  <- RoverSimulator(0, 0, clock, clock.now()).listen(host)
+        climbing <- Rover(host, address, clock).act(Action.Land, Span.ofSeconds(1))
+        answer   <- nobody.read()
+      yield (climbing, answer)
+    assert(climbing.left.exists(_.isInstanceOf[VehicleError.Unsupported]), climbing)
+    assert(nobody.left.exists(_.isInstanceOf[VehicleError.Lost]), nobody)
+
+  test("a drive ends by itself, and is ended by the next"):
+    val (first, second) = inVirtualTime: (network, clock) =>
+      given ExecutionContext = ExecutionContext.parasitic
+      val host               = network.host("localhost")
+      for
+        address <- RoverSimulator(0, 0, clock, clock.now()).listen(host)
+        rover  = Rover(host, address, clock)
+        first  = rover.act(Action.VelocityAt(1, 0, Metres(0)), Span.ofSeconds(5))
+        second = rover.act(Action.VelocityAt(0, 1, Metres(0)), Span.ofSeconds(5))
+        ended <- first.zip(second)
+      yield ended
+    assertEquals((first, second), (Right(false), Right(true)))

@@ -1,0 +1,87 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.loop.*
+import skein.policy.Fleet
+import skein.port.{SteppedTime, VehiclePort}
+import skein.record.{Flight as FlightRow, *}
+import skein.units.*
+
+/** One flight of a loop with vehicles of any kind, live or in virtual time: whatever has a [[VehiclePort]] flies. The
+  * vehicles are at their starts already.
+  *
+  * @param id
+  *   names it in tables and pictures
+  * @param fleet
+  *   who flies, and by which policies
+  * @param link
+  *   what the vehicles are reached over
+  * @param simulator
+  *   what they are
+  * @param clockKind
+  *   the clock that it is flown by; [[clock]] reads it
+  * @param name
+  *   of the scenario
+  */
+final case class PortFlight(
+    id: String,
+    loop: LoopKind,
+    fleet: Fleet,
+    duration: Span,
+    clockKind: ClockKind,
+    clock: Clock,
+    settings: LoopSettings = LoopSettings(),
+    name: String = "own",
+    link: String = "none",
+    simulator: String = "own"
+):
+  /** What its recording begins with. */
+  def heading: Heading = Heading(
+    FlightRow(
+      id,
+      loop.label,
+      link,
+      settings.seed,
+      settings.period,
+      duration,
+      clockKind.label,
+      simulator,
+      name,
+      FlightRigs.version,
+      clock.now()
+    ),
+    fleet.agents.map(Vehicle.of)
+  )
+
+  /** Starts it. The recorder gets everything down to the last row, and is closed.
+    *
+    * @param vehicles
+    *   one for each agent of the fleet, in its order
+    * @param time
+    *   of the simulator, where it can stand still: `paused` needs it
+    * @return
+    *   the flight under way, and how it ended: when it completes, the vehicles hover and everything is written
+    */
+  def start(vehicles: Vector[VehiclePort], recorder: Recorder, time: Option[SteppedTime] = None)(using
+      system: ActorSystem
+  ): PortFlight.UnderWay =
+    import system.dispatcher
+    val team   = Team(fleet, vehicles, clock, recorder, settings)
+    val flight = Flight.start(loop, team, time, duration, clock, recorder)
+    val landed =
+      for
+        outcome <- flight.outcome
+        _ = recorder.offer(FlightRig.ending(outcome, clock.now()))
+        written <- recorder.close()
+      yield (outcome, written)
+    PortFlight.UnderWay(flight, landed)
+
+object PortFlight:
+  /** @param landed
+    *   how it ended, and what is on record
+    */
+  final case class UnderWay(
+      flight: Flight,
+      landed: Future[(outcome: Outcome, written: Either[RecordError, Written])]
+  )
