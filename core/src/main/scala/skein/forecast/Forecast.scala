@@ -45,6 +45,13 @@ final case class Forecast private (
           told = Some((now, estimates))
           estimates
 
+  /** What each vehicle flies through, from its newest reading on, until a command acts that is sent now; absent until
+    * every vehicle was seen. [[whenActing]] is where that leads.
+    */
+  def legsWhenActing(now: Instant): Option[Vector[Vector[Leg]]] =
+    for delays <- delays if tracks.forall(_.isDefined)
+    yield tracks.flatten.map(_.legsTo(delays.expectedArrival(now), delays, now))
+
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))
     // While the simulator's clock stood still, delays to it meant nothing.

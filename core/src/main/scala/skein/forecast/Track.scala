@@ -23,8 +23,10 @@ final case class Commanded(
   *   the model's, at the newest reading
   * @param sights
   *   the newest readings, the newest last
+  * @param resting
+  *   in effect before the first of all commands
   * @param before
-  *   in effect before the first of `commands`
+  *   in effect before the first of `commands`; absent: `resting`
   * @param commands
   *   in the order of their sending: the one in effect at the newest reading, and all later ones
   */
@@ -32,7 +34,8 @@ final case class Track[S] private (
     model: VehicleModel[S],
     state: S,
     sights: Vector[Stamped[Kinematics]],
-    before: Setpoint,
+    resting: Setpoint,
+    before: Option[Commanded],
     commands: Vector[Commanded]
 ):
   def newest: Stamped[Kinematics] = sights.last
@@ -48,7 +51,7 @@ final case class Track[S] private (
       copy(
         state = model.corrected(flown, reading.value, reading.validAt.since(newest.validAt)),
         sights = (sights :+ reading).takeRight(Track.SightLimit),
-        before = past.lastOption.fold(before)(_.setpoint),
+        before = past.lastOption.orElse(before),
         commands = needed
       )
 
@@ -90,14 +93,25 @@ final case class Track[S] private (
       )
       .map(Track.between(_, _, validAt))
 
+  /** What the vehicle flies through from the newest reading until an instant on the simulator's clock, by what is known
+    * now; up to the reading itself where that is not before it.
+    */
+  def legsTo(validAt: Instant, delays: OneWayDelays, now: Instant): Vector[Leg] =
+    val until  = validAt.max(newest.validAt)
+    val legs   = Vector.newBuilder[Leg]
+    var flying = before
+    var at     = newest.validAt
+    for (command, actsAt) <- effects(delays, now).takeWhile((_, actsAt) => actsAt < until) do
+      val acts = actsAt.max(at)
+      legs += Leg(flying, acts.since(at))
+      flying = Some(command)
+      at = acts
+    legs += Leg(flying, until.since(at))
+    legs.result()
+
   private def advancedTo(validAt: Instant, delays: OneWayDelays, now: Instant): S =
-    val (last, setpoint, at) = effects(delays, now)
-      .takeWhile((_, actsAt) => actsAt < validAt)
-      .foldLeft((state, before, newest.validAt)):
-        case ((state, setpoint, at), (command, actsAt)) =>
-          val until = actsAt.max(at)
-          (model.advanced(state, setpoint, until.since(at)), command.setpoint, until)
-    model.advanced(last, setpoint, validAt.since(at))
+    legsTo(validAt, delays, now).foldLeft(state): (flown, leg) =>
+      model.advanced(flown, leg.command.fold(resting)(_.setpoint), leg.span)
 
   /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one sent earlier.
     */
@@ -148,6 +162,7 @@ object Track:
       model.start(first.value),
       Vector(first),
       Setpoint.hold(first.value.positionNed),
+      None,
       Vector.empty
     )
 

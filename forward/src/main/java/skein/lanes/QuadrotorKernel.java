@@ -9,6 +9,7 @@ import static skein.simd.LaneMath.constant;
 
 import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneMath;
+import skein.units.Quaternion;
 import skein.units.Vector3;
 import skein.vehicle.Airframe;
 import skein.vehicle.Atmosphere;
@@ -179,6 +180,14 @@ public final class QuadrotorKernel {
 
   public Vector3 velocityNed(int vehicle) {
     return new Vector3(vx[vehicle], vy[vehicle], vz[vehicle]);
+  }
+
+  public Quaternion orientation(int vehicle) {
+    return new Quaternion(qw[vehicle], qx[vehicle], qy[vehicle], qz[vehicle]);
+  }
+
+  public Vector3 angularVelocityFrd(int vehicle) {
+    return new Vector3(wx[vehicle], wy[vehicle], wz[vehicle]);
   }
 
   /** Flies the vehicles for {@code steps} steps of 3 ms. */

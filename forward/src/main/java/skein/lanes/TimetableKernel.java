@@ -14,7 +14,7 @@ final class TimetableKernel {
   static final int WORLDS = LanePolicy.WORLDS;
 
   /** Kinds of a timetable's operations. */
-  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3;
+  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, CORRECT = 5;
 
   private final TimetableAgents[] agents;
   private final TimetableScores scores;
@@ -45,6 +45,9 @@ final class TimetableKernel {
     scores.start();
     int[] operations = timetable.operations(), pictures = timetable.pictures();
     float[] times = timetable.times();
+    Courses courses = timetable.courses();
+    // Predictions start from velocities, whoever looks at them.
+    boolean readsVelocity = withVelocity || !courses.isEmpty();
     for (int i = 0; i < timetable.size(); i++) {
       int field = i * Timetable.Fields(), number = i * Timetable.Numbers();
       TimetableAgents agent = agents[operations[field + 1]];
@@ -52,11 +55,23 @@ final class TimetableKernel {
       switch (operations[field]) {
         case LOOK ->
             agent.vehicles.look(
-                times, number, first * WORLDS, withVelocity && operations[field + 3] != 0);
+                times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
         case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
         case SCORE ->
             scores.score(
                 agents, pictures, first * agents.length, operations[field + 3] != 0, times[number]);
+        case PREDICT ->
+            agent.vehicles.predicted.predict(
+                agent.vehicles,
+                agent.headings,
+                first * WORLDS,
+                operations[field + 3] * WORLDS,
+                courses,
+                operations[field + 4],
+                withVelocity);
+        case CORRECT ->
+            agent.vehicles.predicted.correct(
+                agent.vehicles, agent.headings, first * WORLDS, courses, operations[field + 3]);
         default ->
             agent.decide(
                 agents,

@@ -13,6 +13,9 @@ abstract class TimetableVehicles {
   /** How the vehicles answered, by place: positions, m, and velocities, m/s, north and east. */
   float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
+  /** Carries their readings forward, in loops that predict; else null. */
+  PredictedVehicles predicted;
+
   /** Where each world's vehicle starts, north and east, m. */
   final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
@@ -40,6 +43,7 @@ abstract class TimetableVehicles {
       seenVy = new float[readings * WORLDS];
     }
     start(worlds);
+    if (predicted != null) predicted.start(worlds);
   }
 
   abstract void start(int worlds);

@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.forecast.Leg
 import skein.policy.Assignment
 import skein.signal.Kinematics
 
@@ -28,7 +29,7 @@ private[skein] final class DuelWorld(
   private val timeoutNs              = Nanos.of(asking.timeoutS)
   private var key                    = 0
   private var time                   = 0L
-  private var observer: LoopObserver = LoopObserver.Nobody
+  private var watching: LoopObserver = LoopObserver.Nobody
 
   // Readings by vehicle and the question's number, see `slot`: what they showed, and when.
   val x, y, vx, vy                          = Array.ofDim[Double](count * ring)
@@ -48,11 +49,14 @@ private[skein] final class DuelWorld(
   def start(worldKey: Int, listener: LoopObserver): Unit =
     key = worldKey
     time = 0
-    observer = listener
+    watching = listener
     queue.clear()
     for vehicle <- vehicles.indices do
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = 0; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
+
+  /** Is told what happens. */
+  def observer: LoopObserver = watching
 
   /** Since the flight's start, ns. */
   def nowNs: Long = time
@@ -223,6 +227,15 @@ trait LoopObserver:
 
   /** It was decided for a vehicle, for the first time or so long after the decision before. */
   private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: DuelSight): Unit = ()
+
+  /** Under `Predictive`: a reading entered the forecast.
+    *
+    * @param validAtNs
+    *   when it was made
+    * @param legs
+    *   what the vehicle flew through since the reading before, by what is known now; empty at its first
+    */
+  private[skein] def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit = ()
 
   /** A command was sent: the newest decision for the vehicle. */
   def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()

@@ -46,12 +46,21 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
         Instant.ofNanos(world.sentAtNs(at)),
         Instant.ofNanos(world.receivedAtNs(at))
       )
+      val before = forecast.tracks(vehicle)
       forecast = forecast.withEvidence(Evidence.Seen(vehicle, reading))
+      if before.forall(reading.validAt > _.newest.validAt) then
+        world.observer.entered(
+          vehicle,
+          question,
+          reading.validAt.toNanos,
+          before.fold(Vector.empty)(_.legsTo(reading.validAt, forecast.delays.get, reading.receivedAt))
+        )
 
   override def due(number: Int): Unit =
     world.schedule(periodNs / 2 + (number + 1) * periodNs, DuelWorld.Due, 0, number + 1)
     if !known.contains(false) then
       sight.takeSent(controllers)
+      System.arraycopy(validAt, 0, sight.validAtNs, 0, world.count)
       java.util.Arrays.fill(sight.step, number)
       sight.forecast = Some(forecast)
       for controller <- controllers do controller.offer(sight)

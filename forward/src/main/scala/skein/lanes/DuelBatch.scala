@@ -26,26 +26,26 @@ final class DuelBatch(
   require(threads > 0, s"threads must be positive, got $threads")
 
   // A class with vectors is not touched where their module is missing.
-  private val lanes: Either[String, TimetableModel] =
+  private val plant: Either[String, TimetableModel] =
     if ModuleLayer.boot().findModule("jdk.incubator.vector").isEmpty then
       Left("the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector")
-    else
-      timing match
-        case _: LoopTiming.Predictive =>
-          Left("the lanes decide on readings as they were made, without a forecast")
-        case _ => TimetableModel.of(model, duel)
+    else TimetableModel.of(model, duel)
+
+  /** The vehicles under the loop, if it flies by timetables. */
+  private val lanes: Either[String, TimetableModel] =
+    plant.flatMap(_ => TimetableModel.under(timing, model, duel))
 
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  = (timing, model) match
-      case (stream: LoopTiming.Stream, reduced: Reduced) if lanes.isRight =>
+      case (stream: LoopTiming.Stream, reduced: Reduced) if plant.isRight =>
         StreamFlyer(duel, stream, reduced, scalar)
-      case (_, quadrotor: QuadrotorResponse) if lanes.isRight => QuadrotorFleet(duel, timing, quadrotor)
+      case (_, quadrotor: QuadrotorResponse) if plant.isRight => QuadrotorFleet(duel, timing, quadrotor)
       case _                                                  => scalar
     val together: DuelFlyer = lanes match
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
-      case _           => scalar
+      case _           => alone
 
   private val timetables = Timetables(MostTimetables)
   private val workers    = Vector.fill(threads)(Worker())
@@ -81,14 +81,16 @@ final class DuelBatch(
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
-    lanes.flatMap: _ =>
+    plant.flatMap: _ =>
       val each    = LaneMath.LANES
       val refused = Seq(pursuer, evader).flatMap(PolicyLanes.of(_).left.toOption).headOption
       (timing, model) match
-        case _ if shareEpisodes && refused.isEmpty => Right(s"$each candidates of an episode at a time")
-        case (_, _: QuadrotorResponse)             =>
+        case _ if shareEpisodes && refused.isEmpty && lanes.isRight =>
+          Right(s"$each candidates of an episode at a time")
+        case (_, _: QuadrotorResponse) =>
           Right(s"$each quadrotors at a time; their loops by the scalar engine")
-        case _ if refused.isDefined => Left(s"a policy is no formula: ${refused.get.getMessage}")
+        case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
+        case _ if refused.isDefined             => Left(s"a policy is no formula: ${refused.get.getMessage}")
         case (_: LoopTiming.Stream, _: Reduced)
             if Seq(pursuer, evader).exists(PolicyLanes.get(_).needsAges) =>
           Left("a policy asks how old readings are, which the lanes tell only candidates that share episodes")

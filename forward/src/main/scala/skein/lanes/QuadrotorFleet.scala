@@ -94,7 +94,12 @@ private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: Quadro
     override def seenVy: Double = vy.toFloat
 
     override def seen: Kinematics =
-      throw UnsupportedOperationException("the fleet tells how vehicles move horizontally, and no more")
+      Kinematics(
+        Vector3(seenX, seenY, along(kernel.z(place), kernel.vz(place), kernel.az(place)).toFloat),
+        Vector3(seenVx, seenVy, (kernel.vz(place) + kernel.az(place) * sinceStep).toFloat),
+        kernel.orientation(place),
+        kernel.angularVelocityFrd(place)
+      )
 
     private def ownX: Double = along(kernel.x(place), kernel.vx(place), kernel.ax(place))
     private def ownY: Double = along(kernel.y(place), kernel.vy(place), kernel.ay(place))

@@ -1,6 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
+import skein.forecast.{Forecast, Leg}
 import skein.forward.{
   Delays,
   DuelSight,
@@ -13,12 +14,15 @@ import skein.forward.{
   VelocityResponse
 }
 import skein.policy.{Assignment, KeepHeading, Role}
+import skein.units.Instant
+import skein.vehicle.ConstantVelocity
 
 /** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where the
   * vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies decide.
   *
   * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer notes what
-  * happens. So it holds for every loop whose decisions rest on readings as they were made.
+  * happens: what is read, what is predicted from which reading through which commands, what is decided upon that, and
+  * when it acts.
   *
   * @param vehicles
   *   how many fly
@@ -29,6 +33,8 @@ import skein.policy.{Assignment, KeepHeading, Role}
   *   time since the one before, and in a duel the ages of the own and of the opponent's reading; of a score, the time; s
   * @param pictures
   *   what is decided and scored upon: the places of all vehicles' readings, one picture after the other
+  * @param courses
+  *   by which readings are carried forward, in loops that predict
   * @param readings
   *   places that the readings of one vehicle need at a time
   * @param headings
@@ -39,13 +45,14 @@ private[skein] final class Timetable private (
     val operations: Array[Int],
     val times: Array[Float],
     val pictures: Array[Int],
+    val courses: Courses,
     val readings: Int,
     val headings: Int
 ):
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long = 4L * (operations.length + times.length + pictures.length)
+  def bytes: Long = 4L * (operations.length + times.length + pictures.length) + courses.bytes
 
 private[skein] object Timetable:
   val Fields: Int  = 6
@@ -61,10 +68,18 @@ private[skein] object Timetable:
       model: TimetableModel
   ): Timetable =
     val notes = Notes(vehicles, model)
-    Rollout(still(vehicles, durationS), timing, link, Still(model)).fly(key, observer = notes): Unit
+    Rollout(still(vehicles, durationS), unpredicted(timing), link, Still(model)).fly(
+      key,
+      observer = notes
+    ): Unit
     Compiler(notes, vehicles, durationS, model).result
 
-  import TimetableKernel.{ACT, DECIDE, LOOK, SCORE}
+  import TimetableKernel.{ACT, CORRECT, DECIDE, LOOK, PREDICT, SCORE}
+
+  /** The same loop; what stands still is predicted at no cost. */
+  private def unpredicted(timing: LoopTiming): LoopTiming = timing match
+    case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
+    case other                             => other
 
   /** An engagement in which nothing moves; its roles and rivals decide no time. */
   private def still(vehicles: Int, durationS: Double): Engagement = Engagement(
@@ -107,7 +122,26 @@ private[skein] object Timetable:
     /** `DECIDE` in a duel: the number of the opponent's decision that is known. */
     var opponent: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** By vehicle: how many there are. */
+    /** `PREDICT`: the number of the reading that is carried forward; `CORRECT`: of the one that entered. */
+    var from: Array[Int] = Array.ofDim[Int](capacity)
+
+    /** `PREDICT` and `CORRECT`: the number of the course, among [[courses]]. */
+    var course: Array[Int] = Array.ofDim[Int](capacity)
+
+    val courses: mutable.ArrayBuffer[Course] = mutable.ArrayBuffer.empty
+
+    /** By vehicle: the readings that entered the forecast. */
+    private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
+
+    /** By vehicle: how many of them were noted. */
+    private val corrected = Array.ofDim[Int](vehicles)
+
+    // What was predicted last: of which forecast, for a decision when, in which picture.
+    private var predictedOf: Forecast = null
+    private var predictedAtNs         = 0L
+    private var predicted             = 0
+
+    /** By vehicle: how many there are, of what is predicted too. */
     val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
 
     /** By picture, then by vehicle: the readings' numbers. */
@@ -127,6 +161,7 @@ private[skein] object Timetable:
       capacity *= 2
       kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
       picture = picture.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
+      from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
       atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
       ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
 
@@ -148,10 +183,60 @@ private[skein] object Timetable:
       while seen.size <= question do seen += 0
       seen(question) = look(vehicle, atNs * 1e-9)
 
+    override def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit =
+      for predictor <- model.predictor do
+        val plotter = entered(vehicle).lastOption
+          .fold(predictor.plotter)(_.plotter.next(legs.map(plotted(vehicle, _))))
+        entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, plotter)
+
+    /** The reading that a forecast starts from; what its model remembers is noted up to there. */
+    private def newest(vehicle: Int, forecast: Forecast, atNs: Long): Entered =
+      val readings = entered(vehicle)
+      val validAt  = forecast.tracks(vehicle).get.newest.validAt.toNanos
+      val last     = readings.lastIndexWhere(_.validAtNs == validAt)
+      while corrected(vehicle) <= last do
+        for flown <- readings(corrected(vehicle)).plotter.here do
+          noteCourse(CORRECT, vehicle, atNs, 0, readings(corrected(vehicle)), flown)
+        corrected(vehicle) += 1
+      readings(last)
+
+    private def noteCourse(
+        what: Int,
+        vehicle: Int,
+        atNs: Long,
+        which: Int,
+        start: Entered,
+        flown: Course
+    ): Unit =
+      courses += flown
+      note(what, vehicle, atNs * 1e-9, which)
+      from(size - 1) = start.reading
+      course(size - 1) = courses.size - 1
+
+    private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
+      CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
+
+    /** The picture of where all vehicles will be when a command acts that is sent now. */
+    private def predict(forecast: Forecast, atNs: Long): Int =
+      if (forecast ne predictedOf) || atNs != predictedAtNs then
+        predictedOf = forecast
+        predictedAtNs = atNs
+        val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
+        predicted = pictureOf(Array.tabulate(vehicles): vehicle =>
+          val start = newest(vehicle, forecast, atNs)
+          val flown = start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
+          looks(vehicle) += 1
+          noteCourse(PREDICT, vehicle, atNs, looks(vehicle), start, flown)
+          looks(vehicle))
+      predicted
+
     override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: DuelSight): Unit =
+      val seen = upon.forecast match
+        case Some(forecast) => predict(forecast, atNs)
+        case None => pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
       note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
       decisions(vehicle) += 1
-      picture(size - 1) = pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+      picture(size - 1) = seen
       elapsedS(size - 1) = elapsed
       if vehicles == 2 then
         opponent(size - 1) = upon.sentDecision(1 - vehicle)
@@ -175,6 +260,13 @@ private[skein] object Timetable:
         note(SCORE, 0, timeS, 0)
         picture(size - 1) = pictureOf(placed.clone)
 
+  /** A reading in the forecast.
+    *
+    * @param plotter
+    *   for what is predicted from it
+    */
+  private final case class Entered(reading: Int, validAtNs: Long, plotter: CoursePlotter)
+
   /** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
     * tells each vehicle when what happens to it.
     */
@@ -192,6 +284,7 @@ private[skein] object Timetable:
 
     /** The number of each picture among those that are told, or −1. */
     private val told     = Array.fill(notes.pictures.size)(-1)
+    private val courses  = Course.Builder()
     private val pictures = Array.newBuilder[Int]
     private var count    = 0
 
@@ -205,15 +298,18 @@ private[skein] object Timetable:
       for i <- 0 until end do
         val event = order(i)
         notes.kind(event) match
-          case LOOK   => look(event)
-          case DECIDE => decide(event, i)
-          case ACT    => act(event, i)
-          case SCORE  => score(event, i)
+          case LOOK    => look(event)
+          case DECIDE  => decide(event, i)
+          case ACT     => act(event, i)
+          case SCORE   => score(event, i)
+          case PREDICT => predict(event, i)
+          case CORRECT => correct(event, i)
       Timetable(
         vehicles,
         java.util.Arrays.copyOf(operations, size * Fields),
         java.util.Arrays.copyOf(times, size * Numbers),
         pictures.result(),
+        courses.result(),
         readings.map(_.size).max,
         headings.map(_.size).max
       )
@@ -249,9 +345,14 @@ private[skein] object Timetable:
           if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
-        case ACT   => headings(agent).usedAt(notes.number(event), at)
-        case SCORE => usedAt(notes.picture(event), at)
-        case LOOK  => ()
+        case ACT               => headings(agent).usedAt(notes.number(event), at)
+        case SCORE             => usedAt(notes.picture(event), at)
+        case PREDICT | CORRECT =>
+          readings(agent).usedAt(notes.from(event), at)
+          decidedUpon(agent)(notes.from(event)) = true
+          for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
+            headings(agent).usedAt(part.decision, at)
+        case LOOK => ()
 
     private def usedAt(picture: Int, at: Int): Unit =
       val seen = notes.pictures(picture)
@@ -302,6 +403,35 @@ private[skein] object Timetable:
       headings(agent).release(own, at)
       if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
       headings(agent).release(own + 1, at)
+
+    private def predict(event: Int, at: Int): Unit =
+      val vehicle = notes.agent(event)
+      val from    = notes.from(event)
+      operation(
+        PREDICT,
+        vehicle,
+        readings(vehicle).place(from),
+        // Taken before the reading is given back: it is carried forward beside it.
+        readings(vehicle).take(notes.number(event)),
+        place(vehicle, event)
+      )
+      size += 1
+      release(vehicle, event, at)
+
+    private def correct(event: Int, at: Int): Unit =
+      val vehicle = notes.agent(event)
+      operation(CORRECT, vehicle, readings(vehicle).place(notes.from(event)), place(vehicle, event))
+      size += 1
+      release(vehicle, event, at)
+
+    /** The number of a course, whose commands have their places now. */
+    private def place(vehicle: Int, event: Int): Int =
+      courses.add(notes.courses(notes.course(event)), headings(vehicle).place)
+
+    private def release(vehicle: Int, event: Int, at: Int): Unit =
+      readings(vehicle).release(notes.from(event), at)
+      for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
+        headings(vehicle).release(part.decision, at)
 
     private def act(event: Int, at: Int): Unit =
       val vehicle = notes.agent(event)

@@ -1,6 +1,15 @@
 package skein.lanes
 
-import skein.forward.{Duel, Duelist, Nanos, QuadrotorResponse, Reduced, ReducedResponse, VelocityResponse}
+import skein.forward.{
+  Duel,
+  Duelist,
+  LoopTiming,
+  Nanos,
+  QuadrotorResponse,
+  Reduced,
+  ReducedResponse,
+  VelocityResponse
+}
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** A kind of vehicle that flies by [[Timetable]]s. */
@@ -20,6 +29,9 @@ private[skein] trait TimetableModel:
     *   its speed is that of a direction of length 1
     */
   def vehicles(duelist: Duelist): TimetableVehicles
+
+  /** What carries their readings forward, in loops that predict. */
+  def predictor: Option[TimetablePredictor] = None
 
 /** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
 private[skein] trait VehicleClock:
@@ -64,11 +76,42 @@ private[skein] object TimetableModel:
       yield QuadrotorTimetables(quadrotor)
     case _ => Left("the lanes fly only models with a lag")
 
+  /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
+    *
+    * @return
+    *   or why not
+    */
+  def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, TimetableModel] =
+    under(timing, model, Seq(duel.pursuer, duel.evader))
+
+  /** @return
+    *   or why these do not fly by lanes under the loop with this model
+    */
+  def under(
+      timing: LoopTiming,
+      model: VelocityResponse,
+      vehicles: Seq[Duelist]
+  ): Either[String, TimetableModel] =
+    of(model, vehicles).flatMap: vehicles =>
+      timing match
+        case predictive: LoopTiming.Predictive =>
+          TimetablePredictor.of(predictive.predictor).map(Predicted(vehicles, _))
+        case _ => Right(vehicles)
+
   /** Below, powers of e leave what floats hold. */
-  private val LeastLagS = 0.01
+  private[lanes] val LeastLagS = 0.01
 
   /** AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0
+
+/** Vehicles whose readings are carried forward. */
+private final class Predicted(model: TimetableModel, by: TimetablePredictor) extends TimetableModel:
+  export model.{clock, deadTimeS, handoverS}
+  override def predictor: Option[TimetablePredictor] = Some(by)
+  def vehicles(duelist: Duelist): TimetableVehicles  =
+    val flown = model.vehicles(duelist)
+    flown.predicted = by.vehicles(duelist)
+    flown
 
 /** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried the vehicle
   * since, over the error, and what remains of it.

@@ -34,7 +34,8 @@ class AgreementSuite extends munit.FunSuite:
   for
     (pursuer, drawPursuer) <- pursuers
     (evader, drawEvader)   <- evaders
-    timing                 <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
+    timing                 <-
+      Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = model.predictor))
   do
     test(s"$pursuer against $evader, ${timing.productPrefix}: the same decisions in every world"):
       val seed     = 19L
@@ -42,7 +43,7 @@ class AgreementSuite extends munit.FunSuite:
       val hunters  = Vector.fill(worlds)(drawPursuer(random))
       val fleeing  = Vector.fill(worlds)(drawEvader(random))
       val key      = WorldRandom.key(2, 0, 0)
-      val vehicles = TimetableModel.of(model, duel).fold(fail(_), identity)
+      val vehicles = TimetableModel.under(timing, model, duel).fold(fail(_), identity)
       val lanes    = Vector(Logged(fleeing(0)), Logged(hunters(0)))
       for world <- 0 until worlds do
         lanes(0).take(world, fleeing(world))

@@ -20,7 +20,7 @@ import skein.policy.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.Span
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ReducedModel, ReducedVehicleModel}
 
 class DuelBatchSuite extends munit.FunSuite:
   import DuelBatchSuite.*
@@ -109,7 +109,9 @@ class DuelBatchSuite extends munit.FunSuite:
     val same  = (0 until 600).count(world => numbers(part, world) == numbers(whole, world))
     assertEquals(same, part.flown)
 
-  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Futures()) do
+  for timing <-
+      Seq(LoopTiming.Stream(), LoopTiming.Futures(), LoopTiming.Predictive(predictor = lag.predictor))
+  do
     test(
       s"candidates that share episodes of $timing fly as each alone, whatever their order, number and threads"
     ):
@@ -153,7 +155,9 @@ class DuelBatchSuite extends munit.FunSuite:
         val near = numbers(all, world).zip(scalar(worlds, world, LoopTiming.Futures(), model, offAxis))
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 
-  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential()) do
+  private val foreseen = LoopTiming.Predictive(predictor = ReducedVehicleModel(ReducedModel.AirSim))
+
+  for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), foreseen) do
     test(s"quadrotors with delays of their own under $timing fly by lanes, close to the scalar engine"):
       val (model, count) = (VelocityResponses.quadrotor(), 150)
       val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)

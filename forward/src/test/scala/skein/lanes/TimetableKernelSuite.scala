@@ -52,7 +52,7 @@ class TimetableKernelSuite extends munit.FunSuite:
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))
     val duel   = paper.copy(durationS = durationS)
-    val lanes  = TimetableModel.of(model, duel).fold(fail(_), identity)
+    val lanes  = TimetableModel.under(timing, model, duel).fold(fail(_), identity)
     val kernel = TimetableDuels(duel, timing, lanes, pursuers, evaders)
     kernel.fly(Timetable.of(2, durationS, timing, link, key, lanes), worlds, captureM)
     kernel
@@ -64,6 +64,12 @@ class TimetableKernelSuite extends munit.FunSuite:
       LoopTiming.Futures(),
       LoopTiming.Stream(),
       LoopTiming.Stream(decideThenPace = true)
+    )
+
+  /** The loop that predicts, by the best model of the vehicles that flies by lanes. */
+  private def predicted(model: VelocityResponse): Option[LoopTiming] =
+    Some(LoopTiming.Predictive(predictor = model.predictor)).filter(timing =>
+      TimetableModel.under(timing, model, paper).isRight
     )
 
   private val links = Seq[(String, Delays)](
@@ -83,7 +89,7 @@ class TimetableKernelSuite extends munit.FunSuite:
 
   for
     (vehicles, model, flown) <- models
-    timing                   <- loops
+    timing                   <- loops ++ predicted(model)
     (name, link)             <- flown
   do
     // None of these worlds meets a threshold within 5 s: AgreementSuite would name it.

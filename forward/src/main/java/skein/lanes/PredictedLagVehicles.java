@@ -1,0 +1,77 @@
+package skein.lanes;
+
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+import static skein.simd.LaneMath.constant;
+
+import jdk.incubator.vector.FloatVector;
+import skein.vehicle.ReducedVehicleModel;
+
+/**
+ * Predicts by a first-order lag, which is linear: a prediction is the reading's position, its
+ * velocity times a number of the timetable, and each command on the way times one of its own. The
+ * scalar reference is {@link ReducedVehicleModel} without drag.
+ */
+final class PredictedLagVehicles extends PredictedVehicles {
+  private final float speed;
+
+  /**
+   * @param speedMps what commands come to in the end
+   */
+  PredictedLagVehicles(double speedMps) {
+    speed = (float) speedMps;
+  }
+
+  @Override
+  void predict(
+      TimetableVehicles vehicles,
+      Directions sent,
+      int reading,
+      int into,
+      Courses courses,
+      int course,
+      boolean withVelocity) {
+    float carried = courses.first(course), kept = courses.second(course);
+    carry(vehicles.seenX, vehicles.seenVx, carried, vehicles.seenX, reading, into);
+    carry(vehicles.seenY, vehicles.seenVy, carried, vehicles.seenY, reading, into);
+    if (withVelocity) {
+      keep(vehicles.seenVx, kept, reading, into);
+      keep(vehicles.seenVy, kept, reading, into);
+    }
+    for (int part = courses.start(course); part < courses.end(course); part++) {
+      int place = courses.place(part);
+      if (place != REST) {
+        float moved = courses.span(part) * speed, faster = courses.rest(part) * speed;
+        add(sent.cos, place * WORLDS, moved, vehicles.seenX, into);
+        add(sent.sin, place * WORLDS, moved, vehicles.seenY, into);
+        if (withVelocity) {
+          add(sent.cos, place * WORLDS, faster, vehicles.seenVx, into);
+          add(sent.sin, place * WORLDS, faster, vehicles.seenVy, into);
+        }
+      }
+    }
+  }
+
+  private static void carry(
+      float[] position, float[] velocity, float seconds, float[] predicted, int from, int into) {
+    FloatVector factor = constant(seconds);
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, velocity, from + i)
+          .fma(factor, FloatVector.fromArray(SPECIES, position, from + i))
+          .intoArray(predicted, into + i);
+  }
+
+  private static void keep(float[] velocity, float share, int from, int into) {
+    FloatVector factor = constant(share);
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, velocity, from + i).mul(factor).intoArray(velocity, into + i);
+  }
+
+  private static void add(float[] what, int from, float times, float[] to, int at) {
+    FloatVector factor = constant(times);
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, what, from + i)
+          .fma(factor, FloatVector.fromArray(SPECIES, to, at + i))
+          .intoArray(to, at + i);
+  }
+}

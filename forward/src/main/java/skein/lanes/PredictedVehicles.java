@@ -1,0 +1,42 @@
+package skein.lanes;
+
+/**
+ * Carries readings of the vehicles of one role forward in many worlds, by a {@link Timetable}: to
+ * which moment, and through which commands, is the same in all worlds. The scalar reference is a
+ * {@code skein.vehicle.VehicleModel} in a {@code skein.forecast.Forecast}.
+ */
+abstract class PredictedVehicles {
+  static final int WORLDS = LanePolicy.WORLDS;
+
+  /** In the place of a command: none yet. */
+  static final int REST = -1;
+
+  /** Back to the start of an episode. */
+  void start(int worlds) {}
+
+  /**
+   * Takes a reading that entered the forecast, which is the one that predictions start from until the
+   * next. Only for models that know more of a vehicle than a reading tells.
+   */
+  void correct(
+      TimetableVehicles vehicles, Directions sent, int reading, Courses courses, int course) {}
+
+  /**
+   * Carries a reading forward.
+   *
+   * @param vehicles whose readings they are; what is predicted is put beside them
+   * @param sent the commands, by place
+   * @param reading the index of the reading's first world
+   * @param into the same of what is predicted
+   * @param course the number of the way there
+   * @param withVelocity whether velocities are predicted too
+   */
+  abstract void predict(
+      TimetableVehicles vehicles,
+      Directions sent,
+      int reading,
+      int into,
+      Courses courses,
+      int course,
+      boolean withVelocity);
+}

@@ -1,0 +1,137 @@
+package skein.lanes
+
+import skein.forward.Duelist
+import skein.units.Span
+import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+
+/** A kind of model that carries readings forward by [[Timetable]]s. */
+private[skein] trait TimetablePredictor:
+  /** Of one vehicle at its first reading. */
+  def plotter: CoursePlotter
+
+  /** All worlds' predictions of one vehicle. */
+  def vehicles(duelist: Duelist): PredictedVehicles
+
+/** Tells by which courses a reading of one vehicle is carried forward. Immutable: it knows what the model remembers at
+  * that reading.
+  */
+private[lanes] trait CoursePlotter:
+  /** That of the next reading, after these legs. */
+  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter
+
+  /** The course that the model flew to this reading, if that matters to what it remembers. */
+  def here: Option[Course] = None
+
+  /** From the reading on through these legs. */
+  def predicted(legs: Vector[CoursePlotter.Leg]): Course
+
+private[lanes] object CoursePlotter:
+  /** A [[skein.forecast.Leg]].
+    *
+    * @param decision
+    *   that its command carries; 0: none was sent yet
+    */
+  final case class Leg(decision: Int, span: Span)
+
+private[skein] object TimetablePredictor:
+  /** @return
+    *   or why this model does not predict by lanes
+    */
+  def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
+    case ReducedVehicleModel(reduced) if reduced.lagS.min(reduced.turnLagS) >= TimetableModel.LeastLagS =>
+      Right(
+        if reduced.dragPerM == 0 && reduced.turnLagS == reduced.lagS then LagPredictor(reduced)
+        else DragPredictor(reduced)
+      )
+    case _ => Left(s"the lanes predict by models with lags of ${TimetableModel.LeastLagS} s at least")
+
+/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
+  * command, how long it carries the vehicle, and how much of its velocity is reached.
+  */
+private final class LagPredictor(model: ReducedModel) extends TimetablePredictor:
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedLagVehicles(duelist.speed * model.gain)
+
+  def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, course)
+
+  private def course(flown: Vector[ReducedPlotter.Flown], totalS: Double): Course =
+    val lag                = model.lagS
+    def reached(t: Double) = -StrictMath.expm1(-t / lag)
+    def moved(t: Double)   = t - lag * reached(t)
+    val parts              = flown.map: part =>
+      val (left, after) = (totalS - part.fromS, totalS - part.untilS)
+      Course.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
+    Course(parts, lag * reached(totalS), StrictMath.exp(-totalS / lag))
+
+/** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
+private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
+  def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
+
+  def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, (flown, _) => Course(flown.map(pieces)))
+
+  private def pieces(part: ReducedPlotter.Flown): Course.Part =
+    var pieceS = part.fromS
+    var pieces = 0
+    while part.untilS > pieceS + ReducedModel.PieceS do
+      pieceS += ReducedModel.PieceS
+      pieces += 1
+    Course.Part(part.decision, pieces, part.untilS - pieceS)
+
+/** Which command acts when, as [[ReducedVehicleModel]] takes it: each a dead time after it has come. A command that
+  * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
+  *
+  * @param course
+  *   of what is flown, and until when, s from the reading
+  */
+private final class ReducedPlotter private (
+    deadTime: Span,
+    course: (Vector[ReducedPlotter.Flown], Double) => Course,
+    held: ReducedPlotter.Known
+) extends CoursePlotter:
+  import ReducedPlotter.*
+
+  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter =
+    new ReducedPlotter(deadTime, course, legs.foldLeft(held)(_.after(_, deadTime)))
+
+  def predicted(legs: Vector[CoursePlotter.Leg]): Course =
+    val flown  = Vector.newBuilder[Flown]
+    var known  = held
+    var startS = 0.0
+    for leg <- legs do
+      val next = known.told(leg, deadTime)
+      val endS = startS + leg.span.toSeconds
+      val acts = next.due(leg).map((decision, in) => (decision, startS + in.toSeconds))
+      val from = (known.acting, startS) +: acts
+      for ((decision, fromS), untilS) <- from.zip(acts.map(_._2) :+ endS) if untilS > fromS do
+        flown += Flown(decision, fromS, untilS)
+      known = known.after(leg, deadTime)
+      startS = endS
+    course(flown.result(), startS)
+
+private object ReducedPlotter:
+  def apply(deadTimeS: Double, course: (Vector[Flown], Double) => Course): CoursePlotter =
+    new ReducedPlotter(Span.ofSeconds(deadTimeS), course, Known(0, 0, Vector.empty))
+
+  /** Under which decision's command the model flies from when until when, s from the reading. */
+  final case class Flown(decision: Int, fromS: Double, untilS: Double)
+
+  /** What [[ReducedVehicleModel.Flying]] knows of commands, by their decisions.
+    *
+    * @param coming
+    *   and in how long each acts
+    */
+  final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
+    def told(leg: CoursePlotter.Leg, deadTime: Span): Known =
+      if leg.decision == last then this
+      else Known(acting, leg.decision, coming :+ (leg.decision, deadTime))
+
+    /** Of what comes, what acts within a leg. */
+    def due(leg: CoursePlotter.Leg): Vector[(Int, Span)] = coming.filter(_._2 <= leg.span)
+
+    def after(leg: CoursePlotter.Leg, deadTime: Span): Known =
+      val now = told(leg, deadTime)
+      val due = now.due(leg)
+      Known(
+        due.lastOption.fold(acting)(_._1),
+        now.last,
+        now.coming.filter(_._2 > leg.span).map((decision, in) => (decision, in - leg.span))
+      )

@@ -1,0 +1,63 @@
+package skein.lanes
+
+import skein.forward.*
+import skein.policy.*
+import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
+
+/** How fast does each loop fly by lanes, beside the scalar engine? `forward/Test/runMain skein.lanes.timingRates [text]`:
+  * on one thread, 60 s over `vpn`, only what contains the text; processor time. Agent-steps of a period, in millions a
+  * second.
+  */
+@main def timingRates(only: String*): Unit =
+  val times  = java.lang.management.ManagementFactory.getThreadMXBean
+  val models = Seq[(String, VelocityResponse)](
+    "lag"       -> Reduced.AirSim,
+    "drag"      -> ReducedResponse(ReducedModel.AirSim),
+    "quadrotor" -> VelocityResponses.quadrotor()
+  )
+  for
+    shared        <- Seq(true, false)
+    (name, model) <- models
+    timing        <- Seq(
+      LoopTiming.Stream(),
+      LoopTiming.Sequential(),
+      LoopTiming.Futures(),
+      LoopTiming.Predictive(predictor = model.predictor)
+    )
+    row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}"
+    if only.forall(row.contains)
+  do
+    val batch                                     = DuelBatch(Duel.paper, timing, model, threads = 1)
+    def worlds(count: Int, from: Int): DuelWorlds = new DuelWorlds:
+      def size: Int                       = count
+      override def shareEpisodes: Boolean = shared
+      def key(world: Int): Int            =
+        WorldRandom.key(3, 1, if shared then from + world / 512 % 8 else from + world)
+      def link(world: Int): Delays    = DelayTable.vpn
+      def pursuer(world: Int): Policy = PaperPursuer(0.6 + 1e-4 * (world % 512))
+      def evader(world: Int): Policy  = PaperEvader()
+    val isFast = batch.fliesByLanes(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+
+    /** Processor time of the batch's own threads, which end with each call. */
+    def rate(count: Int): Double =
+      val os = java.lang.management.ManagementFactory.getOperatingSystemMXBean.asInstanceOf[
+        com.sun.management.OperatingSystemMXBean
+      ]
+      val from = os.getProcessCpuTime
+      batch.fly(worlds(count, 0)): Unit
+      count * 1200.0 / ((os.getProcessCpuTime - from) * 1e-3)
+    val slow  = !isFast || name == "quadrotor"
+    val count = if slow then 64 else 40960
+    for _ <- 1 to 4 do rate(count): Unit
+    val lanes                        = Vector.fill(5)(rate(count)).max
+    val rollout                      = Rollout(Duel.paper, timing, DelayTable.vpn, model)
+    def scalar(flights: Int): Double =
+      val from = times.getCurrentThreadCpuTime
+      for flight <- 1 to flights do rollout.fly(flight): Unit
+      flights * 1200.0 / ((times.getCurrentThreadCpuTime - from) * 1e-3)
+    scalar(60): Unit
+    val reference = Vector.fill(3)(scalar(30)).max
+    println(
+      f"$row%-28s ${if isFast then "SIMD  " else "scalar"} $lanes%7.2f M/s  scalar $reference%.3f M/s  ${lanes / reference}%6.1f times"
+    )
