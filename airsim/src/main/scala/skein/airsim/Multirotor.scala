@@ -2,7 +2,7 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.rpc.{CallOptions, RpcError}
+import skein.rpc.{CallOptions, Lane, RpcError}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import upack.{Bool, Float32, Float64, Int32, Msg, Str}
@@ -29,6 +29,7 @@ final class Multirotor(
 
   private val once   = CallOptions(client.timeout)
   private val getter = once.copy(idempotent = true)
+  private val sensor = getter.copy(lane = Lane.Sensors)
 
   // ---- state
 
@@ -79,7 +80,7 @@ final class Multirotor(
   // ---- sensors; an empty name means the first of its kind
 
   def imu(sensor: String = ""): Future[Either[RpcError, Stamped[ImuReading]]] =
-    stamped("getImuData", Str(sensor)): (data: ImuData) =>
+    measured("getImuData", Str(sensor)): (data: ImuData) =>
       val reading = ImuReading(
         data.orientation.toQuaternion,
         data.angular_velocity.toVector,
@@ -88,17 +89,17 @@ final class Multirotor(
       (reading, data.time_stamp)
 
   def gps(sensor: String = ""): Future[Either[RpcError, Stamped[GpsReading]]] =
-    stamped("getGpsData", Str(sensor)): (data: GpsData) =>
+    measured("getGpsData", Str(sensor)): (data: GpsData) =>
       val reading = GpsReading(located(data.gnss.geo_point), data.gnss.velocity.toVector, data.is_valid)
       (reading, data.time_stamp)
 
   def barometer(sensor: String = ""): Future[Either[RpcError, Stamped[BarometerReading]]] =
-    stamped("getBarometerData", Str(sensor)): (data: BarometerData) =>
+    measured("getBarometerData", Str(sensor)): (data: BarometerData) =>
       (BarometerReading(Metres(data.altitude), data.pressure), data.time_stamp)
 
   /** Magnetic field, body FRD, gauss. */
   def magnetometer(sensor: String = ""): Future[Either[RpcError, Stamped[Vector3]]] =
-    stamped("getMagnetometerData", Str(sensor)): (data: MagnetometerData) =>
+    measured("getMagnetometerData", Str(sensor)): (data: MagnetometerData) =>
       (data.magnetic_field_body.toVector, data.time_stamp)
 
   /** Rotors in AirSim's order: front right, rear left, front left, rear right. */
@@ -308,9 +309,17 @@ final class Multirotor(
   /** A getter whose answer says when it was valid. */
   private def stamped[A: Reader, B](method: String, params: Msg*)(
       read: A => (B, Instant)
+  ): Future[Either[RpcError, Stamped[B]]] = asked(getter, method, params)(read)
+
+  private def measured[A: Reader, B](method: String, params: Msg*)(
+      read: A => (B, Instant)
+  ): Future[Either[RpcError, Stamped[B]]] = asked(sensor, method, params)(read)
+
+  private def asked[A: Reader, B](options: CallOptions, method: String, params: Seq[Msg])(
+      read: A => (B, Instant)
   ): Future[Either[RpcError, Stamped[B]]] =
     client.rpc
-      .callStampedAs[A](method, params :+ Str(name), getter)
+      .callStampedAs[A](method, params :+ Str(name), options)
       .map(_.map: answer =>
         val (value, validAt) = read(answer.value)
         Stamped(value, validAt, answer.sentAt, answer.receivedAt))

@@ -306,7 +306,10 @@ private[rpc] final class LaneStage(
           val left = settings.messageTime - clock.now().since(since)
           if left > Span.Zero then watch(left)
           else
-            ended(s"a message under way for more than ${math.round(settings.messageTime.toSeconds)} s", malformed = true)
+            ended(
+              s"a message under way for more than ${math.round(settings.messageTime.toSeconds)} s",
+              malformed = true
+            )
             settle()
 
   private def reasonOf(failure: Throwable): String = Option(failure.getMessage).getOrElse(failure.toString)

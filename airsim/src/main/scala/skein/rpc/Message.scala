@@ -47,10 +47,10 @@ object Message:
     def at(i: Int): Int = frame(i) & 0xff
     // An array of four, short or long; a type, which may be any number; an id.
     val start = at(0) match
-      case 0x94                                                          => 1
-      case 0xdc if at(1) == 0 && at(2) == 4                              => 3
-      case 0xdd if at(1) == 0 && at(2) == 0 && at(3) == 0 && at(4) == 4  => 5
-      case _                                                             => 0
+      case 0x94                                                         => 1
+      case 0xdc if at(1) == 0 && at(2) == 4                             => 3
+      case 0xdd if at(1) == 0 && at(2) == 0 && at(3) == 0 && at(4) == 4 => 5
+      case _                                                            => 0
     Option.when(start > 0 && at(start) < 0x80)(start + 1).flatMap: id =>
       val bytes = at(id) match
         case 0xcc => 1

@@ -42,6 +42,7 @@ private[rpc] final class Patience(limits: ServerLimits):
     else None
 
   /** The first watch may have come at once. */
-  private def lasts(watches: Int, longest: Span): Boolean = ServerLimits.Watch * (watches - 1).toLong >= longest
+  private def lasts(watches: Int, longest: Span): Boolean =
+    ServerLimits.Watch * (watches - 1).toLong >= longest
 
   private def seconds(span: Span): String = s"${math.round(span.toSeconds)} s"

@@ -40,6 +40,7 @@ final class RpcClient(
   private val holdings = settings.newHoldings()
   private val control  = start(Lane.Control)
   private val bulk     = start(Lane.Bulk)
+  private val sensors  = start(Lane.Sensors)
 
   /** Calls `method` and gives its result as it came. */
   def call(
@@ -67,6 +68,7 @@ final class RpcClient(
     counters.called.increment()
     val lane = options.lane match
       case Lane.Control => control
+      case Lane.Sensors => sensors
       case Lane.Bulk    => bulk
     lane.submit(call)
     options.withdrawn.foreach(_.onComplete(_ => lane.withdraw(call)))
@@ -86,7 +88,8 @@ final class RpcClient(
   def stats: RpcStats = counters.snapshot
 
   /** Ends calls under way with [[RpcError.Cancelled]], later ones too, and closes all connections. */
-  def close(): Future[Done] = control.close().zipWith(bulk.close())((_, _) => Done)
+  def close(): Future[Done] =
+    Future.traverse(Vector(control, sensors, bulk))(_.close()).map(_ => Done)
 
   /** A flow has passed over an element whose call failed. */
   private[rpc] def skipped(method: String, error: RpcError): Unit =
@@ -97,7 +100,9 @@ final class RpcClient(
     def readAs(trace: Boolean): A =
       val read = upickle.default.readBinary[A](value, trace)
       for where <- RpcClient.nilIn(value, read) do
-        throw IllegalArgumentException(s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil")
+        throw IllegalArgumentException(
+          s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil"
+        )
       read
     // Keeping note of where it is makes reading several times slower: only what cannot be read is read again with it.
     try Right(readAs(trace = false))
@@ -117,12 +122,14 @@ object RpcClient:
     */
   private def nilIn(answer: Msg, read: Any): Option[String] =
     def within(parts: Iterator[(String, Msg, Any)]) = parts
-      .flatMap((name, part, as) => nilIn(part, as).map(inner => if inner.isEmpty then name else s"$name.$inner"))
+      .flatMap((name, part, as) =>
+        nilIn(part, as).map(inner => if inner.isEmpty then name else s"$name.$inner")
+      )
       .nextOption()
     (answer, read) match
-      case (_, _: Msg | None)                  => None
-      case (Null, _)                           => Some("")
-      case (Arr(parts), all: Iterable[?])      =>
+      case (_, _: Msg | None)             => None
+      case (Null, _)                      => Some("")
+      case (Arr(parts), all: Iterable[?]) =>
         within(all.iterator.zip(parts).zipWithIndex.map { case ((as, part), index) => (s"$index", part, as) })
       case (Obj(parts), structure: Product) =>
         within(

@@ -64,7 +64,7 @@ object RpcServer:
     def observe(event: ServerEvent): Unit =
       event match
         case ServerEvent.Closed(connection, Some(reason)) => tell(s"connection $connection closed: $reason")
-        case ServerEvent.TurnedAway(from) =>
+        case ServerEvent.TurnedAway(from)                 =>
           tell(s"connection from $from refused: ${limits.connections} are open")
         case _ => ()
       counters.count(event)

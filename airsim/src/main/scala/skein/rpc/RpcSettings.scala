@@ -8,6 +8,9 @@ enum Lane:
   /** Small and urgent: readings and commands. */
   case Control
 
+  /** Small and periodic: what sensors say. */
+  case Sensors
+
   /** Large and patient: images, point clouds. */
   case Bulk
 
@@ -43,6 +46,8 @@ final case class CallOptions(
   *
   * @param controlConnections
   *   connections of [[Lane.Control]], opened with its first call; the paper's pool has 5
+  * @param sensorConnections
+  *   connections of [[Lane.Sensors]], opened with its first call
   * @param bulkConnections
   *   connections of [[Lane.Bulk]], opened with its first call
   * @param windowPerConnection
@@ -66,6 +71,7 @@ final case class CallOptions(
   */
 final case class RpcSettings(
     controlConnections: Int = 5,
+    sensorConnections: Int = 1,
     bulkConnections: Int = 1,
     windowPerConnection: Int = 64,
     windowInAll: Int = 256,
@@ -79,7 +85,7 @@ final case class RpcSettings(
     limits: FrameLimits = FrameLimits()
 ):
   require(
-    controlConnections > 0 && bulkConnections > 0 && windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
+    controlConnections > 0 && sensorConnections > 0 && bulkConnections > 0 && windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
       resends >= 0 && rememberedIds >= 0 && strays >= 0 && messageTime > Span.Zero && openBytes >= 0,
     s"connections and windows must be positive, the other bounds not negative: $this"
   )
@@ -88,6 +94,7 @@ final case class RpcSettings(
 
   def connections(lane: Lane): Int = lane match
     case Lane.Control => controlConnections
+    case Lane.Sensors => sensorConnections
     case Lane.Bulk    => bulkConnections
 
 /** Pauses between attempts to connect: doubling from `first` to at most `longest`, each shortened at random by up to

@@ -50,10 +50,11 @@ private[rpc] final class ServerConnection(
       private val leaving   = getAsyncCallback[Unit](_ => close(ServerLimit.Idle, "its place was needed"))
       private var inFlight  = 0
       private var consumed  = true // every value of the last segment is taken
-      private var heldBack  = Option.empty[Array[Byte]] // the next message, while it is too large for what is left
-      private var backFor   = 0 // watches since it is
-      private var strays    = 0    // values since the last request that were no messages
-      private var reason    = Option.empty[String]
+      private var heldBack  =
+        Option.empty[Array[Byte]] // the next message, while it is too large for what is left
+      private var backFor = 0 // watches since it is
+      private var strays  = 0 // values since the last request that were no messages
+      private var reason  = Option.empty[String]
 
       // What it holds, bytes.
       private val holding = holdings.Holding()
@@ -175,7 +176,8 @@ private[rpc] final class ServerConnection(
         if holding.resize(held + bytes) || bytes <= limits.heldBytesPerConnection then
           backFor = 0
           handle(frame, bytes)
-        else if underWay && ServerLimits.Watch * backFor.toLong < limits.messageTime then heldBack = Some(frame)
+        else if underWay && ServerLimits.Watch * backFor.toLong < limits.messageTime then
+          heldBack = Some(frame)
         else
           backFor = 0
           counters.lacking.increment()

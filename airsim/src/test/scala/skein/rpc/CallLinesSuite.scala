@@ -7,7 +7,9 @@ class CallLinesSuite extends munit.FunSuite:
   private def drain[A](lines: CallLines[A]): Seq[A] =
     Iterator.continually(lines.take()).takeWhile(_.nonEmpty).flatten.toSeq
 
-  test("the first of each connection's calls are taken in turn, then what waits, each connection's in their order"):
+  test(
+    "the first of each connection's calls are taken in turn, then what waits, each connection's in their order"
+  ):
     val lines = CallLines[String]()
     for (connection, call) <- Seq(1 -> "a1", 1 -> "a2", 1 -> "a3", 2 -> "b1", 3 -> "c1", 3 -> "c2") do
       lines.put(connection, call)
@@ -25,7 +27,9 @@ class CallLinesSuite extends munit.FunSuite:
       val ahead = Iterator.continually(lines.take()).takeWhile(!_.contains(0L)).size
       assert(ahead <= 200, s"$ahead calls went ahead, seed $seed")
 
-  test("one that asks now and then goes before 200 that ask without a pause, who are woken once for several answers"):
+  test(
+    "one that asks now and then goes before 200 that ask without a pause, who are woken once for several answers"
+  ):
     for pause <- Seq(60, 200, 1000) do
       val lines = CallLines[Long]()
       for connection <- 1L to 200L; _ <- 1 to 256 do lines.put(connection, connection)
@@ -72,8 +76,9 @@ class CallLinesSuite extends munit.FunSuite:
   test("calls put by several threads are all taken, each connection's in order"):
     val lines   = CallLines[(Long, Int)]()
     val each    = 20_000
-    val threads = for connection <- 1L to 4L yield Thread.ofPlatform().start: () =>
-      for i <- 1 to each do lines.put(connection, connection -> i)
+    val threads =
+      for connection <- 1L to 4L yield Thread.ofPlatform().start: () =>
+        for i <- 1 to each do lines.put(connection, connection -> i)
     val taken = Seq.newBuilder[(Long, Int)]
     var count = 0
     while count < 4 * each do

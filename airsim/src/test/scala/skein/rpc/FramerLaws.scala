@@ -82,13 +82,18 @@ class FramerLaws extends munit.FunSuite:
   test("a map of too many keys is refused at its header, before any key: so equal hashes cost little"):
     assertAccepted(FrameLimits(keys = 2), Obj(Str("a") -> Null, Str("b") -> Obj(Null -> Null)))
     assertRefused(FrameLimits(keys = 2), "a map of 3 keys; at most 2 are accepted")(0x83)
-    assertRefused(FrameLimits(), "a map of 40000 keys; at most 128 are accepted")(0x94, 0x00, 0xde, 0x9c, 0x40)
+    assertRefused(FrameLimits(), "a map of 40000 keys; at most 128 are accepted")(
+      0x94, 0x00, 0xde, 0x9c, 0x40
+    )
     assertRefused(FrameLimits(), "a map of 65536 keys; at most 128 are accepted")(0xdf, 0, 1, 0, 0)
 
   test("empty maps are a byte each on the wire and an object each in memory: they are counted"):
     assertAccepted(FrameLimits(maps = 2), Arr(Obj(), Obj()))
     assertRefused(FrameLimits(maps = 2), "a message of at least 3 maps; at most 2 are accepted")(
-      0x93, 0x80, 0x80, 0x80
+      0x93,
+      0x80,
+      0x80,
+      0x80
     )
 
   test("what is held of an unfinished message is told, and what a finished one takes once decoded"):

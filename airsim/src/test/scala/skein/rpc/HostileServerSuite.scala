@@ -95,7 +95,7 @@ class HostileServerSuite extends munit.FunSuite:
 
   rig("unfinished messages share one store", RpcSettings(controlConnections = 1, openBytes = 1 << 20)): r =>
     val (peer, id) = r.call()
-    val answer     = ByteString(Wire.pack(Arr(Int32(1), Int32(id.toInt), Null, Binary(new Array[Byte](4 << 20)))))
+    val answer = ByteString(Wire.pack(Arr(Int32(1), Int32(id.toInt), Null, Binary(new Array[Byte](4 << 20)))))
     peer.send(answer.take((2 << 20) + 1))
     assertEquals(
       r.outcome(),
@@ -119,7 +119,8 @@ class HostileServerSuite extends munit.FunSuite:
     assertEquals(r.client.stats.pending, 0L)
 
   private final case class Inner(x: Double) derives upickle.default.ReadWriter
-  private final case class Outer(name: String, inner: Inner, more: Seq[Inner]) derives upickle.default.ReadWriter
+  private final case class Outer(name: String, inner: Inner, more: Seq[Inner])
+      derives upickle.default.ReadWriter
 
   private def asked(r: Rig, answer: Msg): String =
     val outcome = r.client.callAs[Outer]("read", Seq.empty)
@@ -128,12 +129,17 @@ class HostileServerSuite extends munit.FunSuite:
     Await.result(outcome, 5.seconds).fold(_.message, value => fail(s"$value"))
 
   private def one(x: Msg)                       = Obj(Str("x") -> x)
-  private def outer(inner: Msg, more: Msg): Msg = Obj(Str("name") -> Str("a"), Str("inner") -> inner, Str("more") -> more)
+  private def outer(inner: Msg, more: Msg): Msg =
+    Obj(Str("name") -> Str("a"), Str("inner") -> inner, Str("more") -> more)
 
   for (where, answer, reason) <- Seq(
       ("in the place of everything", Null, "expected a value, came nil"),
       ("in a structure", outer(Null, Arr()), "expected a value in inner, came nil"),
-      ("in a list in a structure", outer(one(Float64(1)), Arr(one(Float64(1)), Null)), "expected a value in more.1, came nil"),
+      (
+        "in a list in a structure",
+        outer(one(Float64(1)), Arr(one(Float64(1)), Null)),
+        "expected a value in more.1, came nil"
+      ),
       ("in the place of a number", outer(one(Null), Arr()), "expected a value in inner.x, came nil")
     )
   do
@@ -143,14 +149,14 @@ class HostileServerSuite extends munit.FunSuite:
       assertEquals(message.linesIterator.size, 1)
 
   rig("a state that is no number is a malformed answer"): r =>
-    val state  = Multirotor(AirSimClient(r.client), "A").status()
-    val peer   = r.transport.peer()
+    val state                              = Multirotor(AirSimClient(r.client), "A").status()
+    val peer                               = r.transport.peer()
     def all(number: Float, names: String*) =
       val numbers = Obj()
       for name <- names do numbers.value(Str(name)) = Float32(number)
       numbers
-    def vector = all(Float.NaN, "x_val", "y_val", "z_val")
-    def turn   = all(0, "w_val", "x_val", "y_val", "z_val")
+    def vector     = all(Float.NaN, "x_val", "y_val", "z_val")
+    def turn       = all(0, "w_val", "x_val", "y_val", "z_val")
     val kinematics = Obj(
       Str("position")             -> vector,
       Str("orientation")          -> turn,
@@ -161,7 +167,11 @@ class HostileServerSuite extends munit.FunSuite:
     )
     peer.answer(
       peer.request().id,
-      Obj(Str("kinematics_estimated") -> kinematics, Str("timestamp") -> Int64(1), Str("landed_state") -> Int32(1))
+      Obj(
+        Str("kinematics_estimated") -> kinematics,
+        Str("timestamp")            -> Int64(1),
+        Str("landed_state")         -> Int32(1)
+      )
     )
     assertEquals(
       Await.result(state, 5.seconds).left.map(_.message),

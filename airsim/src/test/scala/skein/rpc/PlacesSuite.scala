@@ -15,7 +15,9 @@ class PlacesSuite extends munit.FunSuite:
       places.entered(i, guest)
     (places, guests)
 
-  test("256 silent connections lock nobody out: each that comes takes the place of the one silent for longest"):
+  test(
+    "256 silent connections lock nobody out: each that comes takes the place of the one silent for longest"
+  ):
     val (places, guests) = full(10 to 265*)
     for i <- 1 to 256 do
       assert(places.admit(), s"newcomer $i")

@@ -14,11 +14,11 @@ class ServerLimitsSuite extends munit.FunSuite:
 
   /** A server without sockets: connections share memory and places. */
   private final class Rig(limits: ServerLimits)(using val system: ActorSystem):
-    val time             = ManualTime.of(system)
-    val holdings         = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
-    val counters         = ServerCounters(holdings)
-    val guests           = java.util.concurrent.ConcurrentLinkedQueue[Places.Guest]()
-    private val places   = new Places(limits.connections, limits.silence):
+    val time           = ManualTime.of(system)
+    val holdings       = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
+    val counters       = ServerCounters(holdings)
+    val guests         = java.util.concurrent.ConcurrentLinkedQueue[Places.Guest]()
+    private val places = new Places(limits.connections, limits.silence):
       override def entered(connection: Long, guest: Places.Guest): Unit =
         val _ = guests.add(guest)
     val events           = LinkedBlockingQueue[ServerEvent]()
@@ -35,7 +35,16 @@ class ServerLimitsSuite extends munit.FunSuite:
       accepted += 1
       private val number = accepted
       private val stage  =
-        ServerConnection(number, limits, handler, RpcServer.rpclibFailure, counters, holdings, places, events.put)
+        ServerConnection(
+          number,
+          limits,
+          handler,
+          RpcServer.rpclibFailure,
+          counters,
+          holdings,
+          places,
+          events.put
+        )
       val (requests, replies) =
         TestSource[ByteString]().via(Flow.fromGraph(stage)).toMat(TestSink[ByteString]())(Keep.both).run()
 
@@ -115,20 +124,22 @@ class ServerLimitsSuite extends munit.FunSuite:
   private def replies(bytes: Seq[ByteString]): Seq[Message] =
     Wire.framed(Framer(), bytes).collect { case Framed.Complete(frame) => Message.fromServer(frame) }
 
-  rig("a request counts until it is answered, and a lone one too large for what is left is refused", three): r =>
-    val waiting = Seq.fill(2)(waits(r))
-    val third = r.Connection()
-    third.send(large(300))
-    val text = "this request takes 40687 bytes of the server's memory, and no more than 120000 in all beyond 10000 " +
-      "for each connection"
-    assertEquals(replies(Seq(third.replies.expectNext())), Seq(Message.Reply(300, Str(text), Null)))
-    third.ping()
-    assertEquals(r.counters.snapshot.lacking, 1L)
-    r.never.success(Right(Null))
-    for c <- waiting do
-      val _ = c.replies.expectNext()
-      c.ping()
-    r.until(r.holdings.bytes == 0)
+  rig("a request counts until it is answered, and a lone one too large for what is left is refused", three):
+    r =>
+      val waiting = Seq.fill(2)(waits(r))
+      val third   = r.Connection()
+      third.send(large(300))
+      val text =
+        "this request takes 40687 bytes of the server's memory, and no more than 120000 in all beyond 10000 " +
+          "for each connection"
+      assertEquals(replies(Seq(third.replies.expectNext())), Seq(Message.Reply(300, Str(text), Null)))
+      third.ping()
+      assertEquals(r.counters.snapshot.lacking, 1L)
+      r.never.success(Right(Null))
+      for c <- waiting do
+        val _ = c.replies.expectNext()
+        c.ping()
+      r.until(r.holdings.bytes == 0)
 
   rig("a pipeline of large requests is held back, and all of it answered", three): r =>
     val honest = r.Connection()
@@ -157,21 +168,23 @@ class ServerLimitsSuite extends munit.FunSuite:
   rig("a reply too large for what is left becomes an error, and what others may hold stays", three): r =>
     val image = r.Connection()
     image.ask("image")
-    val text = "the reply takes 200009 bytes of the server's memory, and no more than 120000 in all beyond 10000 for " +
-      "each connection"
+    val text =
+      "the reply takes 200009 bytes of the server's memory, and no more than 120000 in all beyond 10000 for " +
+        "each connection"
     assertEquals(replies(Seq(image.replies.expectNext())), Seq(Message.Reply(1, Str(text), Null)))
     image.ping()
     assertEquals((r.counters.snapshot.lacking, r.counters.snapshot.refused), (1L, 1L))
     assert(r.holdings.mostBytes <= three.heldBytes)
 
-  rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()): r =>
-    val slow = r.Connection()
-    slow.ping()
-    slow.send(begun(1000, 500))
-    r.until(r.holdings.bytes == 500)
-    r.passUntilClosed()
-    slow.expectClosed("a message under way for more than 10 s")
-    assertEquals((r.counters.snapshot.tooSlow, r.holdings.bytes), (1L, 0L))
+  rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()):
+    r =>
+      val slow = r.Connection()
+      slow.ping()
+      slow.send(begun(1000, 500))
+      r.until(r.holdings.bytes == 500)
+      r.passUntilClosed()
+      slow.expectClosed("a message under way for more than 10 s")
+      assertEquals((r.counters.snapshot.tooSlow, r.holdings.bytes), (1L, 0L))
 
   rig("a peer that takes no replies is closed", ServerLimits()): r =>
     val deaf = r.Connection(takesReplies = false)

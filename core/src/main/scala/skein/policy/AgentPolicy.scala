@@ -12,6 +12,11 @@ trait AgentPolicy:
   /** What it remembers from one decision to the next. Immutable. */
   type Memory
 
+  /** Which sensors of its vehicle it wants to be read, by name; see [[skein.port.VehiclePort.sensors]]. What they said
+    * last is in [[Observation.sensed]].
+    */
+  def sensors: Set[String] = Set.empty
+
   /** Before the first decision. */
   def start: Memory
 

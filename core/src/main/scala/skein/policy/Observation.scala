@@ -21,6 +21,9 @@ import skein.units.*
   *   the speed that the scenario gives the vehicle
   * @param altitude
   *   of the vehicle's start, down, negative above the origin
+  * @param sensed
+  *   what the sensors of the own vehicle said last, by name: those that the policy asked for ([[AgentPolicy.sensors]])
+  *   and that have answered before
   */
 final case class Observation(
     self: Int,
@@ -30,7 +33,8 @@ final case class Observation(
     elapsed: Span,
     decisions: Long,
     cruise: MetresPerSecond,
-    altitude: Metres
+    altitude: Metres,
+    sensed: Map[String, Sensed] = Map.empty
 ):
   def own: Seen = vehicles(self)
 
@@ -45,3 +49,24 @@ final case class Observation(
   *   whether it was carried forward to when the command will act, and not just heard
   */
 final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
+
+/** What a sensor said last.
+  *
+  * @param columns
+  *   names with units, such as `altitudeM`
+  * @param values
+  *   as many
+  * @param age
+  *   since it was measured, as [[Seen.age]]
+  */
+final case class Sensed(columns: Vector[String], values: Vector[Double], age: Span):
+
+  /** A column's value.
+    *
+    * @throws NoSuchElementException
+    *   if there is no such column
+    */
+  def apply(column: String): Double =
+    columns.indexOf(column) match
+      case -1    => throw java.util.NoSuchElementException(s"expected one of ${columns.mkString(", ")}, came '$column'")
+      case index => values(index)

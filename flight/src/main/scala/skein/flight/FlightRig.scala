@@ -122,7 +122,9 @@ final class FlightRigs(
             lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
         )
-        _ <- client.ping()
+        _ <- Team.missingSensor(scenario, crafts).fold(client.ping())(missing =>
+          Future.failed(CannotFly(missing))
+        )
       yield
         val loopSettings = settings.loopSettings.copy(seed = plan.seed)
         val planners     =

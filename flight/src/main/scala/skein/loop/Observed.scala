@@ -9,7 +9,8 @@ import org.apache.pekko.stream.{FlowShape, Graph, SharedKillSwitch}
   *
   * {{{
   * sense(0) ─┐
-  * sense(1) ─┼─ merge ─ picture ─ sight
+  * sense(1) ─┤
+  * sensors ──┼─ merge ─ picture ─ sight
   * due ──────┤
   * told ─────┘
   * }}}
@@ -20,13 +21,15 @@ private object Observed:
     GraphDSL.create() { implicit builder =>
       import GraphDSL.Implicits.*
       val due      = team.vehicles.size
-      val percepts = builder.add(MergePreferred[Percept](due + 1, eagerComplete = true))
-      val picture  = builder.add(team.pictureWithForecast)
       val start    = team.now
+      val sensed   = team.sensed(start)
+      val percepts = builder.add(MergePreferred[Percept](due + 1 + sensed.size, eagerComplete = true))
+      val picture  = builder.add(team.pictureWithForecast)
 
       for vehicle <- team.vehicles do
         StreamLoop.sense(team, vehicle, start, stop).map(Percept.Read(_, _)) ~> percepts.in(vehicle)
       team.due(start).via(stop.flow) ~> percepts.in(due)
+      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(due + 1 + sensor)
       percepts ~> picture
       FlowShape(percepts.preferred, picture.out)
     }

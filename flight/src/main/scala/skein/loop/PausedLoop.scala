@@ -7,6 +7,7 @@ import scala.concurrent.Future
 import scala.util.{Failure, Success}
 import skein.port.{SteppedTime, VehicleError}
 import skein.record.*
+import skein.signal.Stamped
 import skein.units.*
 
 /** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for and
@@ -28,9 +29,8 @@ object PausedLoop:
       .mapMaterializedValue(flight.landed)
 
   /** While the simulator stands still, no time passes between question and answer. */
-  private[loop] def timeless(reading: Reading): Reading =
-    val at = reading.state.validAt
-    reading.copy(state = reading.state.copy(sentAt = at, receivedAt = at))
+  private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
+    read.copy(sentAt = read.validAt, receivedAt = read.validAt)
 
 private final case class Step(number: Long, memories: Vector[Memory], picture: Picture)
 
@@ -73,11 +73,14 @@ private final class PausedFlight(
     for
       _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
       readings <- orFail(team.readAll())
-      now     = readings(0).state.validAt
-      picture =
-        readings.foldLeft(step.picture)((seen, reading) =>
-          seen.withReading(reading._1, PausedLoop.timeless(reading._2))
-        )
+      sensed   <- orFail(team.senseAll())
+      now  = readings(0).state.validAt
+      seen = readings.foldLeft(step.picture)((seen, reading) =>
+        seen.withReading(reading._1, reading._2.copy(state = PausedLoop.timeless(reading._2.state)))
+      )
+      picture = sensed.foldLeft(seen)((seen, reading) =>
+        seen.withSensorReading(reading.copy(values = PausedLoop.timeless(reading.values)))
+      )
       _       = verifyStep(step, now)
       decided =
         team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))

@@ -1,9 +1,20 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Role, Seen, TeamSight}
+import skein.policy.{
+  Action,
+  AgentPolicy,
+  Fleet,
+  Observation,
+  PlanarPolicy,
+  Policy,
+  Role,
+  Seen,
+  Sensed,
+  TeamSight
+}
 import skein.forecast.{Estimate, Evidence, Forecast}
-import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sighting, TrueAge}
-import skein.signal.{ClockAlignment, Kinematics}
+import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sensing, Sighting, TrueAge}
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 /** A command that was sent to a vehicle, as the other vehicles' policies see it.
@@ -29,6 +40,8 @@ object Move:
 /** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
   * two clocks relate.
   *
+  * @param sensed
+  *   the newest of each sensor that is read, by vehicle
   * @param forecast
   *   present where the loop predicts
   * @param estimates
@@ -38,6 +51,7 @@ final case class Picture(
     readings: Vector[Option[Reading]],
     moves: Vector[Option[Move]],
     alignment: Option[ClockAlignment],
+    sensed: Vector[Map[String, SensorReading]],
     forecast: Option[Forecast] = None,
     estimates: Option[Vector[Estimate]] = None
 ):
@@ -46,6 +60,12 @@ final case class Picture(
       readings = readings.updated(vehicle, Some(reading)),
       alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
     ).withEvidence(Evidence.Seen(vehicle, reading.state))
+
+  /** Nothing changes where a newer one is held already. */
+  def withSensorReading(reading: SensorReading): Picture =
+    val held = sensed(reading.vehicle)
+    if held.get(reading.sensor).exists(known => !reading.values.isNewerThan(known.values)) then this
+    else copy(sensed = sensed.updated(reading.vehicle, held.updated(reading.sensor, reading)))
 
   def withMove(move: Move): Picture = copy(moves = moves.updated(move.vehicle, Some(move)))
 
@@ -63,7 +83,8 @@ final case class Picture(
   def isComplete: Boolean = readings.forall(_.isDefined)
 
 object Picture:
-  def empty(vehicles: Int): Picture = Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None)
+  def empty(vehicles: Int): Picture =
+    Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None, Vector.fill(vehicles)(Map.empty))
 
 /** What one vehicle's decisions depend on apart from the picture.
   *
@@ -124,16 +145,17 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
       elapsed(memory, now),
       memory.decisions,
       agent.speed,
-      Metres(agent.startPositionNed.z)
+      Metres(agent.startPositionNed.z),
+      picture.sensed(self).map: (sensor, reading) =>
+        sensor -> Sensed(reading.columns, reading.values.value, age(picture, now, reading.values))
     )
 
   private def seen(picture: Picture, now: Instant, vehicle: Int): Seen =
     val reading = picture.readings(vehicle).get.state
-    val age     =
-      picture.alignment.fold(reading.ageByArrival(now))(known =>
-        now.since(known.toController(reading.validAt))
-      )
-    Seen(picture.kinematics(vehicle), age, isPredicted = picture.estimates.isDefined)
+    Seen(picture.kinematics(vehicle), age(picture, now, reading), isPredicted = picture.estimates.isDefined)
+
+  private def age(picture: Picture, now: Instant, reading: Stamped[?]): Span =
+    picture.alignment.fold(reading.ageByArrival(now))(known => now.since(known.toController(reading.validAt)))
 
   /** What the vehicle knows of its team. */
   def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
@@ -157,6 +179,11 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
           val expected = estimates(other).kinematics
           PredictedMotion(expected.positionNed, expected.velocityNed)
       )
+
+  /** What a decision was made from of what sensors said. */
+  def sensings(picture: Picture, decision: Decision): Vector[Sensing] =
+    picture.sensed(self).toVector.sortBy(_._1).map: (sensor, reading) =>
+      Sensing(agent.name, decision.sequence, sensor, reading.sequence)
 
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 

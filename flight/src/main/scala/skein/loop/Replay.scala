@@ -19,11 +19,16 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
   private val paused   = recording.flight.isPaused
   private val indexOf  = scenario.agents.map(_.name).zipWithIndex.toMap
   private val readings =
-    if paused then recording.readings.map(PausedLoop.timeless) else recording.readings
+    if paused then recording.readings.map(read => read.copy(state = PausedLoop.timeless(read.state)))
+    else recording.readings
   private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
   private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
-  private val missed     = recording.events.collect {
+  private val measured   = recording.measurements
+    .map(read => (read.vehicle, read.sensor, read.sequence) -> read)
+    .toMap
+  private val sensings = recording.sensings.groupBy(sensing => (sensing.vehicle, sensing.decision))
+  private val missed   = recording.events.collect {
     case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision)) => (vehicle, decision)
   }.toSet
   private val fallback = recording.heading.parameters
@@ -128,6 +133,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       opponent <- reading(recorded, "opponentSequence", recorded.opponent)
       ownMove  <- move(recorded, "sinceOwnMoveMs", self, recorded.observations.sinceOwnMove)
       itsMove  <- move(recorded, "sinceOpponentMoveMs", other, recorded.observations.sinceOpponentMove)
+      sensed   <- sensed(recorded, self)
       others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
     yield
       val empty = Picture.empty(scenario.agents.size)
@@ -135,12 +141,27 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       val known = empty.copy(
         readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),
         moves = empty.moves.updated(self, ownMove).updated(other, itsMove),
-        alignment = recorded.trueAge.map(alignment)
+        alignment = recorded.trueAge.map(alignment),
+        sensed = empty.sensed.updated(self, sensed)
       )
       val possible = pictures(known, recorded)
       possible
         .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
+
+  /** What the vehicle's sensors had said. */
+  private def sensed(of: Decision, self: Int): Either[Difference, Map[String, SensorReading]] =
+    collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
+      measured
+        .get((of.vehicle, sensing.sensor, sensing.measurement))
+        .map: read =>
+          val values = Stamped(read.numbers, read.validAt, read.sentAt, read.receivedAt)
+          val timed  = if paused then PausedLoop.timeless(values) else values
+          sensing.sensor -> SensorReading(self, sensing.sensor, read.sequence, read.quantities, timed)
+        .toRight(
+          Difference(where(of), sensing.sensor, s"measurement ${sensing.measurement}", "no such measurement")
+        )
+    .map(_.toMap)
 
   /** How far each search of a decision went. */
   private def searched(of: Decision): Either[Difference, Vector[Int]] =

@@ -11,7 +11,8 @@ private object SnapshotGraph:
   def apply(team: Team, snapshots: Source[Percept, ?], stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
-      val percepts = builder.add(MergePreferred[Percept](1, eagerComplete = true))
+      val sensed   = team.sensed(team.now)
+      val percepts = builder.add(MergePreferred[Percept](1 + sensed.size, eagerComplete = true))
       val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))
@@ -22,6 +23,7 @@ private object SnapshotGraph:
           team.steer(vehicle) ~> steered.in(vehicle)
 
       snapshots ~> percepts.in(0)
+      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(1 + sensor)
       percepts ~> team.picture ~> cast
       steered ~> fan
       fan ~> team.record

@@ -19,17 +19,19 @@ object StreamLoop:
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
       val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size))
-      val percepts = builder.add(MergePreferred[Percept](1, eagerComplete = true))
+      val start    = team.now
+      val sensed   = team.sensed(start)
+      val percepts = builder.add(MergePreferred[Percept](1 + sensed.size, eagerComplete = true))
       val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))
-      val start    = team.now
 
       for vehicle <- team.vehicles do
         sense(team, vehicle, start, stop) ~> readings.in(vehicle)
         cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered.in(vehicle)
 
       readings ~> joinLatest(team) ~> percepts.in(0)
+      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(1 + sensor)
       percepts ~> team.picture ~> cast
       steered ~> fan
       fan ~> team.record

@@ -26,6 +26,7 @@ final class Team(
     workers: PlanWorkers = PlanWorkers.none
 )(using ExecutionContext):
   require(crafts.size == scenario.agents.size, "one craft per agent")
+  for missing <- Team.missingSensor(scenario, crafts) do throw IllegalArgumentException(missing)
 
   val vehicles: Range  = crafts.indices
   private val deciders = vehicles.map(Decider(scenario, _))
@@ -48,6 +49,44 @@ final class Team(
         case Left(error) =>
           log.failed(vehicle, s"reading $sequence", error)
           Left(error)
+
+  private val sensors = vehicles.toVector.flatMap: vehicle =>
+    scenario.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
+      TeamSensor(vehicle, name, crafts(vehicle).sensors(name), log)
+
+  /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles are asked a
+    * quarter of a period after they were asked where they are.
+    */
+  def sensed(start: Instant): Vector[Source[Percept, NotUsed]] = sensors.map: sensor =>
+    Sense
+      .at[VehicleError, SensorReading, NotUsed](
+        ticks(start + settings.period / 4),
+        settings.window,
+        isNewer = (answered, held) => answered.values.isNewerThan(held.values)
+      )(() => sensor.read())(
+        onSkip = _.foreach(reading =>
+          log.note(
+            EventKind.Dropped,
+            Some(sensor.vehicle),
+            s"${sensor.name} ${reading.sequence} overtaken"
+          )
+        ),
+        onMissed = ticks =>
+          log.note(
+            EventKind.Skipped,
+            Some(sensor.vehicle),
+            s"$ticks ticks of ${sensor.name} missed: window full"
+          )
+      )
+      .map(Percept.Measured(_))
+
+  /** Asks every sensor that a policy reads, one after the other; ends at the first error. */
+  def senseAll(): Future[Either[VehicleError, Vector[SensorReading]]] =
+    sensors.foldLeft(Future.successful[Either[VehicleError, Vector[SensorReading]]](Right(Vector.empty))):
+      (soFar, sensor) =>
+        soFar.flatMap:
+          case Right(readings) => sensor.read().map(_.map(readings :+ _))
+          case error           => Future.successful(error)
 
   /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
   def readAll(): Future[Either[VehicleError, Map[Int, Reading]]] =
@@ -80,7 +119,8 @@ final class Team(
             case Percept.Read(vehicle, reading) =>
               log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
               (picture, None)
-            case Percept.Moved(move) =>
+            case Percept.Measured(reading) => (picture.withSensorReading(reading), None)
+            case Percept.Moved(move)       =>
               val command = Commanded(move.decision, setpoint(move), move.sentAt)
               (picture.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
             case Percept.Due(deciders) => (picture, Option.when(picture.isComplete)(Sight(picture, deciders)))
@@ -327,6 +367,15 @@ final class Team(
   private def altitude(vehicle: Int): Metres = Metres(scenario.agents(vehicle).startPositionNed.z)
 
 object Team:
+
+  /** A sensor that a policy asks for and its vehicle has not got, as a line for a person. */
+  private[skein] def missingSensor(fleet: Fleet, vehicles: Vector[VehiclePort]): Option[String] =
+    fleet.agents.lazyZip(vehicles).flatMap((agent, vehicle) =>
+      agent.policy.sensors.toVector.sorted.filterNot(vehicle.sensors.contains).map: name =>
+        val known = vehicle.sensors.keys.toVector.sorted
+        val has   = if known.isEmpty then "it has none" else s"expected one of ${known.mkString(", ")}"
+        s"the policy of ${agent.name} reads a sensor '$name' that the vehicle does not have: $has"
+    ).headOption
 
   /** Whether a call's result says that the call neither runs nor is on its way. */
   private def isCertain(result: Either[VehicleError, Boolean]): Boolean = result.fold(_.isCertain, _ => true)

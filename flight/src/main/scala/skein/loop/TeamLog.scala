@@ -40,6 +40,22 @@ final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock
     recorder.offer(reading)
     reading
 
+  /** A sensor said something. */
+  def sensed(reading: SensorReading): Unit =
+    import reading.values.{receivedAt, sentAt, validAt, value}
+    recorder.offer(
+      Measurement(
+        reading.sequence,
+        name(reading.vehicle),
+        reading.sensor,
+        reading.columns,
+        value,
+        validAt,
+        sentAt,
+        receivedAt
+      )
+    )
+
   /** How a prediction turned out that one vehicle's controller made. */
   def predicted(decider: Int, verified: Verified): Unit =
     recorder.offer(
@@ -88,6 +104,7 @@ final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock
   private def decided(vehicle: Int, decision: Decision, picture: Picture, regardsTeam: Boolean): Unit =
     recorder.offer(decision)
     deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
+    deciders(vehicle).sensings(picture, decision).foreach(recorder.offer)
 
   /** A command was sent, or has ended. */
   def steered(steering: Steering): Unit = steering.event match

@@ -58,8 +58,25 @@ private[record] object Columns:
   def longs(name: String): Columns[Vector[Long]] =
     single(name, "BIGINT[]", _.longs(_), (row, column) => toLongs(row.getArray(column)))
 
+  def doubles(name: String): Columns[Vector[Double]] =
+    single(
+      name,
+      "DOUBLE[]",
+      _.doubles(_),
+      (row, column) =>
+        listed(row.getArray(column)).map:
+          case number: Number if number.doubleValue.isFinite => number.doubleValue
+          case other => throw SQLException(s"$name: expected finite numbers, came $other")
+    )
+
+  def texts(name: String): Columns[Vector[String]] =
+    single(name, "VARCHAR[]", _.texts(_), (row, column) => listed(row.getArray(column)).map(_.toString))
+
+  private def listed(list: java.sql.Array): Vector[Object] =
+    list.getArray.asInstanceOf[Array[Object]].toVector
+
   private def toLongs(list: java.sql.Array): Vector[Long] =
-    list.getArray.asInstanceOf[Array[Object]].toVector.map:
+    listed(list).map:
       case number: Number => number.longValue
       case other          => throw SQLException(s"expected whole numbers in a list, came $other")
 

@@ -34,18 +34,21 @@ object Difference:
 
   private def nameOf(record: Record): String = record match
     case decision: Decision => s"decision ${decision.sequence} of ${decision.vehicle}"
+    case read: Measurement  => s"measurement ${read.sequence} of ${read.vehicle}'s ${read.sensor}"
     case reading: Reading   => s"reading ${reading.sequence} of ${reading.vehicle}"
     case command: Command   => s"command ${command.sequence} to ${command.vehicle}"
     case other              => s"a row of ${Table.of(other).name}"
 
   /** A double's shortest text is another for another double. */
   private def cells(record: Record): Vector[String] =
-    val texts = Vector.newBuilder[String]
+    val cells = Vector.newBuilder[String]
     val row   = new RowWriter:
-      def text(value: String): Unit         = texts += value
-      def long(value: Long): Unit           = texts += value.toString
-      def double(value: Double): Unit       = texts += value.toString
-      def longs(values: Vector[Long]): Unit = texts += values.mkString(",")
-      def nothing(): Unit                   = texts += "absent"
+      def text(value: String): Unit             = cells += value
+      def long(value: Long): Unit               = cells += value.toString
+      def double(value: Double): Unit           = cells += value.toString
+      def longs(values: Vector[Long]): Unit     = cells += values.mkString(",")
+      def doubles(values: Vector[Double]): Unit = cells += values.mkString(",")
+      def texts(values: Vector[String]): Unit   = cells += values.mkString(",")
+      def nothing(): Unit                       = cells += "absent"
     Table.columnsOf(record).append(record, row)
-    texts.result()
+    cells.result()

@@ -11,7 +11,7 @@ import java.util.HexFormat
   * It is the SHA-256 over all rows in the order of their numbers. Each is fed as the name of its table, its number, and
   * its columns from left to right; a value as one byte for its kind (0 absent, 1 text, 2 BIGINT, 3 DOUBLE) and then
   * eight bytes, big-endian: the integer, the bits of the double, or the length of the text's UTF-8 that follows. A list
-  * of integers counts as their text with commas between. An absent value of a column that came with format 5 or later
+  * of integers counts as their text with commas between, any other list as its length and its values. An absent value of a column that came with format 5 or later
   * is left out. How the
   * flight ended ([[Ending]], the last row) is left out: formats before 4 did not record it.
   */
@@ -53,11 +53,17 @@ object Digest:
       put(1, utf8.length)
       sha256.update(utf8)
 
-    def long(value: Long): Unit           = put(2, value)
-    def double(value: Double): Unit       = put(3, java.lang.Double.doubleToLongBits(value))
-    def longs(values: Vector[Long]): Unit = text(values.mkString(","))
-    def nothing(): Unit                   = put(0, 0)
-    override def nothingYet(): Unit       = ()
+    def long(value: Long): Unit               = put(2, value)
+    def double(value: Double): Unit           = put(3, java.lang.Double.doubleToLongBits(value))
+    def longs(values: Vector[Long]): Unit     = text(values.mkString(","))
+    def doubles(values: Vector[Double]): Unit =
+      long(values.size)
+      values.foreach(double)
+    def texts(values: Vector[String]): Unit =
+      long(values.size)
+      values.foreach(text)
+    def nothing(): Unit             = put(0, 0)
+    override def nothingYet(): Unit = ()
 
     private def put(kind: Byte, value: Long): Unit =
       sha256.update(bytes.clear().put(kind).putLong(value).flip())

@@ -71,6 +71,37 @@ object Vehicle:
   */
 final case class Reading(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
+/** One answer of a sensor.
+  *
+  * @param sequence
+  *   counts the answers asked of this sensor, in the order in which they were asked for
+  * @param quantities
+  *   names of the numbers, with units
+  * @param numbers
+  *   as many
+  */
+final case class Measurement(
+    sequence: Long,
+    vehicle: String,
+    sensor: String,
+    quantities: Vector[String],
+    numbers: Vector[Double],
+    validAt: Instant,
+    sentAt: Instant,
+    receivedAt: Instant
+) extends Record
+
+/** A measurement that a decision was made from.
+  *
+  * @param vehicle
+  *   that was decided for, and that measured
+  * @param decision
+  *   the decision's sequence
+  * @param measurement
+  *   the measurement's sequence
+  */
+final case class Sensing(vehicle: String, decision: Long, sensor: String, measurement: Long) extends Record
+
 /** One decision for one vehicle, with everything that it was made from.
   *
   * @param sequence

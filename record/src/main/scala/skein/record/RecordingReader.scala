@@ -18,6 +18,8 @@ object RecordingReader:
             Table.reading.read(connection),
             Table.decision.read(connection),
             Table.sighting.read(connection),
+            Table.measurement.read(connection),
+            Table.sensing.read(connection),
             Table.planned.read(connection),
             Table.prediction.read(connection),
             Table.command.read(connection),

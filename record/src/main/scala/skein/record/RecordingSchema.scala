@@ -31,7 +31,10 @@ object RecordingSchema:
     case "reading"   => "One row an answer of the simulator."
     case "decision"  =>
       "One row a decision, with the readings it was made from. `own…Age` counts from arrival, as the paper published it; `ownTrueAge` from the valid time."
-    case "sighting"        => "The readings of the other vehicles that a decision for a team was made from."
+    case "sighting"    => "The readings of the other vehicles that a decision for a team was made from."
+    case "measurement" => "One row an answer of a sensor; `quantities` names its numbers, with their units."
+    case "sensing"     =>
+      "The measurements that a decision was made from: one row for each sensor that its policy reads."
     case "plan"            => "How a decision was planned."
     case "prediction"      => "Predictions whose moment was read, with their error."
     case "command"         => "One row a command as it was sent."

@@ -1,6 +1,7 @@
 package skein.record
 
 import org.duckdb.DuckDBAppender
+import scala.jdk.CollectionConverters.*
 
 /** Takes the values of one row from left to right. */
 private[record] trait RowWriter:
@@ -9,6 +10,8 @@ private[record] trait RowWriter:
   def double(value: Double): Unit
 
   def longs(values: Vector[Long]): Unit
+  def doubles(values: Vector[Double]): Unit
+  def texts(values: Vector[String]): Unit
 
   /** An absent value. */
   def nothing(): Unit
@@ -18,8 +21,10 @@ private[record] trait RowWriter:
 
 /** Writes into the row that the appender has begun. */
 private[record] final class AppenderRow(appender: DuckDBAppender) extends RowWriter:
-  def text(value: String): Unit         = { val _ = appender.append(value) }
-  def long(value: Long): Unit           = { val _ = appender.append(value) }
-  def double(value: Double): Unit       = { val _ = appender.append(value) }
-  def longs(values: Vector[Long]): Unit = { val _ = appender.append(values.toArray) }
-  def nothing(): Unit                   = { val _ = appender.appendNull() }
+  def text(value: String): Unit             = { val _ = appender.append(value) }
+  def long(value: Long): Unit               = { val _ = appender.append(value) }
+  def double(value: Double): Unit           = { val _ = appender.append(value) }
+  def longs(values: Vector[Long]): Unit     = { val _ = appender.append(values.toArray) }
+  def doubles(values: Vector[Double]): Unit = { val _ = appender.append(values.toArray) }
+  def texts(values: Vector[String]): Unit   = { val _ = appender.append(values.asJava) }
+  def nothing(): Unit                       = { val _ = appender.appendNull() }

@@ -159,6 +159,29 @@ private[record] object Table:
     since = 3
   )
 
+  val measurement: Table[Measurement] = Table(
+    "measurement",
+    product[Measurement]:
+      (
+        long("sequence"),
+        text("vehicle"),
+        text("sensor"),
+        texts("quantities"),
+        doubles("numbers"),
+        instantNs("validAt"),
+        instantNs("sentAt"),
+        instantNs("receivedAt")
+      )
+    ,
+    since = 5
+  )
+
+  val sensing: Table[Sensing] = Table(
+    "sensing",
+    product[Sensing]((text("vehicle"), long("decision"), text("sensor"), long("measurement"))),
+    since = 5
+  )
+
   val planned: Table[Planned] = Table(
     "plan",
     product[Planned]:
@@ -244,6 +267,8 @@ private[record] object Table:
       reading,
       decision,
       sighting,
+      measurement,
+      sensing,
       planned,
       prediction,
       command,
@@ -267,6 +292,8 @@ private[record] object Table:
     case _: Reading         => reading
     case _: Decision        => decision
     case _: Sighting        => sighting
+    case _: Measurement     => measurement
+    case _: Sensing         => sensing
     case _: Planned         => planned
     case _: Prediction      => prediction
     case _: Command         => command

@@ -92,6 +92,17 @@ object Samples:
       5,
       Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
     ),
+    Measurement(
+      3,
+      "Pursuer",
+      "gps",
+      Vector("latitudeDeg", "it's, odd"),
+      Vector(47.6414, -122.25),
+      Instant.ofNanos(5_000_001),
+      at(50_000_000),
+      at(61_000_000)
+    ),
+    Sensing("Pursuer", 2, "gps", 3),
     Planned("Pursuer", 1, 40_960, Vector(40, 39), Some(12.25), Span.ofMillis(60.5), 0),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
     Prediction(

@@ -1,0 +1,34 @@
+package skein.loop
+
+import java.util.concurrent.atomic.AtomicLong
+import scala.concurrent.{ExecutionContext, Future}
+import skein.port.{Sensor, VehicleError}
+
+/** A sensor of a vehicle that the vehicle's policy reads. */
+private final class TeamSensor(val vehicle: Int, val name: String, sensor: Sensor, log: TeamLog)(using
+    ExecutionContext
+):
+  private val asked   = AtomicLong()
+  private val columns = sensor.columns
+
+  /** Asks it; the answer, or the error, is recorded. An answer that is not as many finite numbers as there are columns is
+    * an error.
+    */
+  def read(): Future[Either[VehicleError, SensorReading]] =
+    val sequence = asked.getAndIncrement()
+    sensor
+      .read()
+      .map(_.flatMap: answer =>
+        val values = answer.value.toVector
+        Either.cond(
+          values.size == columns.size && values.forall(_.isFinite),
+          SensorReading(vehicle, name, sequence, columns, answer.map(_ => values)),
+          VehicleError.Malformed(s"expected ${columns.mkString(", ")}, came ${values.mkString(", ")}")
+        ))
+      .map:
+        case Right(reading) =>
+          log.sensed(reading)
+          Right(reading)
+        case Left(error) =>
+          log.failed(vehicle, s"$name $sequence", error)
+          Left(error)
