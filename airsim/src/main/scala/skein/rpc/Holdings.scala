@@ -2,8 +2,8 @@ package skein.rpc
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** How much memory peers make us hold, over all connections of one server or client: messages under way, messages
-  * decoded and not yet answered, answers not yet taken.
+/** How much peers make us hold, over all connections of one server or client: bytes of memory (messages under way,
+  * messages decoded and not yet answered, answers not yet taken), or requests being handled; here all are called bytes.
   *
   * Every connection may hold `each` bytes whatever the others do; what it holds beyond comes out of `common`, first
   * come, first served. So a peer that asks little is never refused because of one that asks much, and the whole is at

@@ -50,6 +50,7 @@ object RpcServer:
       observer: ServerEvent => Unit = _ => ()
   )(handler: RpcHandler)(using system: ActorSystem): Future[RpcServer] =
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
+    val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
     val places   = Places(limits.connections, limits.silence)
     val stop     = KillSwitches.shared("rpc-server")
@@ -74,7 +75,7 @@ object RpcServer:
       val connection = counters.nextConnection()
       observe(ServerEvent.Opened(connection, incoming.from))
       val stage =
-        ServerConnection(connection, limits, handler, failureText, counters, holdings, places, observe)
+        ServerConnection(connection, limits, handler, failureText, counters, holdings, turns, places, observe)
       try
         val _ = incoming.flow.join(Flow.fromGraph(stage).via(stop.flow)).run()
       catch

@@ -29,6 +29,7 @@ private[rpc] final class ServerConnection(
     failureText: (RpcRequest, Throwable) => String,
     counters: ServerCounters,
     holdings: Holdings,
+    turns: Holdings,
     places: Places,
     observe: ServerEvent => Unit
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
@@ -50,17 +51,21 @@ private[rpc] final class ServerConnection(
       private val leaving   = getAsyncCallback[Unit](_ => close(ServerLimit.Idle, "its place was needed"))
       private var inFlight  = 0
       private var consumed  = true // every value of the last segment is taken
-      private var heldBack  =
-        Option.empty[Array[Byte]] // the next message, while it is too large for what is left
-      private var backFor = 0 // watches since it is
-      private var strays  = 0 // values since the last request that were no messages
-      private var reason  = Option.empty[String]
+      private var strays    = 0    // values since the last request that were no messages
+      private var reason    = Option.empty[String]
+
+      // The next message, while it is too large for what is left, and the watches since it is.
+      private var heldBack = Option.empty[Array[Byte]]
+      private var backFor  = 0
 
       // What it holds, bytes.
       private val holding = holdings.Holding()
       private var segment = 0  // of the last segment, while it is not consumed
       private var inHand  = 0L // of requests being handled
       private var sending = 0  // of replies handed downstream, until it asks for more
+
+      // Requests that it may have in flight.
+      private val turn = turns.Holding()
 
       setHandlers(in, out, this)
 
@@ -90,6 +95,7 @@ private[rpc] final class ServerConnection(
 
       override def postStop(): Unit =
         holding.force(0)
+        turn.force(0)
         places.left(connection)
         observe(ServerEvent.Closed(connection, reason))
 
@@ -139,7 +145,7 @@ private[rpc] final class ServerConnection(
           heldBack = None
           take(frame)
         while !consumed && heldBack.isEmpty && reason.isEmpty && inFlight < limits.inFlightPerConnection &&
-          writer.length < limits.unsentBytesPerConnection && hasRoom
+          writer.length < limits.unsentBytesPerConnection && hasRoom && turn.resize(inFlight + 1L)
         do
           framer.next() match
             case Framed.Complete(frame) =>
@@ -151,6 +157,7 @@ private[rpc] final class ServerConnection(
             case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
         // The rest of it may never come: only requests of its own are worth waiting for.
         if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
+        turn.force(inFlight)
         holding.force(held)
 
       private def held: Long =

@@ -19,6 +19,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val asked    = LinkedBlockingQueue[(RpcRequest, Promise[Either[String, Msg]])]()
     val events   = LinkedBlockingQueue[ServerEvent]()
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
+    val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
     val places   = Places(limits.connections, limits.silence)
 
@@ -31,7 +32,17 @@ class ServerConnectionSuite extends munit.FunSuite:
         answer.future
 
     private val stage =
-      ServerConnection(1, limits, handler, RpcServer.rpclibFailure, counters, holdings, places, events.put(_))
+      ServerConnection(
+        1,
+        limits,
+        handler,
+        RpcServer.rpclibFailure,
+        counters,
+        holdings,
+        turns,
+        places,
+        events.put(_)
+      )
     val (requests, replies) =
       TestSource[ByteString]().via(Flow.fromGraph(stage)).toMat(TestSink[ByteString]())(Keep.both).run()
     private val framer   = Framer()

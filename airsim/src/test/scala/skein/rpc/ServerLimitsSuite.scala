@@ -16,6 +16,7 @@ class ServerLimitsSuite extends munit.FunSuite:
   private final class Rig(limits: ServerLimits)(using val system: ActorSystem):
     val time           = ManualTime.of(system)
     val holdings       = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
+    val turns          = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters       = ServerCounters(holdings)
     val guests         = java.util.concurrent.ConcurrentLinkedQueue[Places.Guest]()
     private val places = new Places(limits.connections, limits.silence):
@@ -42,6 +43,7 @@ class ServerLimitsSuite extends munit.FunSuite:
           RpcServer.rpclibFailure,
           counters,
           holdings,
+          turns,
           places,
           events.put
         )
@@ -113,6 +115,9 @@ class ServerLimitsSuite extends munit.FunSuite:
   private def large(id: Int): ByteString =
     ByteString(Wire.pack(Arr(Int32(0), Int32(id), Str("never"), Arr(Binary(new Array[Byte](40_000))))))
 
+  private def never(id: Int): ByteString =
+    ByteString(Wire.pack(Arr(Int32(0), Int32(id), Str("never"), Arr())))
+
   /** A connection whose large request is being handled, and nothing else of it held. */
   private def waits(r: Rig): r.Connection =
     val before     = r.holdings.bytes
@@ -175,6 +180,40 @@ class ServerLimitsSuite extends munit.FunSuite:
     image.ping()
     assertEquals((r.counters.snapshot.lacking, r.counters.snapshot.refused), (1L, 1L))
     assert(r.holdings.mostBytes <= three.heldBytes)
+
+  private val six = ServerLimits(inFlightAssured = 2, inFlightInCommon = 4)
+
+  rig(
+    "one that asks without a pause leaves the others their requests in flight, and all of its own are answered",
+    six
+  ): r =>
+    val greedy = r.Connection()
+    greedy.send((1 to 20).map(never).reduce(_ ++ _))
+    r.until(r.counters.snapshot.requests == 6)
+    val honest = r.Connection()
+    honest.send(never(1))
+    honest.ping()
+    honest.send(never(2) ++ never(3))
+    r.until(r.counters.snapshot.requests == 9)
+    greedy.requests.sendError(RuntimeException("gone"))
+    assertEquals(r.closed(), ServerEvent.Closed(1, Some("gone")))
+    r.until(r.turns.bytes == 2)
+    r.until:
+      r.time.advance(ServerLimits.Watch)
+      r.counters.snapshot.requests == 10
+    r.never.success(Right(Null))
+    r.until(r.counters.snapshot.answered == 4)
+    r.until(r.turns.bytes == 0)
+
+  rig("what waits for its turn is taken as those before it are answered", six): r =>
+    val greedy = r.Connection()
+    greedy.send((1 to 20).map(never).reduce(_ ++ _))
+    r.until(r.counters.snapshot.requests == 6)
+    r.never.success(Right(Null))
+    var answers = Seq.empty[ByteString]
+    while replies(answers).size < 20 do answers :+= greedy.replies.expectNext()
+    assertEquals(replies(answers).toSet, (1 to 20).map(id => Message.Reply(id, Null, Null): Message).toSet)
+    assertEquals(r.turns.mostBytes, 6L)
 
   rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()):
     r =>

@@ -25,6 +25,9 @@ private[simulator] object MethodFuzz:
       method.arguments.map(argument => palette.filter(accepts(argument, _)).toIndexedSeq)
     private val wrong = (palette ++ extreme).toIndexedSeq
 
+    /** What vehicles may be called after such calls: some add a vehicle. */
+    def names: Seq[Msg] = palette.collect { case name: Str => name }
+
     for (method, values) <- methods.zip(right); (found, i) <- values.zipWithIndex do
       require(found.nonEmpty, s"nothing in the palette is right for parameter $i of ${method.name}")
 
@@ -43,12 +46,12 @@ private[simulator] object MethodFuzz:
       def any    = wrong(random.nextInt(wrong.size))
       val usual  = values.map(from => from(random.nextInt(from.size)))
       val params = random.nextInt(10) match
-        case 0 | 1                => usual
-        case 2                    => usual.take(random.nextInt(usual.size + 1))
-        case 3                    => usual ++ Seq.fill(1 + random.nextInt(4))(any)
-        case 4                    => usual.map(_ => any)
-        case _ if usual.isEmpty   => usual
-        case _                    => usual.updated(random.nextInt(usual.size), any)
+        case 0 | 1              => usual
+        case 2                  => usual.take(random.nextInt(usual.size + 1))
+        case 3                  => usual ++ Seq.fill(1 + random.nextInt(4))(any)
+        case 4                  => usual.map(_ => any)
+        case _ if usual.isEmpty => usual
+        case _                  => usual.updated(random.nextInt(usual.size), any)
       FuzzCall(if random.nextInt(200) == 0 then random.nextString(5) else method.name, params)
 
   /** Whether an answer's text tells of a defect rather than of a bad call. */
@@ -98,8 +101,10 @@ private[simulator] object MethodFuzz:
 
   private def nested(vehicle: String): Seq[Msg] =
     def vector(x: Msg) = Obj(Str("x_val") -> x, Str("y_val") -> Float32(2), Str("z_val") -> Float32(-3))
-    val numbers        = Seq[Msg](Float32(1), Int32(7), Float32(Float.NaN), Float64(1e300), Null, Str("1"), vector(Null))
-    val pose           = Obj(Str("position") -> vector(Float32(1)), Str("orientation") -> Obj(Str("w_val") -> Float32(1)))
+    val numbers        =
+      Seq[Msg](Float32(1), Int32(7), Float32(Float.NaN), Float64(1e300), Null, Str("1"), vector(Null))
+    val pose =
+      Obj(Str("position") -> vector(Float32(1)), Str("orientation") -> Obj(Str("w_val") -> Float32(1)))
     numbers.map(vector) ++ numbers.map(x => Arr(vector(x), vector(Float32(4)))) ++ numbers.map(Arr(_)) ++
       numbers.map(x => Obj(Str("is_rate") -> x, Str("yaw_or_rate") -> x)) ++
       Seq[Msg](
@@ -107,8 +112,8 @@ private[simulator] object MethodFuzz:
         Arr(pose, pose),
         Obj(Str("position") -> Null),
         Obj(Str("position") -> Arr(), Str("orientation") -> pose),
-        Obj(Int32(1) -> Null),
-        Obj(Null -> Obj(Null -> Null)),
+        Obj(Int32(1)        -> Null),
+        Obj(Null            -> Obj(Null -> Null)),
         Arr(Arr(Arr())),
         Arr(Str(vehicle), Str(vehicle)),
         Arr(Seq.fill(4)(Float32(0.25f))*)

@@ -1,10 +1,11 @@
 package skein.simulator
 
+import com.typesafe.config.ConfigFactory
 import java.io.IOException
 import java.net.{InetAddress, Socket}
 import java.nio.file.Files
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
-import java.util.concurrent.{ConcurrentLinkedQueue, Semaphore}
+import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue, Semaphore}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.util.ByteString
 import scala.concurrent.Await
@@ -23,14 +24,19 @@ import upack.{Msg, Null, Str}
   * Three processes, since a greedy client is not in the server's: this one is the server (its workers unlimited, for
   * endless moves hold AirSim's workers for ever, by its design) and the honest client, the attackers run in a second.
   *
-  * Arguments: calls of the fuzz (default 1,000,000), seconds for each attack (default 20), seed (default 1).
+  * The actor system is set as the command `serve` sets its own.
+  *
+  * Arguments: calls of the fuzz (default 1,000,000), seconds for each attack (default 20), seed (default 1), and the
+  * attacks, with commas between (default all of them).
   */
 object Siege:
   def main(args: Array[String]): Unit =
     val calls                 = args.headOption.fold(1_000_000)(_.toInt)
     val seconds               = args.lift(1).fold(20)(_.toInt)
     val seed                  = args.lift(2).fold(1L)(_.toLong)
-    given system: ActorSystem = ActorSystem("siege")
+    val attacks               = args.lift(3).fold(Attacks)(_.split(',').toSeq)
+    given system: ActorSystem =
+      ActorSystem("siege", ConfigFactory.parseString(AsServed).withFallback(ConfigFactory.load()))
     val settings = SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never)
     val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
     val honest   = Honest(server.address.port)
@@ -52,22 +58,32 @@ object Siege:
           f"            ${at(after, 0.99)}%6.1f ${at(after, 1)}%7.1f | $held%.1f of ${settings.limits.heldBytes >> 20}  $said"
       )
     row("nobody") { Thread.sleep(5000); "" }
-    row("fuzz"):
-      val folder = Files.createTempDirectory("siege")
-      val grid   = folder.resolve("grid.binvox")
-      try
-        val said = child("fuzz", server.address.port, calls, seed, grid.toString)
-        s"$said; voxel grid written: ${Files.exists(grid)}; heap ${heapMiB()} MiB"
-      finally
-        Files.deleteIfExists(grid): Unit
-        Files.delete(folder)
-    for attack <- Seq("pipelining", "colliding", "unfinished", "idle", "deaf") do
+    if attacks.contains("fuzz") then
+      row("fuzz"):
+        val folder = Files.createTempDirectory("siege")
+        val grid   = folder.resolve("grid.binvox")
+        try
+          val said = child("fuzz", server.address.port, calls, seed, grid.toString)
+          s"$said; voxel grid written: ${Files.exists(grid)}; heap ${heapMiB()} MiB"
+        finally
+          Files.deleteIfExists(grid): Unit
+          Files.delete(folder)
+    for attack <- attacks if attack != "fuzz" do
       row(attack)(s"${child(attack, server.address.port, seconds, seed)}; heap ${heapMiB()} MiB")
     println(server.stats)
     println(s"simulation failed: ${server.failed.value}; honest answers wrong: ${honest.wrong}")
     honest.stop()
     Await.result(server.close(), 10.seconds)
     val _ = Await.result(system.terminate(), 20.seconds)
+
+  private val Attacks = Seq("fuzz", "pipelining", "colliding", "unfinished", "idle", "deaf")
+
+  private val AsServed =
+    """pekko {
+      |  loglevel = WARNING
+      |  scheduler.implementation = "skein.link.PreciseScheduler"
+      |  stream.materializer.io.tcp.coalesce-writes = 0
+      |}""".stripMargin
 
   private def at(sorted: Array[Double], quantile: Double): Double =
     if sorted.isEmpty then Double.NaN
@@ -94,8 +110,8 @@ object Siege:
       s"$seed"
     ) ++ more
     val process = ProcessBuilder(command.asJava).redirectErrorStream(true).start()
-    val said = String(process.getInputStream.readAllBytes())
-    val code = process.waitFor()
+    val said    = String(process.getInputStream.readAllBytes())
+    val code    = process.waitFor()
     said.linesIterator.filterNot(_.startsWith("WARNING")).mkString(" ") + (if code == 0 then ""
                                                                            else s" EXIT $code")
 
@@ -257,6 +273,9 @@ object Attackers:
     connection.send(begun)
     val _ = connection.reply()
 
+  /** The id of calls that are not counted. */
+  private inline val Nudge = 1_000_000_000L
+
   private def fuzz(port: Int, calls: Int, seed: Long, file: Option[String]): Unit =
     val lanes   = 8
     val left    = AtomicLong(calls)
@@ -272,10 +291,13 @@ object Attackers:
         // Of the largest messages some 80 fit into what a server holds for all.
         val window = Semaphore(16)
         val mine   = AtomicLong()
+        val asked  = ConcurrentHashMap[Long, String]()
         val reader = Thread.ofPlatform().daemon().start: () =>
           while true do
             connection.reply() match
-              case Message.Reply(_, error, _) =>
+              case Message.Reply(Nudge, _, _)        => ()
+              case Message.Reply(answered, error, _) =>
+                asked.remove(answered): Unit
                 ended.incrementAndGet(): Unit
                 mine.decrementAndGet(): Unit
                 if error != Null then
@@ -284,27 +306,24 @@ object Attackers:
                   if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
                 window.release()
               case _ => ()
+        // Moves of its own wait, or a step of a day: both are ended.
+        def nudge(): Unit =
+          connection.ask(Nudge, "simPause", Seq(upack.Bool(false)))
+          for name <- source.names do connection.ask(Nudge, "cancelLastTask", Seq(name))
         var id = 0L
         while left.getAndDecrement() > 0 do
           val call = source.random(random)
-          while !window.tryAcquire(20, java.util.concurrent.TimeUnit.MILLISECONDS) do
-            // Moves of its own wait, or a step of a day: both are ended.
-            connection.ask(1_000_000_000L, "simPause", Seq(upack.Bool(false)))
-            connection.ask(1_000_000_000L, "cancelLastTask", Seq(Str("")))
-            ended.addAndGet(-2): Unit
-            mine.addAndGet(2): Unit
+          while !window.tryAcquire(20, java.util.concurrent.TimeUnit.MILLISECONDS) do nudge()
           id += 1
           mine.incrementAndGet(): Unit
+          asked.put(id, s"${call.method}${call.params.mkString("(", ", ", ")").take(200)}"): Unit
           connection.ask(id, call.method, call.params)
         var patience = 500
         while mine.get > 0 && patience > 0 do
-          connection.ask(1_000_000_000L, "simPause", Seq(upack.Bool(false)))
-          connection.ask(1_000_000_000L, "cancelLastTask", Seq(Str("")))
-          ended.addAndGet(-2): Unit
-          mine.addAndGet(2): Unit
+          nudge()
           Thread.sleep(20)
           patience -= 1
-        if mine.get > 0 then defects.add(s"${mine.get} calls never answered on connection $lane"): Unit
+        if mine.get > 0 then defects.add(s"never answered: ${asked.values.asScala.mkString(", ")}"): Unit
         val _ = reader
     threads.foreach(_.join())
     val took = (System.nanoTime() - start) * 1e-9
