@@ -42,7 +42,7 @@ private[torture] object KnowledgeChecks:
     val histories = told.map((vehicle, answers) => vehicle -> History(answers))
     firstOf(seen): (decision, used) =>
       histories(used.vehicle)
-        .newerThan(used, (decision.decidedAt - joins).max(used.state.receivedAt))
+        .newerThan(used, (decision.decidedAt - joins).max(used.state.receivedAt), isNewer(seen.runs))
         .map: newer =>
           s"used reading ${used.sequence} of ${used.vehicle} and had the newer ${newer.question} since " +
             s"${decision.decidedAt.since(newer.state.receivedAt).toMillis.fixed(1)} ms"
@@ -53,7 +53,7 @@ private[torture] object KnowledgeChecks:
     firstOf(seen): (decision, used) =>
       val before = newest.put((decision.vehicle, used.vehicle), used)
       before
-        .filter(reading => isNewer(reading.state, used.state))
+        .filter(reading => isNewer(seen.runs)(reading.state, used.state))
         .map(reading =>
           s"used reading ${used.sequence} of ${used.vehicle} after the newer ${reading.sequence}"
         )
@@ -130,12 +130,20 @@ private[torture] object KnowledgeChecks:
 
   private def where(decision: Decision) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
-  /** Whether one state was sampled after another, said without the loop's own word for it. A simulator that was started
-    * again with another clock can leave neither the newer.
+  /** Whether one state was sampled after another, said without the loop's own word for it: so that the controller could
+    * know it, and truly. Of a simulator that was started again with an earlier clock, an answer of the old run that comes
+    * late looks newer, and is not.
     */
-  private def isNewer(one: Stamped[?], other: Stamped[?]) =
+  private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
     def follows(a: Stamped[?], b: Stamped[?]) = a.validAt > b.validAt || a.sentAt > b.receivedAt
-    follows(one, other) && !follows(other, one)
+    def truly = sampledAt(runs, one).zip(sampledAt(runs, other)).forall((mine, its) => mine > its)
+    follows(one, other) && !follows(other, one) && truly
+
+  /** On the controller's clock: by the run of the simulator whose answer can have come from within the question's time. */
+  private def sampledAt(runs: Vector[Run], state: Stamped[?]): Option[Instant] =
+    runs
+      .map(run => state.validAt + run.clockOffset)
+      .find(at => at >= state.sentAt && at <= state.receivedAt)
 
   /** What one vehicle told, in the order in which it came. */
   private final class History(answers: Vector[Answer]):
@@ -144,7 +152,11 @@ private[torture] object KnowledgeChecks:
     /** The first that came before `until`, and is newer than a reading. What is newer by much came lately: only the last
       * [[Recent]] are looked at.
       */
-    def newerThan(used: Reading, until: Instant): Option[Answer] =
+    def newerThan(
+        used: Reading,
+        until: Instant,
+        isNewer: (Stamped[?], Stamped[?]) => Boolean
+    ): Option[Answer] =
       val come = arrivals.search(until).insertionPoint
       answers.slice(come - Recent, come).find(answer =>
         answer.state.receivedAt < until && isNewer(answer.state, used.state)

@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.loop.LoopKind
 import skein.record.{Decision, RecordError, TrueAge}
+import skein.signal.Stamped
 import skein.units.*
 
 /** The checks find what they are there to find: a clean flight's evidence is forged in one thing at a time. */
@@ -80,6 +81,18 @@ class ChecksSuite extends munit.FunSuite:
     val older     = clean.recording.decisions(20).own
     val forged    = withDecision(60)(_.copy(own = older)).copy(ordeal = published)
     assert(found(forged).contains("after the newer"))
+
+  test("an answer of a run before, with a later clock, is not newer than one of the run that followed (seed 1851)"):
+    def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
+      Stamped((), at(validMs), at(sentMs), at(receivedMs))
+    def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
+    val runs = Vector(Run(at(0), Span.Zero), Run(at(34868), Span.ofMillis(4466.95)))
+    val late = answer(34651.434, 34600, 35042.149)
+    val next = answer(30594.875, 35000, 35129.657)
+    val later = answer(30665.453, 35100, 35196.082)
+    assert(!KnowledgeChecks.isNewer(runs)(late, next))
+    assert(KnowledgeChecks.isNewer(runs)(later, next))
+    assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")
 
   test("a reading on record that no vehicle gave"):
     val readings = clean.recording.readings
