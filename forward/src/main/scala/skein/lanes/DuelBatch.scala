@@ -1,6 +1,5 @@
 package skein.lanes
 
-import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, QuadrotorResponse, Reduced, VelocityResponse}
 import skein.policy.Policy
 import skein.simd.LaneMath
@@ -25,11 +24,8 @@ final class DuelBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  // A class with vectors is not touched where their module is missing.
   private val plant: Either[String, TimetableModel] =
-    if ModuleLayer.boot().findModule("jdk.incubator.vector").isEmpty then
-      Left("the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector")
-    else TimetableModel.of(model, duel)
+    LaneSupport.present.flatMap(_ => TimetableModel.of(model, duel))
 
   /** The vehicles under the loop, if it flies by timetables. */
   private val lanes: Either[String, TimetableModel] =
@@ -47,7 +43,7 @@ final class DuelBatch(
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
       case _           => alone
 
-  private val timetables = Timetables(MostTimetables)
+  private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
   /** Which engine flies worlds of these policies, and why, in a line for the user.
@@ -118,77 +114,14 @@ final class DuelBatch(
       isCancelled: () => Boolean = () => false
   ): DuelOutcomes =
     val outcomes = DuelOutcomes(worlds.size)
-    val failure  = AtomicReference[Throwable]()
-    val next     = AtomicInteger()
     val batches  =
-      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, workers.head.together.batch)
+      if worlds.shareEpisodes then
+        WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, workers.head.together.batch)
       else WorldBatches.inOrder(worlds.size, workers.head.alone.batch)
-    var done = 0
-
-    def work(worker: Worker): Unit =
+    outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
       val flyer = if worlds.shareEpisodes then worker.together else worker.alone
-      var going = true
-      while going do
-        // Every batch that was handed out is flown.
-        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
-        if number >= batches.count then going = false
-        else
-          val numbers = batches(number)
-          flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
-          outcomes.synchronized:
-            done += numbers.length
-            onProgress(done)
-
-    val flying = workers
-      .take(batches.count)
-      .map: worker =>
-        val thread = Thread(() =>
-          try work(worker)
-          catch case thrown: Throwable => failure.compareAndSet(null, thrown): Unit
-        )
-        thread.setDaemon(true)
-        thread.setName("skein-duels")
-        thread
-    flying.foreach(_.start())
-    try flying.foreach(_.join())
-    catch
-      case interrupted: InterruptedException =>
-        failure.compareAndSet(null, interrupted): Unit
-        flying.foreach(_.join())
-    if failure.get != null then throw failure.get
-    outcomes.flown = done
+      flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
     outcomes
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
-  private inline val MostTimetables = 256
-
-/** Which worlds fly together. */
-private final class WorldBatches(order: Array[Int], starts: Array[Int]):
-  def count: Int = starts.length
-
-  /** Numbers of the worlds. */
-  def apply(batch: Int): Array[Int] =
-    java.util.Arrays.copyOfRange(
-      order,
-      starts(batch),
-      if batch + 1 < starts.length then starts(batch + 1) else order.length
-    )
-
-private object WorldBatches:
-  def inOrder(worlds: Int, most: Int): WorldBatches =
-    WorldBatches(Array.range(0, worlds), Array.range(0, worlds, most))
-
-  /** A batch has worlds of one key and one link. */
-  def byEpisode(worlds: DuelWorlds, most: Int): WorldBatches =
-    val groups  = java.util.HashMap[(Delays, Int), Integer]()
-    val groupOf = Array.tabulate(worlds.size): world =>
-      groups.computeIfAbsent((worlds.link(world), worlds.key(world)), _ => groups.size).intValue
-    val sizes = Array.ofDim[Int](groups.size)
-    for group <- groupOf do sizes(group) += 1
-    val ends  = sizes.scanLeft(0)(_ + _)
-    val fill  = ends.clone
-    val order = Array.ofDim[Int](worlds.size)
-    for world <- groupOf.indices do
-      order(fill(groupOf(world))) = world
-      fill(groupOf(world)) += 1
-    WorldBatches(order, sizes.indices.flatMap(group => ends(group) until ends(group + 1) by most).toArray)
+  private inline val MostBytes = 64L << 20

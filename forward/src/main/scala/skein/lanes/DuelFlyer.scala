@@ -137,21 +137,34 @@ private final class TimetableFlyer(
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then
         val (link, key) = (worlds.link(world), worlds.key(world))
-        timetable = timetables.getOrMake(link, key)(Timetable.of(2, duel.durationS, timing, link, key, model))
+        timetable = timetables.getOrMake((link, key))(Timetable.of(2, duel.durationS, timing, link, key, model))
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 
-/** The timetables used last, for all threads. */
-private final class Timetables(most: Int):
-  private val known = new java.util.LinkedHashMap[(Delays, Int), Timetable](16, 0.75f, true):
-    override def removeEldestEntry(eldest: java.util.Map.Entry[(Delays, Int), Timetable]): Boolean =
-      size > most
+/** The timetables used last, for all threads.
+  *
+  * @param mostBytes
+  *   that they hold, about
+  */
+private[lanes] final class Timetables(mostBytes: Long):
+  private val known = java.util.LinkedHashMap[Any, Timetable](16, 0.75f, true)
+  private var bytes = 0L
 
-  /** Two threads may make the same at once; they make it equal. */
-  def getOrMake(link: Delays, key: Int)(make: => Timetable): Timetable =
-    val held = known.synchronized(known.get((link, key)))
+  /** Two threads may make the same at once; they make it equal.
+    *
+    * @param of
+    *   all that it depends on
+    */
+  def getOrMake(of: Any)(make: => Timetable): Timetable =
+    val held = known.synchronized(known.get(of))
     if held != null then held
     else
       val made = make
-      known.synchronized(known.put((link, key), made)): Unit
+      known.synchronized:
+        val before = known.put(of, made)
+        bytes += made.bytes - (if before == null then 0 else before.bytes)
+        val eldest = known.values.iterator
+        while bytes > mostBytes && known.size > 1 do
+          bytes -= eldest.next().bytes
+          eldest.remove()
       made

@@ -2,7 +2,6 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.forward.Duelist
-import skein.policy.TeamPolicy
 
 /** What several vehicles of a team compute of one picture, in many worlds. Mutable. */
 private[lanes] final class TeamPictures(val lanes: TeamLanes):
@@ -50,13 +49,12 @@ private[lanes] final class TeamAgents(self: Int, duelist: Duelist, model: Timeta
       case Source.Parameter(number) => decision.call.input(place, parameters, number * WORLDS)
       case Source.Shared(number)    => decision.call.input(place, team.values, number * WORLDS)
 
-  /** Takes a world's vehicle: where it starts, and its policy, which must be of the form. */
-  def take(world: Int, duelist: Duelist): Unit =
+  /** Takes where a world's vehicle starts, and the numbers of its policy, which must be of the form. */
+  def take(world: Int, duelist: Duelist, numbers: Array[Double]): Unit =
     vehicles.place(world, duelist)
     startCos(world) = StrictMath.cos(duelist.startHeadingRad).toFloat
     startSin(world) = StrictMath.sin(duelist.startHeadingRad).toFloat
-    val values = lanes.parametersOf(self, duelist.policy.asInstanceOf[TeamPolicy])
-    for number <- values.indices do parameters(number * WORLDS + world) = values(number).toFloat
+    for number <- numbers.indices do parameters(number * WORLDS + world) = numbers(number).toFloat
 
   override def start(timetable: Timetable, worlds: Int): Unit =
     super.start(timetable, worlds)

@@ -4,7 +4,9 @@ import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.policy.*
 import skein.signal.SplitMix64
+import skein.scenario.*
 import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
 
 class TeamLanesSuite extends munit.FunSuite:
   private val worlds = TimetableKernel.WORLDS
@@ -39,7 +41,7 @@ class TeamLanesSuite extends munit.FunSuite:
     )
 
   /** Places of all vehicles at every score, by world. */
-  private final class Places(count: Int) extends TimetableScores:
+  private final class PlacesByWorld(count: Int) extends TimetableScores:
     val places: ArrayBuffer[Array[(Double, Double)]] = ArrayBuffer.empty
     def start(): Unit                                = places.clear()
     def finish(): Unit                               = ()
@@ -71,27 +73,108 @@ class TeamLanesSuite extends munit.FunSuite:
     (linked, link) <- links
   do
     test(s"$name, $timing over $linked: every world flies as by the scalar reference, 10 s to 2 mm"):
-      val random = SplitMix64(7)
-      val all    = Vector.fill(worlds)(engagement(draw(random), 10))
-      val key    = WorldRandom.key(3, 1, 0)
-      val model  = TimetableModel.of(lag, all.head.agents).fold(fail(_), identity)
-      val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
-      val count  = lanes.count
-      val team   = TeamPictures(lanes)
-      val agents =
-        Array.tabulate[TeamAgents](count)(self => TeamAgents(self, all.head.agents(self), model, team))
-      val places = Places(count)
-      for (each, world) <- all.zipWithIndex do
-        assert(lanes.fits(policies(each)))
-        for (agent, self) <- agents.zipWithIndex do agent.take(world, each.agents(self))
-      TimetableKernel(agents.map(identity[TimetableAgents]), places)
-        .fly(Timetable.of(count, 10, timing, link, key, model), worlds)
-      for world <- 0 until worlds by 5 do
-        val truth = scalar(all(world), timing, link, lag, key)
-        assertEquals(truth.size, places.places.size)
-        val off = truth.indices.map: i =>
-          val (x, y) = places.places(i)(world)
-          math.hypot(x - truth(i)._1, y - truth(i)._2)
-        assert(off.max < 2e-3, s"world $world: ${off.max} m at score ${off.indices.maxBy(off) / count}")
+      agree(draw, timing, link, lag, 2e-3)
+
+  for
+    (name, draw)   <- scenarios
+    (model, plant) <- Seq(
+      "drag"          -> ReducedResponse(ReducedModel.AirSim),
+      "drag and turn" -> ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02)),
+      "quadrotor"     -> VelocityResponses.quadrotor()
+    )
+  do
+    test(s"$name, $model, stream over vpn: every world flies as by the scalar reference, 5 s to 4 mm"):
+      agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 5, 25)
+
+  private def agree(
+      draw: SplitMix64 => TeamScenario,
+      timing: LoopTiming,
+      link: Delays,
+      plant: VelocityResponse,
+      mostM: Double,
+      durationS: Double = 10,
+      every: Int = 5
+  ): Unit =
+    val random = SplitMix64(7)
+    val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
+    val key    = WorldRandom.key(3, 1, 0)
+    val model  = TimetableModel.of(plant, all.head.agents).fold(fail(_), identity)
+    val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
+    val count  = lanes.count
+    val team   = TeamPictures(lanes)
+    val agents = Array.tabulate(count)(self => TeamAgents(self, all.head.agents(self), model, team))
+    val places = PlacesByWorld(count)
+    for (each, world) <- all.zipWithIndex do
+      assert(lanes.fits(policies(each)))
+      for (agent, self) <- agents.zipWithIndex do
+        agent.take(world, each.agents(self), lanes.parametersOf(self, policies(each)(self)))
+    TimetableKernel(agents.map(identity[TimetableAgents]), places)
+      .fly(Timetable.of(count, durationS, timing, link, key, model), worlds)
+    for world <- 0 until worlds by every do
+      val truth = scalar(all(world), timing, link, plant, key)
+      assertEquals(truth.size, places.places.size)
+      val off = truth.indices.map: i =>
+        val (x, y) = places.places(i)(world)
+        math.hypot(x - truth(i)._1, y - truth(i)._2)
+      assert(off.max < mostM, s"world $world: ${off.max} m at score ${off.indices.maxBy(off) / count}")
+
+  private val quantities: Seq[(String, SplitMix64 => TeamScenario, Int => Vector[Quantity])] =
+    val circuit = Racetrack(50, 20)
+    Seq(
+      ("surround", scenarios(0)._2, i => Vector(OffRing(7 + 0.01 * i), WidestGap, Separation)),
+      (
+        "formation",
+        scenarios(1)._2,
+        i =>
+          Vector(
+            OffSlots(circuit, IArray(-4, -4, -8, -8), IArray(4, -4, 8, -8 + 0.01 * i)),
+            FromGoals(IArray.tabulate(5)(_.toDouble), IArray.fill(5)(0.1 * i)),
+            Separation
+          )
+      )
+    )
+
+  for
+    (name, draw, judging) <- quantities
+    reduction             <- Reduction.values
+  do
+    test(s"$name, $reduction: candidates come to what the scalar reference says, to 1e-3 of it"):
+      val random     = SplitMix64(9)
+      val candidates = Vector.tabulate(150): i =>
+        TeamCandidate(engagement(draw(random), 10), judging(i).map(Judged(_, reduction, 2)))
+      val all = new TeamWorlds:
+        def size: Int                            = 2 * candidates.size
+        def key(world: Int): Int                 = WorldRandom.key(5, 0, world % 2)
+        def link(world: Int): Delays             = DelayTable.vpn
+        def candidate(world: Int): TeamCandidate = candidates(world / 2)
+      val batch = TeamBatch(LoopTiming.Stream(), lag, 2)
+      assert(batch.fliesByLanes(candidates.head), batch.engine(candidates.head))
+      val outcomes = batch.fly(all)
+      assertEquals(outcomes.flown, all.size)
+      val scalar = ScalarTeam(LoopTiming.Stream(), lag)
+      for world <- 0 until all.size by 7 do
+        val truth = scalar.fly(all.candidate(world), DelayTable.vpn, all.key(world))
+        for (value, number) <- truth.zipWithIndex do
+          assertEqualsDouble(
+            outcomes.values(number)(world),
+            value,
+            1e-3 * value.abs.max(1),
+            s"world $world, $number"
+          )
+
+  test("what cannot fly by lanes says why, and is flown by the scalar reference"):
+    val team     = Engagement.of(TeamScenario.Crossing(4).scenario, 5)
+    val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
+    val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
+    assert(batch.engine(crossing).startsWith("scalar: a policy is no formula: skein.policy.Avoidance"))
+    val one = new TeamWorlds:
+      def size: Int                            = 1
+      def key(world: Int): Int                 = 4
+      def link(world: Int): Delays             = DelayTable.vpn
+      def candidate(world: Int): TeamCandidate = crossing
+    assertEquals(
+      batch.fly(one).values(0)(0),
+      ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0).toFloat
+    )
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])

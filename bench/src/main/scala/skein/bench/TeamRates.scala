@@ -1,0 +1,72 @@
+package skein.bench
+
+import java.lang.management.ManagementFactory
+import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
+import skein.lanes.{Judged, TeamBatch, TeamCandidate, TeamWorlds}
+import skein.policy.TeamScenario
+import skein.scenario.{OffRing, Quantity, OffSlots, Reduction, WidestGap}
+import skein.simd.WorldRandom
+
+/** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream` over `vpn`,
+  * 60 s, the reduced model, one thread; an agent-step is 0.1 s of one vehicle. The timetables are made before; what making
+  * them costs stands beside. Run: `./sbtw "bench/runMain skein.bench.TeamRates"`.
+  */
+object TeamRates:
+  private val Candidates = 256
+  private val DurationS  = 60.0
+
+  def main(args: Array[String]): Unit =
+    println(
+      "| team | by lanes, M agent-steps per processor second | scalar | ratio | first flight of an episode, ms | witness | scalar's |"
+    )
+    println("|---|---|---|---|---|---|---|")
+    for
+      vehicles     <- Seq(6, 20, 64)
+      (name, draw) <- Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles))
+    do
+      val candidates = Vector.tabulate(Candidates)(draw)
+      val batch      = TeamBatch(LoopTiming.Stream(), Works.model, 1)
+      val steps      = vehicles * DurationS * 10
+      val first    = Vector.tabulate(8)(episode => cpuS(batch.fly(Worlds(candidates, 1, episode)): Unit)).min
+      val again    = Vector.fill(12)(cpuS(batch.fly(Worlds(candidates, 1, 0)): Unit)).min
+      val outcomes = batch.fly(Worlds(candidates, 1, 0))
+      val scalar   = skein.lanes.ScalarTeam(LoopTiming.Stream(), Works.model)
+      def one(i: Int) = scalar.fly(candidates(i), DelayTable.vpn, key(0))(0)
+      val flown       = (0 until 4).map(one)
+      val alone       = Vector.fill(3)(cpuS((0 until 4).foreach(i => one(i): Unit)) / 4).min
+      val witness     = (0 until 4).map(outcomes.values(0)(_).toDouble).sum / 4
+      println(
+        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / alone * 1e-6}%.3f | ${Candidates * alone / again}%.0f | ${(first - again) * 1e3}%.1f | $witness%.4f | ${flown.sum / 4}%.4f |"
+      )
+
+  private def surround(vehicles: Int)(number: Int): TeamCandidate =
+    val scenario = TeamScenario.Surround(vehicles, ringM = 6 + 0.02 * number, pursuerMps = 7 + 0.01 * number)
+    candidate(scenario, Vector(OffRing(scenario.ringM), WidestGap))
+
+  private def formation(vehicles: Int)(number: Int): TeamCandidate =
+    val scenario       = TeamScenario.Formation(vehicles, spacingM = 3 + 0.01 * number)
+    val (ahead, right) = scenario.slots.unzip
+    candidate(scenario, Vector(OffSlots(scenario.circuit, IArray.from(ahead), IArray.from(right))))
+
+  private def candidate(scenario: TeamScenario, by: Vector[Quantity]) =
+    TeamCandidate(
+      Engagement.of(scenario.scenario, DurationS),
+      by.map(Judged(_, Reduction.Rms, DurationS - 10))
+    )
+
+  private def key(episode: Int) = WorldRandom.key(1, 0, episode)
+
+  private final class Worlds(candidates: Vector[TeamCandidate], episodes: Int, from: Int) extends TeamWorlds:
+    def size: Int                            = candidates.size * episodes
+    def key(world: Int): Int                 = TeamRates.key(from + world / candidates.size)
+    def link(world: Int): Delays             = DelayTable.vpn
+    def candidate(world: Int): TeamCandidate = candidates(world % candidates.size)
+
+  private val system =
+    ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
+
+  /** Processor seconds of the whole process. */
+  private def cpuS(work: => Unit): Double =
+    val before = system.getProcessCpuTime
+    work
+    (system.getProcessCpuTime - before) * 1e-9

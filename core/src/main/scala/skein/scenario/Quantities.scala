@@ -1,0 +1,90 @@
+package skein.scenario
+
+import skein.policy.Racetrack
+
+/** How far the pursuers are from a ring around the evader, the first vehicle: root of the mean square, m. */
+final case class OffRing(ringM: Double) extends Quantity:
+  def of(places: Places): Double =
+    var sum     = 0.0
+    var pursuer = 1
+    while pursuer < places.count do
+      val off = places.distanceM(0, pursuer) - ringM
+      sum += off * off
+      pursuer += 1
+    math.sqrt(sum / (places.count - 1))
+
+/** The largest angle between neighbouring vehicles as the first one sees them, degrees. */
+case object WidestGap extends Quantity:
+  def of(places: Places): Double =
+    val bearings = new Array[Double](places.count - 1)
+    var i        = 0
+    while i < bearings.length do
+      val (north, east) = (places.northM(i + 1) - places.northM(0), places.eastM(i + 1) - places.eastM(0))
+      bearings(i) = StrictMath.atan2(east, north)
+      i += 1
+    ascend(bearings)
+    var widest = bearings(0) + 2 * math.Pi - bearings(bearings.length - 1)
+    i = 1
+    while i < bearings.length do
+      widest = widest.max(bearings(i) - bearings(i - 1))
+      i += 1
+    widest.toDegrees
+
+  /** Sorts by exchanging neighbours: which are compared depends on no number, so that lanes sort too. */
+  private def ascend(numbers: Array[Double]): Unit =
+    var last = numbers.length - 1
+    while last > 0 do
+      var i = 0
+      while i < last do
+        val (one, other) = (numbers(i), numbers(i + 1))
+        numbers(i) = one.min(other)
+        numbers(i + 1) = one.max(other)
+        i += 1
+      last -= 1
+
+/** Between the two vehicles nearest to one another, m. */
+case object Separation extends Quantity:
+  def of(places: Places): Double =
+    var least = Double.PositiveInfinity
+    var one   = 1
+    while one < places.count do
+      var other = 0
+      while other < one do
+        least = least.min(places.distanceM(one, other))
+        other += 1
+      one += 1
+    least
+
+/** How far the vehicles are from goals of their own: mean, m. */
+final case class FromGoals(northM: IArray[Double], eastM: IArray[Double]) extends Quantity:
+  def of(places: Places): Double =
+    var sum     = 0.0
+    var vehicle = 0
+    while vehicle < places.count do
+      sum += places.distanceM(vehicle, northM(vehicle), eastM(vehicle))
+      vehicle += 1
+    sum / places.count
+
+/** From each follower to its slot in the frame along the circuit where the leader, the first vehicle, is: root of the mean
+  * square, m.
+  *
+  * @param aheadM
+  *   of the leader, by follower
+  * @param rightM
+  *   to the right of the leader
+  */
+final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IArray[Double])
+    extends Quantity:
+  def of(places: Places): Double =
+    val (north, east) = (places.northM(0), places.eastM(0))
+    val heading       = circuit.headingRad(circuit.nearest(north, east))
+    val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
+    var sum           = 0.0
+    var i             = 0
+    while i < aheadM.length do
+      val (slotNorth, slotEast) =
+        (north + aheadM(i) * cos - rightM(i) * sin, east + aheadM(i) * sin + rightM(i) * cos)
+      val off = places.distanceM(i + 1, slotNorth, slotEast)
+      sum += off * off
+      i += 1
+    math.sqrt(sum / aheadM.length)

@@ -1,0 +1,40 @@
+package skein.scenario
+
+/** Where all vehicles are at one moment, by their places in the scenario. World frame NED, m. */
+final case class Places(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
+  def count: Int = northM.length
+
+  /** Between two vehicles, in the horizontal plane, m. */
+  def distanceM(one: Int, other: Int): Double =
+    StrictMath.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
+
+  /** From a vehicle to a place, in the horizontal plane, m. */
+  def distanceM(vehicle: Int, north: Double, east: Double): Double =
+    StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
+
+/** A number of where all vehicles are at one moment: drawn and measured by the report, judged by a search. Pure. A class
+  * whose method is arithmetic flies by lanes, as policies do (`docs/guides/formulas.md`).
+  */
+trait Quantity:
+  def of(places: Places): Double
+
+/** What a quantity comes to over a flight. */
+enum Reduction:
+  case Mean
+
+  /** Root of the mean square. */
+  case Rms
+
+  /** Standard deviation. */
+  case Sd
+  case Least, Most
+
+  /** Of at least one value. */
+  def of(values: IndexedSeq[Double]): Double = this match
+    case Mean  => values.sum / values.size
+    case Rms   => math.sqrt(values.map(value => value * value).sum / values.size)
+    case Least => values.min
+    case Most  => values.max
+    case Sd    =>
+      val mean = values.sum / values.size
+      math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)

@@ -1,0 +1,98 @@
+package skein.lanes
+
+import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
+
+/** Whether this Java can compute by lanes. */
+private[lanes] object LaneSupport:
+  /** A class with vectors is not touched where their module is missing. */
+  val present: Either[String, Unit] = Either.cond(
+    ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent,
+    (),
+    "the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
+  )
+
+/** Hands batches of worlds out to workers, each on a thread of its own. */
+private[lanes] object LaneThreads:
+
+  /** @param isCancelled
+    *   asked before each batch, from any thread
+    * @param onProgress
+    *   is told how many worlds are done, after each batch, by one thread at a time
+    * @return
+    *   how many worlds were done
+    * @throws InterruptedException
+    *   if the caller is interrupted; the batches handed out have ended then
+    */
+  def run[W](
+      workers: Vector[W],
+      batches: WorldBatches,
+      isCancelled: () => Boolean,
+      onProgress: Int => Unit = _ => ()
+  )(work: (W, Array[Int]) => Unit): Int =
+    val failure = AtomicReference[Throwable]()
+    val next    = AtomicInteger()
+    val lock    = Object()
+    var done    = 0
+
+    def handle(worker: W): Unit =
+      var going = true
+      while going do
+        // Every batch that was handed out is flown.
+        val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
+        if number >= batches.count then going = false
+        else
+          val numbers = batches(number)
+          work(worker, numbers)
+          lock.synchronized:
+            done += numbers.length
+            onProgress(done)
+
+    val flying = workers
+      .take(batches.count)
+      .map: worker =>
+        val thread = Thread(() =>
+          try handle(worker)
+          catch case thrown: Throwable => failure.compareAndSet(null, thrown): Unit
+        )
+        thread.setDaemon(true)
+        thread.setName("skein-lanes")
+        thread
+    flying.foreach(_.start())
+    try flying.foreach(_.join())
+    catch
+      case interrupted: InterruptedException =>
+        failure.compareAndSet(null, interrupted): Unit
+        flying.foreach(_.join())
+    if failure.get != null then throw failure.get
+    done
+
+/** Which worlds fly together. */
+private[lanes] final class WorldBatches(order: Array[Int], starts: Array[Int]):
+  def count: Int = starts.length
+
+  /** Numbers of the worlds. */
+  def apply(batch: Int): Array[Int] =
+    java.util.Arrays.copyOfRange(
+      order,
+      starts(batch),
+      if batch + 1 < starts.length then starts(batch + 1) else order.length
+    )
+
+private[lanes] object WorldBatches:
+  def inOrder(worlds: Int, most: Int): WorldBatches =
+    WorldBatches(Array.range(0, worlds), Array.range(0, worlds, most))
+
+  /** A batch has worlds of one key and one link. */
+  def byEpisode(worlds: Int, link: Int => AnyRef, key: Int => Int, most: Int): WorldBatches =
+    val groups  = java.util.HashMap[(AnyRef, Int), Integer]()
+    val groupOf = Array.tabulate(worlds): world =>
+      groups.computeIfAbsent((link(world), key(world)), _ => groups.size).intValue
+    val sizes = Array.ofDim[Int](groups.size)
+    for group <- groupOf do sizes(group) += 1
+    val ends  = sizes.scanLeft(0)(_ + _)
+    val fill  = ends.clone
+    val order = Array.ofDim[Int](worlds)
+    for world <- groupOf.indices do
+      order(fill(groupOf(world))) = world
+      fill(groupOf(world)) += 1
+    WorldBatches(order, sizes.indices.flatMap(group => ends(group) until ends(group + 1) by most).toArray)
