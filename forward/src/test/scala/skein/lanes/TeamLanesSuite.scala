@@ -18,7 +18,8 @@ class TeamLanesSuite extends munit.FunSuite:
     LoopTiming.Sequential(),
     LoopTiming.Futures(),
     LoopTiming.Stream(),
-    LoopTiming.Stream(decideThenPace = true)
+    LoopTiming.Stream(decideThenPace = true),
+    LoopTiming.Predictive(predictor = lag.predictor)
   )
 
   private def within(random: SplitMix64, least: Double, most: Double) =
@@ -83,8 +84,8 @@ class TeamLanesSuite extends munit.FunSuite:
       "quadrotor"     -> VelocityResponses.quadrotor()
     )
   do
-    test(s"$name, $model, stream over vpn: every world flies as by the scalar reference, 5 s to 4 mm"):
-      agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 5, 25)
+    test(s"$name, $model, stream over vpn: every world flies as by the scalar reference, 3 s to 4 mm"):
+      agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 3, 50)
 
   private def agree(
       draw: SplitMix64 => TeamScenario,
@@ -93,12 +94,12 @@ class TeamLanesSuite extends munit.FunSuite:
       plant: VelocityResponse,
       mostM: Double,
       durationS: Double = 10,
-      every: Int = 5
+      every: Int = 13
   ): Unit =
     val random = SplitMix64(7)
     val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
     val key    = WorldRandom.key(3, 1, 0)
-    val model  = TimetableModel.of(plant, all.head.agents).fold(fail(_), identity)
+    val model  = TimetableModel.under(timing, plant, all.head.agents).fold(fail(_), identity)
     val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
     val count  = lanes.count
     val team   = TeamPictures(lanes)
@@ -152,7 +153,7 @@ class TeamLanesSuite extends munit.FunSuite:
       val outcomes = batch.fly(all)
       assertEquals(outcomes.flown, all.size)
       val scalar = ScalarTeam(LoopTiming.Stream(), lag)
-      for world <- 0 until all.size by 7 do
+      for world <- 0 until all.size by 23 do
         val truth = scalar.fly(all.candidate(world), DelayTable.vpn, all.key(world))
         for (value, number) <- truth.zipWithIndex do
           assertEqualsDouble(
