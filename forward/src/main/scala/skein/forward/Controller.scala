@@ -9,22 +9,19 @@ import skein.units.Instant
   * @see
   *   `skein.loop.Picture`, which the live loops hold
   */
-private[skein] final class DuelSight(count: Int):
+private[skein] final class DuelSight(count: Int) extends Grounds:
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
   /** Headings sent last, rad. */
   val sent: Array[Double] = Array.ofDim[Double](count)
 
-  /** Which of each vehicle's decisions was sent last; they count from 1, the heading at the start is 0. */
   val sentDecision: Array[Int] = Array.ofDim[Int](count)
 
-  /** The number of each vehicle's reading, which is that of its question. */
   val reading: Array[Int] = Array.ofDim[Int](count)
 
   /** The step of the loop that each vehicle's reading belongs to; what a delay is drawn by. */
   val step: Array[Int] = Array.ofDim[Int](count)
 
-  /** When each reading was made, ns. */
   val validAtNs: Array[Long] = Array.ofDim[Long](count)
 
   /** What the readings are to be replaced by when it is decided. */

@@ -167,7 +167,7 @@ private[skein] final class DuelWorld(
     command(agent, headingRad, speedMps)
 
   /** A decision was made. */
-  def decided(agent: Int, elapsedS: Double, upon: DuelSight): Unit =
+  def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
 
   private def command(agent: Int, headingRad: Double, speedMps: Double): Unit =
@@ -217,6 +217,17 @@ private[skein] object DuelWorld:
   /** Events of one vehicle that may be waiting. */
   private val MostWaiting = 512
 
+/** What a decision rests on, by vehicle. */
+private[skein] trait Grounds:
+  /** The number of its reading, which is that of its question. */
+  def reading: Array[Int]
+
+  /** When that was made, ns. */
+  def validAtNs: Array[Long]
+
+  /** Which of the decisions for it was sent last; they count from 1, the heading at the start is 0. */
+  def sentDecision: Array[Int]
+
 /** Is told what a loop does. */
 trait LoopObserver:
   /** A vehicle was read: at this time, here, as the answer tells it. */
@@ -226,7 +237,7 @@ trait LoopObserver:
   def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
 
   /** It was decided for a vehicle, for the first time or so long after the decision before. */
-  private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: DuelSight): Unit = ()
+  private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit = ()
 
   /** Under `Predictive`: a reading entered the forecast.
     *

@@ -4,9 +4,9 @@ import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
 import skein.forward.{
   Delays,
-  DuelSight,
   Duelist,
   Engagement,
+  Grounds,
   LoopObserver,
   LoopTiming,
   Rollout,
@@ -230,7 +230,7 @@ private[skein] object Timetable:
           looks(vehicle))
       predicted
 
-    override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: DuelSight): Unit =
+    override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: Grounds): Unit =
       val seen = upon.forecast match
         case Some(forecast) => predict(forecast, atNs)
         case None => pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
