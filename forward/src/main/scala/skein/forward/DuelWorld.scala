@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.forecast.Leg
+import skein.forecast.{Forecast, Leg}
 import skein.policy.Assignment
 import skein.signal.Kinematics
 
@@ -227,6 +227,9 @@ private[skein] trait Grounds:
 
   /** Which of the decisions for it was sent last; they count from 1, the heading at the start is 0. */
   def sentDecision: Array[Int]
+
+  /** What the readings are replaced by. */
+  def forecast: Option[Forecast]
 
 /** Is told what a loop does. */
 trait LoopObserver:
