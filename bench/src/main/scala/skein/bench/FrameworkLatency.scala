@@ -14,6 +14,7 @@ import skein.flight.{FlightRigs, WarmUp}
 import skein.link.*
 import skein.loop.LoopKind
 import skein.record.MemoryRecorder
+import skein.scenario.PaperDuel
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -41,8 +42,7 @@ object FrameworkLatency:
       Span.ofSeconds(seconds),
       Span.ofMillis(100),
       1,
-      pairs,
-      false
+      PaperDuel(pairs)
     )
     val warmUp = args.lift(3).fold(WarmUp.Flights)(_.toInt)
     println(WarmUp.fly(settings, warmUp, Clock.system).map(flown => s"warmed up by $flown virtual flights"))

@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, Engagement, LoopTiming, Rollout}
-import skein.policy.Fleet
+import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 
 /** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size of a team?
@@ -35,7 +35,7 @@ object Scaling:
   /** Every agent plays against the nearest of the other side. */
   private def team(pairs: Int): Rate =
     val rollout =
-      Rollout(Engagement.of(Fleet.duels(pairs)), LoopTiming.Stream(), DelayTable.vpn, Works.model)
+      Rollout(Engagement.of(PaperDuel(pairs).fleet), LoopTiming.Stream(), DelayTable.vpn, Works.model)
     val start = System.nanoTime()
     val sum   = (0 until episodes(pairs)).map(i => rollout.fly(WorldRandom.key(1, 0, i)).meanLast10sM).sum
     Rate(episodes(pairs) * pairs * 1200 / ((System.nanoTime() - start) * 1e-3), 0, sum / episodes(pairs))

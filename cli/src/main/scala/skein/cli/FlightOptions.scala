@@ -5,8 +5,8 @@ import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import skein.loop.LoopKind
 import skein.planning.Planner
-import skein.policy.TeamScenario
-import skein.settings.{ConfigKeys, FlySettings, HoconFile}
+import skein.scenario.Scenarios
+import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings}
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
@@ -22,21 +22,26 @@ final case class FlightOptions(
     period: Option[String],
     @arg(doc = "of every random choice")
     seed: Option[Long],
-    @arg(doc = "duel, surround, formation or crossing")
+    @arg(doc = "whose task is flown; the command scenarios lists them with their settings")
     scenario: Option[String],
-    @arg(doc = "of a surround, formation or crossing")
+    @arg(doc = "NAME=VALUE: a setting of the scenario, for example ring-m=10; may be given several times")
+    set: Seq[String],
+    @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "a policy file of ./skein search: flies the duel with it too, beside the paper's; may be given several times"
+      "a policy file of the command search: flies the scenario with it too, beside its own policies; may be given several times"
     )
     policy: Seq[String],
-    @arg(doc = "duels side by side, two vehicles each")
+    @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
     pairs: Option[Int],
     @arg(name = "as-paper", doc = "the paper's four loops alone, without predictive")
     asPaper: Flag,
-    @arg(name = "as-published", doc = "reproduce the published code where it confounds its result")
+    @arg(
+      name = "as-published",
+      doc = "the duel's setting as-published: reproduce the published code where it confounds its result"
+    )
     asPublished: Flag,
-    @arg(doc = "at which all fly, above where they start, in metres (default: 20 for the duel, 5 for teams)")
+    @arg(doc = "the scenario's setting altitude-m: at which all fly, above where they start, in metres")
     altitude: Option[Double],
     @arg(doc =
       "what `predictive` predicts by: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
@@ -60,16 +65,12 @@ final case class FlightOptions(
 ):
 
   /** Flags before file before defaults. */
-  def settings: Either[String, FlySettings] =
+  def settings(using Scenarios): Either[String, FlySettings] =
     for
       file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       merged   <- FlightOptions.resolved(flags.withFallback(file).withFallback(ConfigFactory.load()))
-      settings <- FlySettings.read(merged)
-      _        <- Either.cond(
-        vehicles.isEmpty || settings.scenario != FlySettings.Duel,
-        (),
-        s"--vehicles: expected with --scenario ${TeamScenario.names.mkString(" or ")}; a duel's number is told by --pairs"
-      )
+      own      <- ofScenario(merged)
+      settings <- FlySettings.read(own.withFallback(merged))
     yield
       if settings.loops.contains(LoopKind.Plan) && !Planner.isFast then
         Console.err.println(FlightOptions.slow)
@@ -77,7 +78,7 @@ final case class FlightOptions(
 
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
-    (Seq(
+    FlightOptions.configured(Seq(
       "loops"           -> strings(if asPaper.value && loop.isEmpty then FlightOptions.paperLoops else loop),
       "links"           -> strings(link),
       "duration"        -> duration,
@@ -85,19 +86,34 @@ final case class FlightOptions(
       "seed"            -> seed,
       "scenario"        -> scenario,
       "policies"        -> strings(policy),
-      "pairs"           -> pairs,
-      "altitude-m"      -> altitude,
       "predictor"       -> predictor,
       "moves-in-flight" -> movesInFlight,
       "deadline"        -> deadline,
-      "fallback"        -> fallback,
-      "as-published"    -> Option.when(asPublished.value)(true)
-    ) ++ TeamScenario.names.flatMap(name =>
-      Seq(s"$name.vehicles" -> vehicles, s"$name.altitude-m" -> altitude)
-    )).foldLeft(ConfigFactory.empty):
-      case (config, (key, Some(value))) =>
-        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
-      case (config, _) => config
+      "fallback"        -> fallback
+    ).collect { case (key, Some(value)) => key -> value })
+
+  /** Flags for settings of the scenario that is flown. */
+  private def ofScenario(merged: Config)(using Scenarios): Either[String, Config] =
+    val short = Seq(
+      "vehicles"     -> ("--vehicles", vehicles),
+      "pairs"        -> ("--pairs", pairs),
+      "altitude-m"   -> ("--altitude", altitude),
+      "as-published" -> ("--as-published", Option.when(asPublished.value)(true))
+    ).collect { case (key, (flag, Some(value))) => (flag, key, value.toString) }
+    for
+      kind <- ScenarioSettings.kind(merged)
+      told <- FlightOptions.collected(set): text =>
+        text.split("=", 2) match
+          case Array(name, value) if name.nonEmpty => Right(("--set", ConfigKeys.ofField(name), value))
+          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+      keys = kind.settings.map(ConfigKeys.ofField)
+      known <- FlightOptions.collected(short ++ told): (flag, key, value) =>
+        Either.cond(
+          keys.contains(key),
+          s"${kind.name}.$key" -> value,
+          s"$flag: the scenario ${kind.name} has no setting '$key'; expected one of ${keys.mkString(", ")}"
+        )
+    yield FlightOptions.configured(known)
 
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
@@ -108,11 +124,22 @@ object FlightOptions:
   private val slow =
     "plan: this JVM runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
 
+  /** Keys below `skein.fly`. */
+  private def configured(values: Seq[(String, Any)]): Config =
+    values.foldLeft(ConfigFactory.empty):
+      case (config, (key, value)) =>
+        config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
+
+  /** All, or every mistake. */
+  private def collected[A, B](all: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
+    val (wrong, right) = all.map(one).partitionMap(identity)
+    Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
+
   private def resolved(config: Config): Either[String, Config] =
     try Right(config.resolve())
     catch case mistake: ConfigException => Left(mistake.getMessage)
 
-  private def read(path: String): Either[String, Config] =
+  private def read(path: String)(using Scenarios): Either[String, Config] =
     for
       file <- HoconFile.read(path).left.map("--config: " + _)
       _    <- ConfigKeys.unknownInFile(file, "skein.fly").toLeft(())

@@ -13,6 +13,7 @@ import skein.loop.Outcome
 import skein.measure.FlightSet
 import skein.record.{ClockKind, RecordError}
 import skein.report.{Report, ReportSections}
+import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
 
@@ -37,10 +38,10 @@ final case class FlyOptions(
     json: Flag
 )
 
-object FlyCommand
+final class FlyCommand(using Scenarios)
     extends OptionsCommand[FlyOptions](
       "fly",
-      "flies the paper's experiment and writes a report",
+      "flies a scenario, the paper's duel unless told otherwise, and writes a report",
       ParserForClass[FlyOptions]
     ):
 

@@ -1,7 +1,8 @@
 package skein.cli
 
 import mainargs.{ParserForClass, arg}
-import skein.policy.{Fleet, PolicyFamily, Role}
+import skein.policy.{PolicyFamily, Role}
+import skein.scenario.PaperDuel
 import skein.search.{Conditions, SearchQuestion}
 import skein.settings.PolicyFile
 import skein.units.Span
@@ -41,7 +42,7 @@ final case class ForwardOptions(
       plant.getOrElse("reduced"),
       period.toMillis,
       duration.toNanos / 1e9,
-      altitude.getOrElse(Fleet.DuelAltitudeM)
+      altitude.getOrElse(PaperDuel.AltitudeM)
     )
 
   def threadCount: Either[String, Int] =

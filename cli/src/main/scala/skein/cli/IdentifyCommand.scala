@@ -7,9 +7,9 @@ import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.FlownVehicles
 import skein.plot.{Png, Svg}
-import skein.policy.Fleet
 import skein.record.{Recording, RecordingReader}
 import skein.report.{Section, TextTable}
+import skein.scenario.PaperDuel
 import skein.settings.{Fit, ModelFile}
 import skein.units.Span
 
@@ -125,7 +125,7 @@ object IdentifyCommand
 
   /** What a flight by the model needs beside it, where the vehicles did not fly at the duel's altitude. */
   private def elsewhere(flights: Vector[Flown]): String =
-    altitude(flights).filter(_ != Fleet.DuelAltitudeM).fold("")(metres =>
+    altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"
     )
 

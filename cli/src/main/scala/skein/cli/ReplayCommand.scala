@@ -4,6 +4,7 @@ import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.flight.{FlownAgain, Replayed}
 import skein.record.Difference
+import skein.scenario.Scenarios
 
 /** Options of `./skein replay`. */
 final case class ReplayOptions(
@@ -11,7 +12,7 @@ final case class ReplayOptions(
     files: Leftover[String]
 )
 
-object ReplayCommand
+final class ReplayCommand(using Scenarios)
     extends OptionsCommand[ReplayOptions](
       "replay",
       "decides again what a recording decided, and shows whether the same comes out",

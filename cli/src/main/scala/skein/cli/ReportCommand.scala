@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.report.{Report, ReportSections}
+import skein.scenario.Scenarios
 
 /** Options of `./skein report`. */
 final case class ReportOptions(
@@ -14,7 +15,7 @@ final case class ReportOptions(
     json: Flag
 )
 
-object ReportCommand
+final class ReportCommand(using Scenarios)
     extends OptionsCommand[ReportOptions](
       "report",
       "rebuilds tables and pictures from recordings alone",

@@ -6,6 +6,7 @@ import skein.flight.{NotFlown, VirtualFlights}
 import skein.loop.Outcome
 import skein.measure.FlightSummary
 import skein.report.{Report, ReportSections, Section}
+import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 
 /** Options of `./skein spread`. */
@@ -19,7 +20,7 @@ final case class SpreadOptions(
     json: Flag
 )
 
-object SpreadCommand
+final class SpreadCommand(using Scenarios)
     extends OptionsCommand[SpreadOptions](
       "spread",
       "flies each loop over each link many times in virtual time, and shows mean and spread",

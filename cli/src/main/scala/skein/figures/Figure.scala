@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup, TeamFlights}
+import skein.measure.{Deviation, FlightSet, PredictionErrors, PredictionGroup, ScenarioFlights}
 import skein.plot.Drawing
 
 /** A picture of the report.
@@ -14,26 +14,19 @@ final case class Figure(name: String, title: String, caption: String, drawing: D
 
 object Figure:
 
-  /** The pictures that the flights give; those without anything to show are left out. */
-  def all(set: FlightSet): Vector[Figure] =
-    duels(set.duels) ++ set.teams.flatMap(ofTeam) ++ ofDecisions(set) ++
-      ofDeviations(set.deviations) ++ ofPredictions(set.predictions)
-
-  /** The pictures of flights that were flown many times. */
-  def spread(flights: Seq[FlightSummary]): Vector[Figure] =
-    ofDeviations(Deviation.of(flights)) ++ ofPredictions(PredictionGroup.of(flights))
-
-  private def ofDeviations(deviations: Vector[Deviation]): Vector[Figure] =
+  /** How far from the paused truth flights ended. */
+  def ofDeviations(deviations: Vector[Deviation]): Vector[Figure] =
     DeviationFigure(deviations).toVector.map: drawing =>
       Figure(
         DeviationFigure.name,
         "Deviation from the paused truth",
-        "Mean distance of the last 10 s against the truth's, by link and loop. Discs are means over the flights, thick lines " +
+        "What stands for a flight, of the duel the mean distance of the last 10 s, against the truth's, by link and loop. Discs are means over the flights, thick lines " +
           "reach one standard deviation to either side, thin lines from the least to the most; live flights are ringed.",
         drawing
       )
 
-  private def ofPredictions(groups: Vector[PredictionGroup]): Vector[Figure] =
+  /** How far predictions were off. */
+  def ofPredictions(groups: Vector[PredictionGroup]): Vector[Figure] =
     PredictionFigure(groups).toVector.map: drawing =>
       Figure(
         PredictionFigure.name,
@@ -43,16 +36,9 @@ object Figure:
         drawing
       )
 
-  private def duels(set: FlightSet): Vector[Figure] = Vector(
-    TrajectoryFigure(set).map: drawing =>
-      Figure(
-        "trajectories",
-        "Trajectories",
-        "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has the colour of its " +
-          "loop, the evader is grey; rings are starts, discs are ends.",
-        drawing
-      ),
-    DistanceFigure(set).map: drawing =>
+  /** Of flights of a pursuer and an evader, beside the paper's. */
+  def ofDuels(set: FlightSet): Vector[Figure] = trajectories(set).toVector ++ DistanceFigure(set).map:
+    drawing =>
       Figure(
         "distance",
         "Distance over time",
@@ -60,24 +46,44 @@ object Figure:
           "panel, mean and range over the last 10 s: ours as coloured discs, the paper's as black diamonds.",
         drawing
       )
-  ).flatten
 
-  private def ofTeam(flown: TeamFlights): Vector[Figure] = Vector(
+  /** Where the vehicles of any flights flew. */
+  def trajectories(set: FlightSet): Option[Figure] = TrajectoryFigure(set).map: drawing =>
     Figure(
-      s"${flown.scenario}-trajectories",
-      s"${flown.scenario.capitalize}: trajectories",
-      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends.",
-      TeamFigure.trajectories(flown)
-    ),
-    Figure(
-      s"${flown.scenario}-measure",
-      s"${flown.scenario.capitalize}: ${flown.flights.head.result.curveName}",
-      "At equal instants of the simulator's clock, one panel per link, the paused truth in each.",
-      TeamFigure.measure(flown)
+      "trajectories",
+      "Trajectories",
+      "Seen from above, north up, with equal scales on both axes of a panel. The pursuer has the colour of its " +
+        "loop, the evader is grey; rings are starts, discs are ends.",
+      drawing
     )
-  )
 
-  private def ofDecisions(set: FlightSet): Vector[Figure] = Vector(
+  /** What any scenario has: where the vehicles flew, from above and, where they climb, their altitudes; and its series. */
+  def ofScenario(flown: ScenarioFlights): Vector[Figure] =
+    val name  = flown.scenario.name
+    val title = name.capitalize
+    val above = Figure(
+      s"$name-trajectories",
+      s"$title: trajectories",
+      "Seen from above, north up, all panels of one scale. Rings are starts, discs are ends.",
+      ScenarioFigure.trajectories(flown)
+    )
+    val altitudes = Option.when(!flown.scenario.isPlanar)(Figure(
+      s"$name-altitudes",
+      s"$title: altitudes",
+      "Above the origin, all panels of one scale.",
+      ScenarioFigure.altitudes(flown)
+    ))
+    val series = flown.scenario.series.zipWithIndex.map: (one, index) =>
+      Figure(
+        if index == 0 then s"$name-measure" else s"$name-measure-${index + 1}",
+        s"$title: ${one.name}",
+        "At equal instants of the simulator's clock, one panel per link, the paused truth in each.",
+        ScenarioFigure.series(flown, index)
+      )
+    (above +: altitudes.toVector) ++ series
+
+  /** Upon what was decided. */
+  def ofDecisions(set: FlightSet): Vector[Figure] = Vector(
     ObservationFigure(set).map: drawing =>
       Figure(
         "observations",

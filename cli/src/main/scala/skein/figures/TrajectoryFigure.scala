@@ -1,8 +1,9 @@
 package skein.figures
 
-import skein.measure.{FlightSet, FlightSummary, Track}
+import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.*
 import skein.policy.Role
+import skein.scenario.Track
 import skein.units.*
 
 /** The paper's Figures 4 and 5: where the vehicles flew, seen from above (north is up), one panel per flight, with

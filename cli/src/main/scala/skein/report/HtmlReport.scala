@@ -7,11 +7,12 @@ import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary, Numbers}
 import skein.plot.Svg
 import skein.record.Flight
+import skein.scenario.Scenarios
 
 /** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
 object HtmlReport:
 
-  def render(set: FlightSet, figures: Seq[Figure]): String =
+  def render(set: FlightSet, figures: Seq[Figure])(using Scenarios): String =
     val page = html(
       lang := "en",
       head(
@@ -43,7 +44,7 @@ object HtmlReport:
       s"${named(_.clock)} clock."
 
   /** What many flights of each loop over each link come to, as a page. */
-  def spread(flights: Seq[FlightSummary], figures: Seq[Figure]): String =
+  def spread(flights: Seq[FlightSummary], figures: Seq[Figure])(using Scenarios): String =
     val title = s"Skein: spread over ${flights.size} flights"
     val page  = html(
       lang := "en",

@@ -7,16 +7,17 @@ import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.{Png, Svg}
 import skein.record.{RecordError, Recording, RecordingReader}
+import skein.scenario.Scenarios
 
 /** Turns recordings into tables and pictures; needs nothing but the recordings. */
 object Report:
 
   /** Summarises recordings. All files are tried; every one that cannot be read is named. Blocks. */
-  def read(files: Seq[Path]): Either[Seq[RecordError], FlightSet] =
+  def read(files: Seq[Path])(using Scenarios): Either[Seq[RecordError], FlightSet] =
     val (unread, read) = onAllCores(files)(RecordingReader.read).partitionMap(identity)
     Either.cond(unread.isEmpty, of(read), unread)
 
-  def of(recordings: Seq[Recording]): FlightSet = FlightSet(recordings.map(FlightSummary.of))
+  def of(recordings: Seq[Recording])(using Scenarios): FlightSet = FlightSet(recordings.map(FlightSummary.of))
 
   /** What was written.
     *
@@ -31,13 +32,13 @@ object Report:
     * @return
     *   or why it could not be written
     */
-  def write(set: FlightSet, directory: Path): Either[String, Output] =
-    val figures = Figure.all(set)
+  def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
+    val figures = ReportFigures.of(set)
     write(directory.resolve("report.html"), HtmlReport.render(set, figures), figures)
 
   /** Writes `spread.html` and its figures likewise. */
-  def writeSpread(flights: Seq[FlightSummary], directory: Path): Either[String, Output] =
-    val figures = Figure.spread(flights)
+  def writeSpread(flights: Seq[FlightSummary], directory: Path)(using Scenarios): Either[String, Output] =
+    val figures = ReportFigures.spread(flights)
     write(directory.resolve("spread.html"), HtmlReport.spread(flights, figures), figures)
 
   private def write(page: Path, text: String, figures: Vector[Figure]): Either[String, Output] =

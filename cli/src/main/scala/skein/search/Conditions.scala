@@ -4,7 +4,7 @@ import skein.flight.FlightRigs
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.Fleet
+import skein.scenario.PaperDuel
 import skein.settings.{FlySettings, TextFile, VehicleChoice}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.Span
@@ -21,7 +21,7 @@ final case class Conditions(
     @key("model") plant: String,
     periodMs: Double,
     durationS: Double,
-    altitudeM: Double = Fleet.DuelAltitudeM
+    altitudeM: Double = PaperDuel.AltitudeM
 ) derives ReadWriter:
 
   /** @return or what was expected and came */

@@ -4,9 +4,12 @@ import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.record.MemoryRecorder
+import skein.report.DuelReport
+import skein.scenario.Scenarios
 
 /** What is wrong is told in a line, before anything long is begun. */
 class BadInputSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   private val folder = FunFixture[Path](
     _ => Files.createTempDirectory("input"),
@@ -26,7 +29,7 @@ class BadInputSuite extends munit.FunSuite:
 
   folder.test("a folder that cannot be made is told before the flight"): path =>
     val file = Files.writeString(path.resolve("file"), "").toString
-    for command <- Seq(FlyCommand, SpreadCommand, SearchCommand, BudgetCommand, LatencyCommand) do
+    for command <- Seq(FlyCommand(), SpreadCommand(), SearchCommand, BudgetCommand, LatencyCommand) do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 
@@ -34,18 +37,18 @@ class BadInputSuite extends munit.FunSuite:
     "a configuration that is a folder, is missing, is nested too deeply or has unknown keys is refused"
   ): path =>
     def config(text: String) = Files.writeString(path.resolve("fly.conf"), text).toString
-    assertRefused(FlyCommand, Seq("--config", path.toString), "expected a file, came the folder")
-    assertRefused(FlyCommand, Seq("--config", path.resolve("none").toString), "there is no file")
-    assertRefused(FlyCommand, Seq("--config", config("a = " + "[" * 200_000)), "nested too deeply")
-    assertRefused(FlyCommand, Seq("--config", config("skein.fly.sede = 1")), "the nearest is 'seed'")
-    assertRefused(FlyCommand, Seq("--config", config("duration = 5 s")), "no setting 'duration'")
+    assertRefused(FlyCommand(), Seq("--config", path.toString), "expected a file, came the folder")
+    assertRefused(FlyCommand(), Seq("--config", path.resolve("none").toString), "there is no file")
+    assertRefused(FlyCommand(), Seq("--config", config("a = " + "[" * 200_000)), "nested too deeply")
+    assertRefused(FlyCommand(), Seq("--config", config("skein.fly.sede = 1")), "the nearest is 'seed'")
+    assertRefused(FlyCommand(), Seq("--config", config("duration = 5 s")), "no setting 'duration'")
 
   folder.test("a policy of a number that is too large is refused"): path =>
     val file = Files.writeString(
       path.resolve("policy.conf"),
       "family = lead-pursuit\nparameters { turnRateRadPerS = 1e999, lead = 1, speedRatio = 0.5 }"
     )
-    assertRefused(FlyCommand, Seq("--policy", file.toString), "expected a finite number, came 'Infinity'")
+    assertRefused(FlyCommand(), Seq("--policy", file.toString), "expected a finite number, came 'Infinity'")
 
   test("a simulator of endless speed is refused"):
     for speed <- Seq("Infinity", "NaN", "0", "1e9") do
@@ -56,4 +59,4 @@ class BadInputSuite extends munit.FunSuite:
     val recorder = MemoryRecorder(heading.copy(vehicles = Nil))
     val file     = path.resolve("none.duckdb")
     assert(recorder.writeTo(file).isRight)
-    assertRefused(ReplayCommand, Seq(file.toString), "no vehicles")
+    assertRefused(ReplayCommand(), Seq(file.toString), "no vehicles")

@@ -7,12 +7,16 @@ import java.lang.classfile.instruction.InvokeInstruction
 import java.nio.file.{Files, Path}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
+import skein.report.DuelReport
+import skein.scenario.{Crossing, Scenarios}
 import skein.settings.FlySettings
-import skein.policy.{Role, TeamScenario}
+import skein.policy.Role
 import skein.optimise.Objective
 
 /** Skein does the same where i has no dot, where digits are Arabic, and where the point is a comma. */
 class LocaleSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private val locales = Seq("tr-TR", "az-AZ", "lt-LT", "de-DE", "ar-EG-u-nu-arab", "hi-IN-u-nu-deva")
 
   for tag <- locales do
@@ -25,8 +29,11 @@ class LocaleSuite extends munit.FunSuite:
             .parseString("skein.fly { moves-in-flight = 3, scenario = crossing, crossing.minimum-m = 1.5 }")
             .withFallback(ConfigFactory.load())
         )
-        assertEquals(settings.map(read => (read.movesInFlight, read.crossing.minimumM)), Right((3, 1.5)))
-        assertEquals(TeamScenario.Crossing().name, "crossing")
+        assertEquals(
+          settings.map(read => (read.movesInFlight, read.scenario)),
+          Right((3, Crossing(minimumM = 1.5)))
+        )
+        assertEquals(Crossing().name, "crossing")
         assertEquals(Objective.parse("min", Role.Pursuer).map(_.text), Right("minimise min"))
       finally Locale.setDefault(before)
 
@@ -35,7 +42,7 @@ class LocaleSuite extends munit.FunSuite:
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
       val said   = ByteArrayOutputStream()
-      val status = Console.withErr(PrintStream(said))(SpreadCommand.run(Seq("--moves-in-flight", "x")))
+      val status = Console.withErr(PrintStream(said))(SpreadCommand().run(Seq("--moves-in-flight", "x")))
       assertEquals(status, 2)
       assert(clue(said.toString).contains("--moves-in-flight: expected a whole number"))
     finally Locale.setDefault(before)

@@ -1,8 +1,11 @@
 package skein.cli
 
 import java.io.{ByteArrayOutputStream, PrintStream}
+import skein.report.DuelReport
+import skein.scenario.Scenarios
 
 class MisuseSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   /** Exit status and what was said before the hint at `--help`. */
   private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
@@ -19,8 +22,8 @@ class MisuseSuite extends munit.FunSuite:
           "--candidates: expected a whole number that is not too large, came 'x'"
         ),
         (BudgetCommand, Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
-        (FlyCommand, Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
-        (SpreadCommand, Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
+        (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
+        (SpreadCommand(), Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
         (BudgetCommand, Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
         (SearchCommand, Seq("--seed"), "--seed: expected a value behind it"),
         (SearchCommand, Seq("--seed", "1", "--seed", "2"), "--seed: expected once, came 1 and 2"),

@@ -10,13 +10,17 @@ import skein.forward.Reduced
 import skein.identify.Structure
 import skein.loop.LoopKind
 import skein.record.{MemoryRecorder, Recording}
+import skein.report.DuelReport
 import skein.report.SyntheticFlight
+import skein.scenario.Scenarios
 import skein.settings.{FlySettings, ModelFile, PredictionModel}
 import skein.signal.LatencyProfile
 import skein.units.Span
 import skein.vehicle.ReducedModel
 
 class RecordingCommandsSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   override val munitTimeout: Duration = 2.minutes
 
   private val recordings = FunFixture[Path](
@@ -44,14 +48,15 @@ class RecordingCommandsSuite extends munit.FunSuite:
 
   recordings.test("report rebuilds page and tables from the files alone"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
-    val (status, text, err) = run(ReportCommand, files :+ "--out" :+ folder.resolve("report").toString*)
+    val (status, text, err) = run(ReportCommand(), files :+ "--out" :+ folder.resolve("report").toString*)
     assertEquals((status, err), (0, ""))
     assert(text.linesIterator.exists(line => line.startsWith("stream") && line.contains("vpn")), text)
     assert(Files.exists(folder.resolve("report/report.html")))
 
   recordings.test("report --json gives the tables alone on standard output"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
-    val (status, text, err) = run(ReportCommand, files :+ "--json" :+ "--out" :+ folder.resolve("report").toString*)
+    val (status, text, err) =
+      run(ReportCommand(), files :+ "--json" :+ "--out" :+ folder.resolve("report").toString*)
     assertEquals(status, 0, err)
     val tables = ujson.read(text)("tables").arr
     val first  = tables.head
@@ -68,9 +73,7 @@ class RecordingCommandsSuite extends munit.FunSuite:
         List(LatencyProfile.vpn),
         Span.ofSeconds(32),
         Span.ofMillis(100),
-        seed = 5,
-        pairs = 1,
-        asPublished = false
+        seed = 5
       )
       assert(VirtualFlights.fly(settings, settings.plans, folder)((_, _) => ()).isRight)
       folder
@@ -100,7 +103,7 @@ class RecordingCommandsSuite extends munit.FunSuite:
   recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
     val broken =
       Files.writeString(folder.resolve("broken.conf"), "skein.model { use = drag, drag { gain.value = 1 } }")
-    val (status, _, err) = run(SpreadCommand, "--seeds", "1", "--predictor", broken.toString)
+    val (status, _, err) = run(SpreadCommand(), "--seeds", "1", "--predictor", broken.toString)
     assertEquals(status, 1)
     assert(err.contains("lag-s"), err)
     val (unfit, _, reason) = run(IdentifyCommand, folder.resolve("paused-none.duckdb").toString)
@@ -108,12 +111,12 @@ class RecordingCommandsSuite extends munit.FunSuite:
     assert(reason.contains("expected"), reason)
 
   recordings.test("report without --out writes beside the first recording"): folder =>
-    assertEquals(run(ReportCommand, folder.resolve("stream-vpn.duckdb").toString)._1, 0)
+    assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
     assert(Files.exists(folder.resolve("figures/distance.svg")))
 
   recordings.test("report names a file that is no recording, and writes nothing"): folder =>
     val text             = Files.writeString(folder.resolve("notes.txt"), "nothing")
-    val (status, _, err) = run(ReportCommand, folder.resolve("stream-vpn.duckdb").toString, text.toString)
+    val (status, _, err) = run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString, text.toString)
     assertEquals(status, 1)
     assert(err.contains(s"$text is not a recording"), err)
     assert(!Files.exists(folder.resolve("report.html")))

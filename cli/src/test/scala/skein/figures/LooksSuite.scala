@@ -2,9 +2,12 @@ package skein.figures
 
 import skein.loop.LoopKind
 import skein.measure.{FlightSet, FlightSummary}
+import skein.report.DuelReport
 import skein.report.SyntheticFlight
+import skein.scenario.Scenarios
 
 class LooksSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   test("every loop has a colour of its own, and one that is not known has another"):
     val colours = LoopKind.values.toVector.map(loop => Looks.of(loop.label)) :+ Looks.of("a loop to come")

@@ -3,6 +3,8 @@ package skein.flight
 import com.typesafe.config.ConfigFactory
 import java.nio.file.{Files, Path}
 import skein.loop.LoopKind
+import skein.report.DuelReport
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
@@ -11,6 +13,8 @@ import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
 class AltitudeSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private def settings(hocon: String): Either[String, FlySettings] = FlySettings.read(
     ConfigFactory
       .parseString(hocon)
@@ -21,7 +25,7 @@ class AltitudeSuite extends munit.FunSuite:
   /** By what each vehicle's readings are carried forward. */
   private def models(hocon: String): Set[VehicleModel[?]] =
     val read = settings(hocon).fold(fail(_), identity)
-    read.agents.agents.indices.map(read.loopSettings.model).toSet
+    read.fleet.agents.indices.map(read.loopSettings.model).toSet
 
   /** A model file of flights at 20 m. */
   private val file = FunFixture[Path](
@@ -43,7 +47,7 @@ class AltitudeSuite extends munit.FunSuite:
       Set(ReducedVehicleModel(ReducedModel.airSimAt(altitudeM)))
     assertEquals(models("skein.fly.predictor = drag"), reduced(20))
     assertEquals(ReducedModel.airSimAt(20), ReducedModel.AirSim)
-    assertEquals(models("skein.fly { predictor = drag, altitude-m = 7 }"), reduced(7))
+    assertEquals(models("skein.fly { predictor = drag, duel.altitude-m = 7 }"), reduced(7))
     assertEquals(models("skein.fly { predictor = drag, scenario = crossing }"), reduced(5))
     assertEquals(
       models("skein.fly { predictor = drag, scenario = surround, surround.altitude-m = 9 }"),
@@ -54,7 +58,7 @@ class AltitudeSuite extends munit.FunSuite:
     path =>
       val fine = s"skein.fly.predictor = \"$path\""
       assert(settings(fine).isRight, settings(fine))
-      for hocon <- Seq("skein.fly.scenario = formation", "skein.fly.altitude-m = 5") do
+      for hocon <- Seq("skein.fly.scenario = formation", "skein.fly.duel.altitude-m = 5") do
         val told = settings(s"$fine\n$hocon").left.getOrElse(fail(s"$hocon was taken"))
         assert(told.contains("flights at 5 m altitude") && told.contains("came one of 20 m"), told)
       for model <- Seq(path.toString, s"reduced:$path") do
@@ -72,7 +76,7 @@ class AltitudeSuite extends munit.FunSuite:
     for wrong <- Seq(0.0, -5.0, 5000.0, Double.NaN) do
       val mistake = Conditions("stream", "drag", 100, 60, altitudeM = wrong).resolved.left.getOrElse("")
       assert(mistake.startsWith("--altitude: expected more than 0"), mistake)
-      assert(settings(s"skein.fly.altitude-m = \"$wrong\"").isLeft, wrong)
+      assert(settings(s"skein.fly.duel.altitude-m = \"$wrong\"").isLeft, wrong)
 
   test("at 5 m the model of this altitude predicts better than that of 20 m"):
     def errorM(model: PredictionModel): Double =
@@ -83,9 +87,7 @@ class AltitudeSuite extends munit.FunSuite:
         Span.ofSeconds(15),
         Span.ofMillis(100),
         1,
-        1,
-        false,
-        altitudeM = 5,
+        PaperDuel(altitudeM = 5),
         predictor = model
       )
       val errors = TappedFlight.fly(

@@ -3,12 +3,15 @@ package skein.flight
 import skein.loop.{LoopKind, Outcome}
 import skein.measure.{DistanceCurve, FlightSummary}
 import skein.record.{EventKind, Recording}
+import skein.report.DuelReport
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** The paper's experiment in virtual time, held to what AirSim's own flight code gave. */
 class ExperimentSimulation extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   private def fly(
       loop: LoopKind,
@@ -18,7 +21,14 @@ class ExperimentSimulation extends munit.FunSuite:
       seconds: Double = 60
   ): Recording =
     val settings =
-      FlySettings(List(loop), List(link), Span.ofSeconds(seconds), Span.ofMillis(100), 1, pairs, asPublished)
+      FlySettings(
+        List(loop),
+        List(link),
+        Span.ofSeconds(seconds),
+        Span.ofMillis(100),
+        1,
+        PaperDuel(pairs, asPublished)
+      )
     val flown =
       VirtualFlights.fly(settings, FlightPlan(loop.label, loop, link, seed = 1)).fold(fail(_), identity)
     assertEquals(flown.landed.outcome, Outcome.Completed)

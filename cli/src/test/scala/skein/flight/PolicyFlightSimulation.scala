@@ -3,12 +3,16 @@ package skein.flight
 import skein.loop.{LoopKind, Replay}
 import skein.measure.FlightSummary
 import skein.policy.{LeadPursuit, PolicyFamily, Role}
+import skein.report.DuelReport
 import skein.report.{Report, ReportSections}
+import skein.scenario.Scenarios
 import skein.settings.{FlySettings, PolicyFile, RecordedPlan}
 import skein.signal.LatencyProfile
 import skein.units.*
 
 class PolicyFlightSimulation extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private val policy = PolicyFile(Role.Pursuer, PolicyFamily.leadPursuit, Vector(0.5, 1.25, 1.0))
 
   private val settings = FlySettings(
@@ -17,8 +21,6 @@ class PolicyFlightSimulation extends munit.FunSuite:
     Span.ofSeconds(12),
     Span.ofMillis(100),
     seed = 3,
-    pairs = 1,
-    asPublished = false,
     policies = List(policy, policy)
   )
 
@@ -36,11 +38,11 @@ class PolicyFlightSimulation extends munit.FunSuite:
     val read = RecordedPlan.of(own).fold(fail(_), identity)
     assertEquals(read.plan, settings.plans(3))
     assertEquals(
-      read.scenario.agents.find(_.role == Role.Pursuer).map(_.policy),
+      read.fleet.agents.find(_.role == Role.Pursuer).map(_.policy),
       Some(LeadPursuit(0.5, 1.25, 1.0))
     )
-    assertEquals(Replay(read.scenario, own).firstDifference, None)
-    assert(Replay(settings.agents, own).firstDifference.isDefined, "replayed as the paper's pursuer alike")
+    assertEquals(Replay(read.fleet, own).firstDifference, None)
+    assert(Replay(settings.fleet, own).firstDifference.isDefined, "replayed as the paper's pursuer alike")
     assert(own.flight.scenario.contains("lead-pursuit speedRatio=0.5 lead=1.25"), own.flight.scenario)
 
     val table = ReportSections.text(Report.of(flown))

@@ -2,15 +2,18 @@ package skein.flight
 
 import scala.concurrent.duration.*
 import skein.loop.LoopKind
+import skein.report.DuelReport
+import skein.scenario.{PaperDuel, Scenarios}
 
 /** Real sockets, real time and real threads, of which virtual time has one. */
 class ReplayLiveSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   override val munitTimeout: Duration = 5.minutes
 
   test("what live loops decided is decided again from their recordings, futures on several threads included"):
     val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)
-    val settings = TwinFlights.settings(loops, seconds = 6).copy(pairs = 2)
+    val settings = TwinFlights.settings(loops, seconds = 6).copy(scenario = PaperDuel(pairs = 2))
     TwinFlights.inFolder: folder =>
       assertEquals(TwinFlights.flyLive(settings, settings.plans, folder), Right(()))
       for plan <- settings.plans do

@@ -3,27 +3,33 @@ package skein.flight
 import java.nio.file.Files
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome, Replay}
-import skein.measure.{FlightSummary, TeamResult}
+import skein.measure.FlightSummary
 import skein.record.{EventKind, Recording}
+import skein.report.DuelReport
+import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** Scenarios of teams in virtual time. */
 class TeamSimulation extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   // Twenty vehicles in virtual time take a while where others work too.
   override val munitTimeout: Duration = 2.minutes
 
-  private def settings(scenario: String, loop: LoopKind, link: LatencyProfile, seconds: Double) = FlySettings(
+  private def settings(
+      scenario: Scenario,
+      loop: LoopKind,
+      link: LatencyProfile,
+      seconds: Double
+  ) = FlySettings(
     List(loop),
     List(link),
     Span.ofSeconds(seconds),
     Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false,
-    scenario = scenario
+    1,
+    scenario
   )
 
   private def fly(settings: FlySettings): Recording =
@@ -31,28 +37,28 @@ class TeamSimulation extends munit.FunSuite:
     assertEquals(flown.landed.outcome, Outcome.Completed)
     flown.recorder.recording
 
-  private def resultOf(recording: Recording): TeamResult =
-    FlightSummary.of(recording).team.getOrElse(fail("no team"))
+  private def resultOf(recording: Recording): Result =
+    FlightSummary.of(recording).result.getOrElse(fail("no result"))
 
-  private def value(result: TeamResult, name: String): Double =
-    result.measures.find(
-      _.name == name
-    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measures}"))
+  private def value(result: Result, name: String): Double =
+    result.measured.find(
+      _.measure.title == name
+    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measured}"))
 
   test("five pursuers surround the evader over the VPN"):
-    val result = resultOf(fly(settings("surround", LoopKind.Predictive, LatencyProfile.vpn, 13)))
-    assert(value(result, "surrounded after s") < 12, result.measures)
+    val result = resultOf(fly(settings(Surround(), LoopKind.Predictive, LatencyProfile.vpn, 13)))
+    assert(value(result, "surrounded after s") < 12, result.measured)
 
   test("a formation flies its circuit without a network"):
-    val result = resultOf(fly(settings("formation", LoopKind.Stream, LatencyProfile.none, 18)))
-    assert(value(result, "slot rms m") < 1.5, result.measures)
+    val result = resultOf(fly(settings(Formation(), LoopKind.Stream, LatencyProfile.none, 18)))
+    assert(value(result, "slot rms m") < 1.5, result.measured)
 
   test(
     "twenty cross over the VPN: each is commanded ten times a second at most and nothing is refused or lost"
   ):
-    val recording = fly(settings("crossing", LoopKind.Predictive, LatencyProfile.vpn, 12))
+    val recording = fly(settings(Crossing(), LoopKind.Predictive, LatencyProfile.vpn, 12))
     val result    = resultOf(recording)
-    assert(value(result, "closest m") > 1, result.measures)
+    assert(value(result, "closest m") > 1, result.measured)
     val unwanted = recording.events.filter(_.kind != EventKind.Dropped)
     assert(unwanted.isEmpty, unwanted.take(5).mkString("\n"))
     assertEquals(recording.acknowledgements.size, recording.commands.size)
@@ -62,34 +68,35 @@ class TeamSimulation extends munit.FunSuite:
       assert(pauses.forall(_ >= Span.ofMillis(20)), s"$vehicle is commanded faster than the rate cap allows")
 
   test("twenty that plan cross over the VPN: the set separation is kept, and they are through sooner"):
-    val result = resultOf(fly(settings("crossing", LoopKind.Plan, LatencyProfile.vpn, 12.5)))
-    assertEquals(value(result, "violations"), 0.0, result.measures)
-    assert(value(result, "closest m") >= 2.5, result.measures)
+    val result = resultOf(fly(settings(Crossing(), LoopKind.Plan, LatencyProfile.vpn, 12.5)))
+    assertEquals(value(result, "violations"), 0.0, result.measured)
+    assert(value(result, "closest m") >= 2.5, result.measured)
     // Avoiding one another by their policy, none of them is there before 13 s.
-    assert(value(result, "arrived") >= 15, result.measures)
+    assert(value(result, "arrived") >= 15, result.measured)
 
   test("a team that searches its plans for long surrounds the evader as closely as by its rule"):
     def offRing(loop: LoopKind) =
-      val flown = settings("surround", loop, LatencyProfile.vpn, 20)
+      val flown = settings(Surround(), loop, LatencyProfile.vpn, 20)
       value(resultOf(fly(flown.copy(planning = flown.planning.copy(slices = 20)))), "off ring m")
     val (planned, byRule) = (offRing(LoopKind.Plan), offRing(LoopKind.Predictive))
     assert(planned < byRule + 0.05, s"$planned m off the ring, by the rule $byRule m, seed 1")
 
   test("a formation that plans keeps its slots over the VPN"):
-    val result = resultOf(fly(settings("formation", LoopKind.Plan, LatencyProfile.vpn, 24)))
-    assert(value(result, "slot rms m") < 0.32, s"${result.measures}, seed 1")
+    val result = resultOf(fly(settings(Formation(), LoopKind.Plan, LatencyProfile.vpn, 24)))
+    assert(value(result, "slot rms m") < 0.32, s"${result.measured}, seed 1")
 
   for (scenario, loop) <- Seq(
-      "surround"  -> LoopKind.Paused,
-      "formation" -> LoopKind.Futures,
-      "crossing"  -> LoopKind.Stream,
-      "crossing"  -> LoopKind.Predictive,
-      "crossing"  -> LoopKind.Plan
+      Surround()             -> LoopKind.Paused,
+      Formation()            -> LoopKind.Futures,
+      Crossing(vehicles = 6) -> LoopKind.Stream,
+      Crossing(vehicles = 6) -> LoopKind.Predictive,
+      Crossing(vehicles = 6) -> LoopKind.Plan
     )
   do
-    test(s"$scenario by ${loop.label} decides the same when it is decided upon again, and when flown again"):
-      val small    = settings(scenario, loop, LatencyProfile.vpn, 2)
-      val chosen   = small.copy(crossing = small.crossing.copy(vehicles = 6))
+    test(
+      s"${scenario.name} by ${loop.label} decides the same when it is decided upon again, and when flown again"
+    ):
+      val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head
       val recorder = VirtualFlights.fly(chosen, plan).fold(fail(_), identity).recorder
       val folder   = Files.createTempDirectory("team")
@@ -105,7 +112,7 @@ class TeamSimulation extends munit.FunSuite:
         Files.delete(folder)
 
   test("a replay notices that another vehicle of the team was seen elsewhere"):
-    val flown     = settings("surround", LoopKind.Predictive, LatencyProfile.direct, 2)
+    val flown     = settings(Surround(), LoopKind.Predictive, LatencyProfile.direct, 2)
     val recording = fly(flown)
     val forged    = recording.sightings.map(sighting =>
       if sighting.decision != 5 then sighting
@@ -116,6 +123,6 @@ class TeamSimulation extends munit.FunSuite:
           )
         )
     )
-    assertEquals(Replay(flown.agents, recording).firstDifference, None)
-    val found = Replay(flown.agents, recording.copy(sightings = forged)).firstDifference
+    assertEquals(Replay(flown.fleet, recording).firstDifference, None)
+    val found = Replay(flown.fleet, recording.copy(sightings = forged)).firstDifference
     assert(found.exists(_.where.startsWith("decision 5 ")), found.toString)

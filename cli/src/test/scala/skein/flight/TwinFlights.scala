@@ -8,13 +8,16 @@ import scala.util.Using
 import skein.link.TcpTransport
 import skein.loop.LoopKind
 import skein.measure.FlightSet
+import skein.report.DuelReport
 import skein.report.{Report, SummaryTables}
+import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** Live flights over real sockets and in real time, side by side, and their twins in virtual time. */
 object TwinFlights:
+  private given Scenarios = DuelReport.scenarios
 
   /** Of the duel over `direct` and whatever links are given. */
   def settings(loops: List[LoopKind], seconds: Int, more: LatencyProfile*): FlySettings = FlySettings(
@@ -22,9 +25,7 @@ object TwinFlights:
     LatencyProfile.direct :: more.toList,
     Span.ofSeconds(seconds),
     period = Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false
+    seed = 1
   )
 
   /** Flies all that the settings say, and each again in virtual time. Blocks for as long as a flight lasts.

@@ -1,15 +1,17 @@
 package skein.report
 
 import scala.concurrent.duration.*
-import skein.figures.Figure
 import skein.flight.VirtualFlights
 import skein.loop.LoopKind
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup}
+import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
 
 class PredictionErrorsSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   override val munitTimeout: Duration = 2.minutes
 
   test("errors are sorted by age into bins around multiples of 20 ms, of which small ones are left out"):
@@ -31,9 +33,7 @@ class PredictionErrorsSuite extends munit.FunSuite:
       List(LatencyProfile.direct),
       duration = Span.ofSeconds(12),
       period = period,
-      seed = 1,
-      pairs = 1,
-      asPublished = false
+      seed = 1
     )
     VirtualFlights
       .inParallel(settings, settings.plans)(flown => FlightSummary.of(flown.recorder.recording))
@@ -50,7 +50,7 @@ class PredictionErrorsSuite extends munit.FunSuite:
         s"${errors.made} ${errors.unverified}"
       )
       assert(errors.errors.get.quantile(0.95) < 0.1, errors.errors.get.quantile(0.95).toString)
-    assert(Figure.spread(flights).map(_.name).contains("prediction"))
+    assert(ReportFigures.spread(flights).map(_.name).contains("prediction"))
 
   test("predictions of which none could be verified are counted, not hidden"):
     val groups = PredictionGroup.of(fly(List(LoopKind.Predictive), Span.ofMillis(400)))
@@ -64,7 +64,7 @@ class PredictionErrorsSuite extends munit.FunSuite:
       deviations.map(one => (one.loop, one.link)),
       Vector(("stream", "direct"), ("predictive", "direct"))
     )
-    val metres = flights.map(one => one.flight.loop -> one.headlineM.get).toMap
+    val metres = flights.map(one => one.flight.loop -> one.headline.get).toMap
     assertEqualsDouble(deviations.head.share.mean, metres("stream") / metres("paused") - 1, 1e-12)
     assertEquals(Deviation.of(flights.filterNot(_.flight.loop == "paused")), Vector.empty)
 
@@ -73,7 +73,10 @@ class PredictionErrorsSuite extends munit.FunSuite:
     val text = ReportSections.text(set)
     assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)
     val pages =
-      Seq(HtmlReport.render(set, Figure.all(set)), HtmlReport.spread(flights, Figure.spread(flights)))
+      Seq(
+        HtmlReport.render(set, ReportFigures.of(set)),
+        HtmlReport.spread(flights, ReportFigures.spread(flights))
+      )
     for page <- pages do
       assert(
         page.contains("Deviation from the paused truth") && page.contains("Prediction error against age")

@@ -1,11 +1,14 @@
 package skein.report
 
 import java.nio.file.Path
+import skein.scenario.Scenarios
 
 /** Writes the report of the experiment's seven flights, flown synthetically, into the folder of its argument: for
   * looking at pictures while working on them. `./sbtw "cli/Test/runMain skein.report.PreviewReport FOLDER"`
   */
 object PreviewReport:
+  private given Scenarios = DuelReport.scenarios
+
   def main(arguments: Array[String]): Unit =
     val flown = Vector("paused" -> "none") ++
       (for link <- Seq("direct", "vpn"); loop <- Seq("sequential", "futures", "stream") yield loop -> link)

@@ -4,11 +4,13 @@ import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
 import scala.util.Using
-import skein.figures.Figure
 import skein.measure.Numbers
 import skein.record.{MemoryRecorder, RecordError, Recording}
+import skein.scenario.Scenarios
 
 class ReportSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private val folder = FunFixture[Path](
     _ => Files.createTempDirectory("report"),
     path =>
@@ -29,7 +31,7 @@ class ReportSuite extends munit.FunSuite:
     val output = Report.write(set, folder.resolve("new/folder")).fold(fail(_), identity)
     assert(Files.size(output.page) > 10_000)
     val names = Set("trajectories", "distance", "observations", "latency", "deviation")
-    assertEquals(Figure.all(set).map(_.name).toSet, names)
+    assertEquals(ReportFigures.of(set).map(_.name).toSet, names)
     for name <- names do
       val stem     = output.page.resolveSibling("figures").resolve(name).toString
       val document =
@@ -41,14 +43,14 @@ class ReportSuite extends munit.FunSuite:
         assertEqualsDouble(ratio, 1 / 3.0, 0.001)
 
   test("the page needs nothing beside itself"):
-    val page    = HtmlReport.render(set, Figure.all(set))
+    val page    = HtmlReport.render(set, ReportFigures.of(set))
     val links   = "(?:src|href|url|@import)\\s*[=(]".r.findFirstIn(page)
     val scripts = "<script|<link|<iframe|<img".r.findFirstIn(page)
     val hosts   = "https?://[^\"]*".r.findAllIn(page).toSet
     assertEquals((links, scripts, hosts - "http://www.w3.org/2000/svg"), (None, None, Set.empty[String]))
 
   test("the same recordings give the same page"):
-    assertEquals(HtmlReport.render(set, Figure.all(set)), HtmlReport.render(set, Figure.all(set)))
+    assertEquals(HtmlReport.render(set, ReportFigures.of(set)), HtmlReport.render(set, ReportFigures.of(set)))
 
   test("what a recording says cannot become markup"):
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
@@ -61,7 +63,7 @@ class ReportSuite extends munit.FunSuite:
   test("a flight without a single record still gives a page and a table"):
     val empty = SyntheticFlight("stream", "direct", seed = 1, seconds = 12).heading
     val set   = Report.of(Seq(Recording(empty)))
-    assert(HtmlReport.render(set, Figure.all(set)).contains("Skein"))
+    assert(HtmlReport.render(set, ReportFigures.of(set)).contains("Skein"))
     assert(ReportSections.text(set).contains("stream"))
 
   test("the tables have our values beside the paper's"):

@@ -1,8 +1,10 @@
 package skein.report
 
-import skein.figures.Figure
+import skein.scenario.Scenarios
 
 class SectionSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private val table = TextTable(
     Vector("<loop", "<at", "m", "share", "range"),
     Vector(Vector("stream", "12", "8.50", "+2.0", "1 … 2"), Vector("paused", "", "", "-0.5", ""))
@@ -29,7 +31,10 @@ class SectionSuite extends munit.FunSuite:
 
   test("text: a note stands below its table, in lines of at most 100 letters"):
     val note  = Vector.fill(60)("words").mkString(" ")
-    val lines = Section.text(Seq(Section("One", note, Some(table)), Section("Two", table = Some(table)))).linesIterator.toVector
+    val lines = Section.text(Seq(
+      Section("One", note, Some(table)),
+      Section("Two", table = Some(table))
+    )).linesIterator.toVector
     assertEquals(lines.head, "One")
     val told = lines.drop(5).takeWhile(_.nonEmpty)
     assertEquals(told.mkString(" "), note)
@@ -37,13 +42,15 @@ class SectionSuite extends munit.FunSuite:
     assertEquals(lines.dropWhile(_ != "Two").size, 5)
 
   test("text, page and data have the same tables in the same order"):
-    val set    = Report.of(
-      Seq("paused" -> "none", "stream" -> "vpn").map((loop, link) => SyntheticFlight(loop, link, seed = 1, seconds = 12))
+    val set = Report.of(
+      Seq("paused" -> "none", "stream" -> "vpn").map((loop, link) =>
+        SyntheticFlight(loop, link, seed = 1, seconds = 12)
+      )
     )
     val titles = ReportSections.of(set).map(_.title)
     assert(titles.size >= 4, titles.toString)
     val text = ReportSections.text(set)
-    val page = HtmlReport.render(set, Figure.all(set))
+    val page = HtmlReport.render(set, ReportFigures.of(set))
     val data = ujson.read(Section.json(ReportSections.of(set)))("tables").arr.map(_("title").str).toVector
     assertEquals(data, titles)
     for medium <- Seq(text, page.replace("&#39;", "'")) do

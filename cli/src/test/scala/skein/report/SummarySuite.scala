@@ -2,10 +2,13 @@ package skein.report
 
 import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, Observation, Published}
 import skein.record.*
+import skein.scenario.Scenarios
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
 class SummarySuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private def second(time: Double): Instant = Instant.Epoch + Span.ofSeconds(time)
 
   private def seen(vehicle: String, time: Double, x: Double, y: Double): Reading =

@@ -3,6 +3,7 @@ package skein.report
 import scala.util.Random
 import skein.policy.{Agent, Fleet}
 import skein.record.*
+import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 
@@ -15,7 +16,7 @@ object SyntheticFlight:
   private val offset = Span.ofSeconds(1_789_000_000.25)
 
   def apply(loop: String, link: String, seed: Long, seconds: Int = 60): Recording =
-    val scenario = Fleet.duel()
+    val scenario = PaperDuel().fleet
     val random   = Random(seed)
     val profile  = LatencyProfile.parse(link, Left(_)) match
       case Right(LatencyProfile.Steady(_, roundTrip)) => roundTrip

@@ -2,9 +2,11 @@ package skein.report
 
 import skein.measure.{Deviation, Distribution, Numbers}
 import skein.record.{Event, EventKind}
+import skein.scenario.Scenarios
 
 /** What the tables say, held against the flights that they are about. */
 class TablesSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   private val paused  = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
   private val streams = Vector(2L, 3L, 4L).map(SyntheticFlight("stream", "vpn", _, seconds = 12))
@@ -17,7 +19,10 @@ class TablesSuite extends munit.FunSuite:
 
   test("the spread of a loop over its flights stands beside the truth of the same policies"):
     val table = SpreadTable.of(set.flights)
-    assertEquals(table.rows.map(_.take(3)), Vector(Vector("paused", "none", "1"), Vector("stream", "vpn", "3")))
+    assertEquals(
+      table.rows.map(_.take(3)),
+      Vector(Vector("paused", "none", "1"), Vector("stream", "vpn", "3"))
+    )
     val stream = row(table, "stream")
     val flown  = means.tail
     val mean   = flown.sum / 3

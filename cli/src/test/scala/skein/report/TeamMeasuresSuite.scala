@@ -1,25 +1,25 @@
 package skein.report
 
-import skein.figures.Figure
-import skein.measure.{FlightSummary, TeamResult}
-import skein.policy.TeamScenario
+import skein.measure.FlightSummary
+import skein.scenario.*
 import skein.record.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
 /** Measures of flights whose vehicles fly where they are told. */
 class TeamMeasuresSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
 
   /** @param placeM
     *   north and east of a vehicle at a time, s
     */
-  private def flown(scenario: TeamScenario, seconds: Int, loop: String = "stream")(
+  private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(
       placeM: (Int, Double) => (Double, Double)
   ): Recording =
-    val agents   = scenario.scenario.agents
+    val agents   = scenario.agents
     val vehicles =
       agents.map(agent => Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
-    val settings = scenario.settings.map((name, value) => Parameter(s"${scenario.name}.$name", value))
+    val settings = scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
     val flight   = Flight(
       s"$loop-none",
       loop,
@@ -44,16 +44,16 @@ class TeamMeasuresSuite extends munit.FunSuite:
         Reading(tick, agent.name, Stamped(state, at, at, at))
     Recording(Heading(flight, vehicles, settings), readings)
 
-  private def resultOf(recording: Recording): TeamResult =
-    FlightSummary.of(recording).team.getOrElse(fail("no team"))
+  private def resultOf(recording: Recording): Result =
+    FlightSummary.of(recording).result.getOrElse(fail("no result"))
 
-  private def value(result: TeamResult, name: String): Double =
-    result.measures.find(
-      _.name == name
-    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measures}"))
+  private def value(result: Result, name: String): Double =
+    result.measured.find(
+      _.measure.title == name
+    ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measured}"))
 
   test("a ring that closes: its radius, the even gap, and from when on the evader is between its pursuers"):
-    val scenario = TeamScenario.Surround(vehicles = 5)
+    val scenario = Surround(vehicles = 5)
     // Until 4 s all stand within 160°, then at right angles.
     val result = resultOf(flown(scenario, 20): (vehicle, second) =>
       val bearing = if second < 4 then (vehicle - 1) * 53.0 else (vehicle - 1) * 90.0
@@ -67,13 +67,13 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "surrounded after s"), 3.95, 0.06)
 
   test("an evader outside its ring is never surrounded"):
-    val result = resultOf(flown(TeamScenario.Surround(vehicles = 4), 12)((vehicle, _) =>
+    val result = resultOf(flown(Surround(vehicles = 4), 12)((vehicle, _) =>
       (vehicle.toDouble, vehicle * vehicle.toDouble)
     ))
-    assertEquals(result.measures.find(_.name == "surrounded after s").flatMap(_.value), None)
+    assertEquals(result.measured.find(_.measure.title == "surrounded after s").flatMap(_.value), None)
 
   test("slots are kept round the circuit, but for a follower that is 0.3 m beside its own from 15 s on"):
-    val scenario = TeamScenario.Formation(vehicles = 3, spacingM = 4)
+    val scenario = Formation(vehicles = 3, spacingM = 4)
     val circuit  = scenario.circuit
     val slots    = scenario.slots
     val result   = resultOf(flown(scenario, 20): (vehicle, second) =>
@@ -92,7 +92,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assert(value(result, "at s") >= 14.9)
 
   test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
-    val scenario = TeamScenario.Crossing(vehicles = 3, streams = 2, minimumM = 2)
+    val scenario = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val goals    = scenario.goals
     // The first flies past the second, which waits, at 1 m at 5 s; the third stands where it wants to be from 8 s on.
     val result = resultOf(flown(scenario, 12): (vehicle, second) =>
@@ -108,26 +108,26 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "per min"), 7.5, 0.1)
 
   test("a flight is measured against the paused truth of its own scenario, and by where its vehicles are"):
-    val scenario              = TeamScenario.Surround(vehicles = 3)
+    val scenario              = Surround(vehicles = 3)
     def ring(radiusM: Double) = (vehicle: Int, _: Double) =>
       (if vehicle == 0 then 0.0 else if vehicle == 1 then radiusM else -radiusM, 0.0)
     val set = Report.of(
       Seq(
         flown(scenario, 12, "paused")(ring(9)),
         flown(scenario, 12)(ring(10)),
-        flown(TeamScenario.Surround(vehicles = 3, ringM = 9), 12, "paused")(ring(100)),
+        flown(Surround(vehicles = 3, ringM = 9), 12, "paused")(ring(100)),
         SyntheticFlight("paused", "none", seed = 1, seconds = 12)
       )
     )
-    val flights = set.teams.head
+    val flights = set.scenarios.head
     val stream  = flights.flights.find(_.summary.flight.loop == "stream").get
-    assertEquals(stream.result.measures.head.value, Some(2.0))
+    assertEquals(stream.result.measured.head.value, Some(2.0))
     assertEqualsDouble(flights.deviation(stream).get, 1, 1e-9)
     // Two of three vehicles are 1 m off.
     assertEqualsDouble(flights.offTruthM(stream).get, math.sqrt(2.0 / 3), 1e-9)
-    assertEquals(set.teams.size, 2)
-    assertEquals(set.duels.flights.size, 1)
+    assertEquals(set.scenarios.count(_.scenario.name == "surround"), 2)
+    assertEquals(set.ofKind("duel").flights.size, 1)
     val text = ReportSections.text(set)
     assert(text.contains("Results: surround") && text.contains("Distance between pursuer and evader"), text)
-    val page = HtmlReport.render(set, Figure.all(set))
+    val page = HtmlReport.render(set, ReportFigures.of(set))
     assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))

@@ -1,11 +1,13 @@
 package skein.report
 
-import skein.figures.Figure
 import skein.measure.Twin
 import skein.record.Recording
+import skein.scenario.Scenarios
 import skein.units.*
 
 class TwinSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
   private def virtual(loop: String, link: String, seed: Long): Recording =
     SyntheticFlight(loop, link, seed, seconds = 12)
 
@@ -58,10 +60,10 @@ class TwinSuite extends munit.FunSuite:
 
   test("the section stands in the text and on the page where there is a pair, and only there"):
     val paired = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 2)))
-    val page   = HtmlReport.render(paired, Figure.all(paired))
+    val page   = HtmlReport.render(paired, ReportFigures.of(paired))
     assert(page.contains("Live against virtual") && page.contains("KS 0."), "no section")
     val text = ReportSections.text(paired)
     assert(text.contains("Live against virtual") && text.contains("seed 2"), text)
     val alone = Report.of(Seq(live("stream", "direct", 1)))
-    assert(!HtmlReport.render(alone, Figure.all(alone)).contains("Live against virtual"))
+    assert(!HtmlReport.render(alone, ReportFigures.of(alone)).contains("Live against virtual"))
     assert(!ReportSections.text(alone).contains("Live against virtual"))

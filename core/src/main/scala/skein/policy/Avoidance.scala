@@ -101,23 +101,23 @@ final case class Avoidance(
       else Velocity(1, 0)
     Bound(own + normal * (0.5 * (radius - length)), normal)
 
-private[policy] object Avoidance:
+object Avoidance:
 
   /** Within which two vehicles that are too near to one another are to be apart again. */
-  val PartingS = 0.5
+  private[policy] val PartingS = 0.5
 
   /** Bisections of how far bounds must give way: to a 10⁻⁶ of the largest violation. */
   private val Halvings = 20
 
   /** A horizontal velocity, m/s. */
-  final case class Velocity(north: Double, east: Double):
+  private[policy] final case class Velocity(north: Double, east: Double):
     def +(other: Velocity): Velocity       = Velocity(north + other.north, east + other.east)
     def -(other: Velocity): Velocity       = Velocity(north - other.north, east - other.east)
     def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
     infix def dot(other: Velocity): Double = north * other.north + east * other.east
 
   /** Velocities v with (v − at)·normal ≥ 0. */
-  final case class Bound(at: Velocity, normal: Velocity):
+  private[policy] final case class Bound(at: Velocity, normal: Velocity):
     def direction: Velocity             = Velocity(normal.east, -normal.north)
     def violation(of: Velocity): Double = (at - of) dot normal
     def relaxed(byMps: Double): Bound   = Bound(at - normal * byMps, normal)
@@ -128,7 +128,7 @@ private[policy] object Avoidance:
     * @param relaxedMps
     *   how far each bound gives way
     */
-  def nearestAllowed(
+  private[policy] def nearestAllowed(
       wanted: Velocity,
       bounds: Array[Bound],
       mostMps: Double,
@@ -158,7 +158,7 @@ private[policy] object Avoidance:
     best
 
   /** The velocity for which the worst violation is least. */
-  def leastViolation(wanted: Velocity, bounds: Array[Bound], mostMps: Double): Velocity =
+  private[policy] def leastViolation(wanted: Velocity, bounds: Array[Bound], mostMps: Double): Velocity =
     // Standing still is within the limit of speed: relaxed so far, at least it is allowed.
     var enough = bounds.map(_.violation(Velocity(0, 0))).max.max(0)
     var least  = 0.0

@@ -2,13 +2,21 @@ package skein.policy
 
 import skein.units.*
 
-/** What a vehicle is to the others. */
-enum Role:
-  case Pursuer, Evader, Leader, Follower, Traveller
+/** What a vehicle is to the others, for example `Role("Scout")`. */
+final case class Role(name: String):
+  override def toString: String = name
 
 object Role:
-  /** By its name, in letters of any case. */
-  def parse(name: String): Option[Role] = values.find(_.toString.equalsIgnoreCase(name))
+  val Pursuer: Role   = Role("Pursuer")
+  val Evader: Role    = Role("Evader")
+  val Leader: Role    = Role("Leader")
+  val Follower: Role  = Role("Follower")
+  val Traveller: Role = Role("Traveller")
+
+  private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
+
+  /** By its name; one of ours in letters of any case. */
+  def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))
 
 /** One vehicle and how it behaves.
   *
@@ -75,45 +83,3 @@ final case class Fleet(agents: Vector[Agent]):
     */
   def opponentOf(self: Int, positionNed: Int => Vector3): Int =
     assignment.opponentOf(self, other => positionNed(self).horizontalDistance(positionNed(other)))
-
-object Fleet:
-  /** The paper's, m. */
-  val DuelAltitudeM = 20.0
-
-  /** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart at z = −20 m.
-    *
-    * @param asPublished
-    *   the pursuer turns a fixed angle per decision, as the published code does
-    * @param altitudeM
-    *   −z
-    */
-  def duel(asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Fleet =
-    val pursuer = if asPublished then PaperPursuer.asPublished else PaperPursuer()
-    Fleet(
-      Vector(
-        // The evader's initial heading is cos(0.5) in the published code, where 0.5 may have been meant.
-        Agent(
-          "Evader",
-          Role.Evader,
-          MetresPerSecond(5),
-          Vector3(21, 0, -altitudeM),
-          Radians(StrictMath.cos(0.5)),
-          PaperEvader()
-        ),
-        Agent("Pursuer", Role.Pursuer, MetresPerSecond(10), Vector3(0, 0, -altitudeM), Radians(0), pursuer)
-      )
-    )
-
-  /** `pairs` duels side by side, 60 m apart: for teams of any size. The vehicles of several are numbered from 1. */
-  def duels(pairs: Int, asPublished: Boolean = false, altitudeM: Double = DuelAltitudeM): Fleet =
-    if pairs == 1 then duel(asPublished, altitudeM)
-    else
-      val agents =
-        for
-          pair  <- 0 until pairs
-          agent <- duel(asPublished, altitudeM).agents
-        yield agent.copy(
-          name = s"${agent.name}${pair + 1}",
-          startPositionNed = agent.startPositionNed + Vector3(0, 60.0 * pair, 0)
-        )
-      Fleet(agents.toVector)

@@ -1,5 +1,7 @@
 package skein.policy
 
+import skein.scenario.PaperDuel
+
 class PaperPolicySuite extends munit.FunSuite:
 
   private def pursuer(dx: Double, dy: Double, heading: Double, elapsedS: Double) =
@@ -44,10 +46,10 @@ class PaperPolicySuite extends munit.FunSuite:
       assertEqualsDouble(math.cos(evader(10, 1, turn) - turn - evader(10, 1, 0)), 1.0, 1e-12)
 
   test("each agent plays against the nearest of the other role"):
-    val scenario = Fleet.duels(3)
+    val scenario = PaperDuel(3).fleet
     val start    = (i: Int) => scenario.agents(i).startPositionNed
     for i <- scenario.agents.indices do
       assertEquals(scenario.opponentOf(i, start), if i % 2 == 0 then i + 1 else i - 1)
 
   test("a scenario without opponents is refused"):
-    intercept[IllegalArgumentException](Fleet(Fleet.duel().agents.take(1)))
+    intercept[IllegalArgumentException](Fleet(PaperDuel().fleet.agents.take(1)))

@@ -1,12 +1,13 @@
 package skein.policy
 
+import skein.scenario.*
 import skein.units.*
 
 class TeamPolicySuite extends munit.FunSuite:
 
   test("pursuers stand at rest on the ring at even bearings around an evader that does not move"):
-    val surround = TeamScenario.Surround(vehicles = 6)
-    val agents   = surround.scenario.agents
+    val surround = Surround(vehicles = 6)
+    val agents   = surround.agents
     val still    = agents.head.copy(policy = Flee(0))
     val flight   = TeamFlight(Fleet(still +: agents.tail), lagS = 1.5)
     flight.fly(60)()
@@ -52,7 +53,7 @@ class TeamPolicySuite extends munit.FunSuite:
       )
 
   test("the evader flees straight away from the nearest"):
-    val scene = TeamScenario.Surround(vehicles = 3).scenario
+    val scene = Surround(vehicles = 3).fleet
     val seen  = TeamFlight(scene, lagS = 0).seenBy(0)
     val moved = seen.copy(northM = IArray(0, 3, -2), eastM = IArray(0, 4, -1))
     val fled  = Flee(4).course(moved)
@@ -69,7 +70,7 @@ class TeamPolicySuite extends munit.FunSuite:
       assertEqualsDouble((nextNorth - north) / 1e-6, math.cos(circuit.headingRad(place)), 1e-5)
       assertEqualsDouble((nextEast - east) / 1e-6, math.sin(circuit.headingRad(place)), 1e-5)
 
-  private def slotErrorsM(formation: TeamScenario.Formation, flight: TeamFlight): Seq[Double] =
+  private def slotErrorsM(formation: Formation, flight: TeamFlight): Seq[Double] =
     val circuit    = formation.circuit
     val heading    = circuit.headingRad(circuit.nearest(flight.northM(0), flight.eastM(0)))
     val (cos, sin) = (math.cos(heading), math.sin(heading))
@@ -80,14 +81,14 @@ class TeamPolicySuite extends munit.FunSuite:
     )
 
   test("a formation has no error on the straight"):
-    val formation = TeamScenario.Formation(straightM = 500, lagS = 0.8)
-    val flight    = TeamFlight(formation.scenario, lagS = 0.8)
+    val formation = Formation(straightM = 500, lagS = 0.8)
+    val flight    = TeamFlight(formation.fleet, lagS = 0.8)
     flight.fly(60)()
     assert(slotErrorsM(formation, flight).max < 0.01, slotErrorsM(formation, flight))
 
   test("a formation turns with its leader"):
-    val formation = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = 0)
-    val flight    = TeamFlight(formation.scenario, lagS = 0, stepS = 0.01)
+    val formation = Formation(straightM = 0, radiusM = 30, lagS = 0)
+    val flight    = TeamFlight(formation.fleet, lagS = 0, stepS = 0.01)
     var worst     = 0.0
     flight.fly(10)()
     flight.fly(40)({ worst = worst.max(slotErrorsM(formation, flight).max) })
@@ -96,10 +97,10 @@ class TeamPolicySuite extends munit.FunSuite:
 
   test("a formation of vehicles that lag turns with its leader when it knows by how much they do"):
     def worstM(lagS: Double) =
-      val formation = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = lagS)
-      val scenario  = formation.scenario
+      val formation = Formation(straightM = 0, radiusM = 30, lagS = lagS)
+      val scenario  = formation.fleet
       // The leader flies the same way in both.
-      val leader = TeamScenario.Formation(straightM = 0, radiusM = 30, lagS = 1.5).scenario.agents.head
+      val leader = Formation(straightM = 0, radiusM = 30, lagS = 1.5).agents.head
       val flight = TeamFlight(Fleet(leader +: scenario.agents.tail), lagS = 1.5, stepS = 0.01)
       var worst  = 0.0
       flight.fly(30)()
@@ -135,8 +136,8 @@ class TeamPolicySuite extends munit.FunSuite:
     assert(flight.leastM > 2.0, s"${flight.leastM} m")
 
   test("twenty in four streams cross with the separation asked for, if they follow their commands at once"):
-    val crossing = TeamScenario.Crossing()
-    val flight   = TeamFlight(crossing.scenario, lagS = 0)
+    val crossing = Crossing()
+    val flight   = TeamFlight(crossing.fleet, lagS = 0)
     flight.fly(60)()
     assert(flight.leastM > crossing.minimumM, s"${flight.leastM} m")
     val missing = crossing.goals.zipWithIndex.map: (goal, vehicle) =>
@@ -171,26 +172,3 @@ class TeamPolicySuite extends munit.FunSuite:
             north <- other; east <- other; one = Velocity(north / 10.0, east / 10.0) if (one dot one) <= 36
           yield bounds.map(_.violation(one)).max).min
           assert(worst <= best + 1e-4, s"turn $turn: $worst, the grid has $best")
-
-  test("settings are read back as they were written, and mistakes are named"):
-    for settings <- Seq(
-        TeamScenario.Surround(vehicles = 4),
-        TeamScenario.Formation(radiusM = 12.5),
-        TeamScenario.Crossing(streams = 2)
-      )
-    do
-      assertEquals(TeamScenario.of(settings.name, settings.settings.toMap), Right(settings))
-      assertEquals(settings.mistakes, Nil)
-      assertEquals(settings.scenario.agents.size, settings.vehicles)
-    assertEquals(
-      TeamScenario.of("surround", TeamScenario.Surround().settings.toMap - "ringM" + ("vehicles" -> "many")),
-      Left("setting 'vehicles': expected a whole number, came 'many'; no setting 'ringM'")
-    )
-    assertEquals(
-      TeamScenario.Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
-      Seq(
-        "crossing.vehicles: expected 2 to 100, came 1",
-        "crossing.spacingM: expected more than 0, came -1.0",
-        "crossing.streams: expected 2 or 4, came 3"
-      )
-    )

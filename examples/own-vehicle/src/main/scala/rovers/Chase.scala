@@ -7,6 +7,7 @@ import skein.link.{MemoryNetwork, NetworkPlan, TcpTransport, Transport}
 import skein.loop.{LoopKind, LoopSettings}
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recorder}
+import skein.scenario.*
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -31,24 +32,35 @@ final case class Heel(distanceM: Double, mps: Double) extends AgentPolicy:
     (Action.VelocityAt(way.x * speed, way.y * speed, Metres(0)), ())
 
 /** Two robots: one patrols, the other stays at its heels. */
-object Chase:
+final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Scenario:
   private val corners = Vector(Vector3(12, 0, 0), Vector3(12, 8, 0), Vector3(0, 8, 0), Vector3(0, 0, 0))
 
-  val fleet: Fleet = Fleet(Vector(
-    Agent("Hare", Role.Evader, MetresPerSecond(1.5), Vector3(4, 0, 0), Radians(0), Patrol(corners, 1.5)),
-    Agent("Hound", Role.Pursuer, MetresPerSecond(3), Vector3(-4, -4, 0), Radians(0), Heel(1, 3))
-  ))
+  def agents: Vector[Agent] =
+    val (hare, hound) = (MetresPerSecond(hareMps), MetresPerSecond(houndMps))
+    Vector(
+      Agent("Hare", Role.Evader, hare, Vector3(4, 0, 0), Radians(0), Patrol(corners, hareMps)),
+      Agent("Hound", Role.Pursuer, hound, Vector3(-4, -4, 0), Radians(0), Heel(1, houndMps))
+    )
+
+  private val distance = Series("distance", "m")(tracks => tracks.distanceM(0, 1, _))
+
+  override def series: Vector[Series]    = Vector(distance)
+  override def measures: Vector[Measure] =
+    Vector(distance.mean("last 10 s", Window.Last(10)), distance.least("closest"))
+
+object Chase:
+  /** What a report of their recordings is told. */
+  given scenarios: Scenarios = Scenarios(ScenarioKind(Rovers()))
 
   def flight(kind: LoopKind, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
     PortFlight(
       s"${kind.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
       kind,
-      fleet,
+      Rovers(),
       duration,
       clockKind,
       clock,
       LoopSettings.every(Span.ofMillis(100)),
-      name = "rovers",
       simulator = "rovers"
     )
 
@@ -57,7 +69,7 @@ object Chase:
     import system.dispatcher
     val start = flight.clock.now()
     for
-      addresses <- Future.traverse(fleet.agents): agent =>
+      addresses <- Future.traverse(flight.scenario.agents): agent =>
         val at = agent.startPositionNed
         RoverSimulator(at.x, at.y, flight.clock, start).listen(transport)
       vehicles = addresses.map(Rover(transport, _, flight.clock))

@@ -23,4 +23,4 @@ class RoverLiveSuite extends munit.FunSuite:
     val driven    = recording.readings.filter(_.vehicle == "Hound").map(_.state.value.positionNed)
     assert(driven.head.horizontalDistance(driven.last) > 2, driven.last.toString)
     assert(recording.decisions.size > 10, s"${recording.decisions.size} decisions")
-    assertEquals(Replay(Chase.fleet, recording).firstDifference, None)
+    assertEquals(Replay(Rovers().fleet, recording).firstDifference, None)

@@ -14,6 +14,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 class RoverSuite extends munit.FunSuite:
+  import Chase.scenarios
   private val loops = Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream)
 
   private def distances(recording: Recording): Seq[(Double, Double)] =
@@ -27,7 +28,7 @@ class RoverSuite extends munit.FunSuite:
       assertEquals(recording.ending.map(_.how.toString), Some("Completed"))
       for (atS, distance) <- distances(recording) if atS > 10 do
         assert(distance > 0.5 && distance < 3.5, s"$distance m at $atS s")
-      assertEquals(Replay(Chase.fleet, recording).firstDifference, None)
+      assertEquals(Replay(Rovers().fleet, recording).firstDifference, None)
 
   test("equal seeds give equal recordings"):
     def digest = Chase.virtual(LoopKind.Stream, Span.ofSeconds(10), seed = 7).digest

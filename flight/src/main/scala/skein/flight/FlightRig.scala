@@ -73,7 +73,7 @@ final class FlightRigs(
   import system.dispatcher
 
   /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
-  private val scenario: Fleet = settings.agents
+  private val fleet: Fleet = settings.fleet
 
   /** What a recording of this flight begins with. */
   def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
@@ -86,12 +86,12 @@ final class FlightRigs(
       settings.duration,
       clockKind,
       simulator.fold("built-in")(_.toString),
-      settings.scenario + (if settings.asPublished then ", as published" else "") +
+      settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightRigs.version,
       clock.now()
     ),
-    scenario.agents.map(Vehicle.of),
+    fleet.agents.map(Vehicle.of),
     RecordedPlan.parameters(settings, plan)
   )
 
@@ -122,7 +122,7 @@ final class FlightRigs(
             lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
         )
-        _ <- Team.missingSensor(scenario, crafts).fold(client.ping())(missing =>
+        _ <- Team.missingSensor(fleet, crafts).fold(client.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
       yield
@@ -133,7 +133,7 @@ final class FlightRigs(
             opened.closing(workers(settings.planningByModel)): threads =>
               threads.close()
               Future.successful(Done)
-        val team      = Team(plan.agents(settings), crafts, clock, watch, loopSettings, planners)
+        val team      = Team(plan.fleet(settings), crafts, clock, watch, loopSettings, planners)
         val startedAt = clock.now()
         val vigil     = Vigil(
           watch,
@@ -162,7 +162,7 @@ final class FlightRigs(
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)
     else
-      val vehicles = scenario.agents.map(agent =>
+      val vehicles = fleet.agents.map(agent =>
         VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
       )
       SimulatorServer
@@ -180,7 +180,7 @@ final class FlightRigs(
   private def prepare(address: Address): Future[Vector[Multirotor]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock)
-    val prepared    = if simulator.isDefined then preparation.climb(scenario) else preparation.place(scenario)
+    val prepared    = if simulator.isDefined then preparation.climb(fleet) else preparation.place(fleet)
     prepared
       .flatMap(result => client.close().map(_ => result))
       .map(_.fold(error => throw CannotFly(error.message), identity))

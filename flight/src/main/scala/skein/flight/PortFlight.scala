@@ -3,9 +3,10 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.loop.*
-import skein.policy.Fleet
 import skein.port.{SteppedTime, VehiclePort}
 import skein.record.{Flight as FlightRow, *}
+import skein.scenario.Scenario
+import skein.settings.ScenarioSettings
 import skein.units.*
 
 /** One flight of a loop with vehicles of any kind, live or in virtual time: whatever has a [[VehiclePort]] flies. The
@@ -13,26 +14,23 @@ import skein.units.*
   *
   * @param id
   *   names it in tables and pictures
-  * @param fleet
-  *   who flies, and by which policies
+  * @param scenario
+  *   who flies, by which policies, and what is measured
   * @param link
   *   what the vehicles are reached over
   * @param simulator
   *   what they are
   * @param clockKind
   *   the clock that it is flown by; [[clock]] reads it
-  * @param name
-  *   of the scenario
   */
 final case class PortFlight(
     id: String,
     loop: LoopKind,
-    fleet: Fleet,
+    scenario: Scenario,
     duration: Span,
     clockKind: ClockKind,
     clock: Clock,
     settings: LoopSettings = LoopSettings(),
-    name: String = "own",
     link: String = "none",
     simulator: String = "own"
 ):
@@ -47,17 +45,18 @@ final case class PortFlight(
       duration,
       clockKind.label,
       simulator,
-      name,
+      scenario.title,
       FlightRigs.version,
       clock.now()
     ),
-    fleet.agents.map(Vehicle.of)
+    scenario.agents.map(Vehicle.of),
+    ScenarioSettings.recorded(scenario)
   )
 
   /** Starts it. The recorder gets everything down to the last row, and is closed.
     *
     * @param vehicles
-    *   one for each agent of the fleet, in its order
+    *   one for each agent of the scenario, in its order
     * @param time
     *   of the simulator, where it can stand still: `paused` needs it
     * @return
@@ -67,7 +66,7 @@ final case class PortFlight(
       system: ActorSystem
   ): PortFlight.UnderWay =
     import system.dispatcher
-    val team   = Team(fleet, vehicles, clock, recorder, settings)
+    val team   = Team(scenario.fleet, vehicles, clock, recorder, settings)
     val flight = Flight.start(loop, team, time, duration, clock, recorder)
     val landed =
       for

@@ -3,6 +3,7 @@ package skein.flight
 import java.nio.file.Path
 import skein.loop.Replay
 import skein.record.*
+import skein.scenario.Scenarios
 import skein.settings.RecordedPlan
 
 /** What came of replaying a recording.
@@ -31,12 +32,12 @@ final case class FlownAgain(recorded: Digest, again: Digest, inDecisions: Option
 object Replayed:
 
   /** Replays a recording, live or virtual. Blocks. */
-  def of(file: Path): Either[String, Replayed] =
+  def of(file: Path)(using Scenarios): Either[String, Replayed] =
     for
       recording <- RecordingReader.read(file).left.map(_.message)
       _ <- Either.cond(recording.heading.vehicles.nonEmpty, (), "it has no vehicles, so nothing was decided")
       flown <- RecordedPlan.of(recording)
-      decided = Replay(flown.scenario, recording, flown.settings.planningByModel).firstDifference
+      decided = Replay(flown.fleet, recording, flown.settings.planningByModel).firstDifference
       again <- Option.when(recording.flight.isVirtual)(flyAgain(file, recording, flown)) match
         case None         => Right(None)
         case Some(result) => result.map(Some(_))

@@ -27,9 +27,9 @@ object WarmUp:
   private val Flown = Span.ofSeconds(5)
 
   /** Of the rehearsal, of real time: with its period and its vehicles, as many decisions as a duel makes in two minutes. */
-  private val Rehearsed       = Span.ofSeconds(3)
-  private val RehearsalPeriod = Span.ofMillis(20)
-  private val RehearsalPairs  = 10
+  private val Rehearsed         = Span.ofSeconds(3)
+  private val RehearsalPeriod   = Span.ofMillis(20)
+  private val RehearsalVehicles = 20
 
   /** Flies the plans of `settings` in turn in virtual time; blocks.
     *
@@ -77,7 +77,7 @@ object WarmUp:
     val rigs  = FlightRigs(
       transport,
       clock,
-      alone.copy(pairs = alone.pairs.max(RehearsalPairs / plans.size)),
+      alone.copy(scenario = alone.scenario.crowded(RehearsalVehicles / plans.size)),
       simulator = None
     )
     Future

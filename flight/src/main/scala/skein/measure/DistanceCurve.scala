@@ -1,5 +1,6 @@
 package skein.measure
 
+import skein.scenario.Track
 import skein.units.*
 
 /** The horizontal distance between two vehicles at equal instants of the simulator's clock.

@@ -21,12 +21,12 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   private def truthOf(policy: Option[String]): Option[FlightSummary] =
     flights.find(summary => summary.flight.isPaused && summary.policy == policy)
 
-  /** Duels alone. */
-  def duels: FlightSet =
-    new FlightSet(flights.filter(_.team.isEmpty), twins.filter(_.live.team.isEmpty))
+  /** Those of one kind of scenario. */
+  def ofKind(name: String): FlightSet =
+    new FlightSet(flights.filter(_.scenarioName == name), twins.filter(_.live.scenarioName == name))
 
-  /** Teams' flights by scenario. */
-  val teams: Vector[TeamFlights] = TeamFlights.of(flights)
+  /** By scenario. */
+  val scenarios: Vector[ScenarioFlights] = ScenarioFlights.of(flights)
 
   /** Twins' virtual flights included. */
   def all: Vector[FlightSummary] = flights ++ twins.flatMap(_.virtual).distinct
@@ -37,8 +37,8 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
   /** By loop and link. */
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
-  /** Mean distance of the last 10 s against that of the truth with the same policies, as a share of it; absent for the
-    * truth itself.
+  /** What stands for a flight against that of the truth with the same policies, as a share of it; absent for the truth
+    * itself.
     */
   def deviation(flight: FlightSummary): Option[Double] =
     for

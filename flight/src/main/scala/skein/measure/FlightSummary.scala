@@ -1,7 +1,8 @@
 package skein.measure
 
-import skein.policy.Role
+import skein.policy.{Policy, Role}
 import skein.record.*
+import skein.scenario.{Result, Scenario, Scenarios, Track, Tracks}
 import skein.units.*
 
 /** What one recording comes to.
@@ -10,14 +11,17 @@ import skein.units.*
   *   evaders first, as in the paper
   * @param roundTripsMs
   *   of the link's own samples where there are any, else of the readings
+  * @param scenario
+  *   absent where it is not known here
+  * @param result
+  *   absent besides where the vehicles were not all seen
   * @param distance
-  *   in a duel, between the first pursuer and the first evader; absent if they were not both seen
+  *   between the first pursuer and the first evader, where all fly against one opponent each; absent if they were not
+  *   both seen
   * @param cutShort
   *   why it ended before its time, if it did
   * @param policy
   *   short name of the policy that was flown in the place of the paper's; the flight's scenario says more
-  * @param team
-  *   absent for a duel
   * @param planning
   *   absent where nothing was planned
   * @param predictions
@@ -34,7 +38,8 @@ final case class FlightSummary(
     commands: Int,
     events: Map[EventKind, Int],
     cutShort: Option[String],
-    team: Option[TeamResult] = None,
+    scenario: Option[Scenario] = None,
+    result: Option[Result] = None,
     policy: Option[String] = None,
     planning: Option[PlanningSummary] = None,
     predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None
@@ -43,25 +48,24 @@ final case class FlightSummary(
   def name: String =
     flight.loop + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short")
 
+  /** What the recording calls its scenario, without what it tells of it. */
+  def scenarioName: String = flight.scenario.takeWhile(_ != ',')
+
   /** Time flown on the simulator's clock, s. */
   def flownS: Double =
-    team.map(_.curve.last._1).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
+    result.map(_.tracks.lastS).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
 
-  /** What stands for the flight when it is compared with others, m: of a duel the mean distance over the last 10 s, of a
-    * team its first measure. Nothing, where it was cut short.
+  /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where it was cut
+    * short.
     */
-  def headlineM: Option[Double] =
-    if cutShort.isDefined then None
-    else
-      team match
-        case Some(result) => result.measures.head.value
-        case None         => distance.flatMap(_.lastTenSeconds).map(_.mean)
+  def headline: Option[Double] =
+    result.filter(_ => cutShort.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
 
-  /** The paper's flight of this loop over this link; it published duels alone. No flight that was cut short stands beside
-    * it.
+  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut short stands
+    * beside it.
     */
   def published: Option[Published.Flight] =
-    if team.isDefined || policy.isDefined || cutShort.isDefined then None
+    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined then None
     else flight.loopKind.flatMap(Published.flight(_, flight.link))
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)
@@ -80,14 +84,14 @@ final case class RoleSummary(
 
 object FlightSummary:
 
-  def of(recording: Recording): FlightSummary =
-    val tracks = Track.of(recording)
-    val team   = TeamResults.of(recording, tracks)
+  def of(recording: Recording)(using Scenarios): FlightSummary =
+    val tracks   = RecordedTracks.of(recording)
+    val scenario = RecordedScenario.of(recording).toOption
     FlightSummary(
       recording.flight,
       tracks,
       for
-        pursuer <- tracks.find(_.isA(Role.Pursuer)) if team.isEmpty
+        pursuer <- tracks.find(_.isA(Role.Pursuer)) if scenario.forall(isOfDuels)
         evader  <- tracks.find(_.isA(Role.Evader))
         curve   <- DistanceCurve.between(pursuer, evader)
       yield curve,
@@ -98,11 +102,17 @@ object FlightSummary:
       recording.commands.size,
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
       cutShort(recording, tracks),
-      team,
+      scenario,
+      for
+        known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
+        flown <- Tracks.of(tracks)
+      yield Result.of(known, flown),
       recording.heading.parameters.find(_.name == "policy").map(_.value),
       PlanningSummary.of(recording),
-      PredictionErrors.of(recording)
+      PredictionErrors.of(recording, scenario.forall(isOfDuels))
     )
+
+  private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
 
   /** By what is on record of its end, and else by how long its vehicles were seen. */
   private def cutShort(recording: Recording, tracks: Vector[Track]): Option[String] = recording.ending match

@@ -1,6 +1,5 @@
 package skein.measure
 
-import skein.policy.TeamScenario
 import skein.record.Recording
 
 /** How far predictions of one kind of vehicle were off, by how far they were carried.
@@ -40,14 +39,16 @@ object PredictionErrors:
 
   private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs
 
-  /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted. */
-  def of(recording: Recording): Option[(own: PredictionErrors, others: PredictionErrors)] =
+  /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted.
+    *
+    * @param isDuel
+    *   whether all fly against one opponent each
+    */
+  def of(recording: Recording, isDuel: Boolean): Option[(own: PredictionErrors, others: PredictionErrors)] =
     val predicted = recording.decisions.filter(_.predicted.nonEmpty)
     val decisions = predicted.groupMapReduce(_.vehicle)(_ => 1)(_ + _)
     // A decider predicts once per decision each vehicle that it predicts at all: itself, and in a duel its opponent, even
     // where not one of these predictions could be verified.
-    val scenario  = recording.flight.scenario
-    val isDuel    = TeamScenario.of(scenario, recording.heading.parametersOf(scenario)).isLeft
     val opponents = if isDuel then predicted.map(one => (one.vehicle, one.opponent.vehicle)) else Vector.empty
     val pairs     = (predicted.map(one => (one.vehicle, one.vehicle)) ++
       opponents ++

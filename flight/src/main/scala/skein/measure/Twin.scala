@@ -23,11 +23,11 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
   def find(role: String, quantity: String): Option[Compared] =
     compared.find(one => one.role == role && one.quantity == quantity)
 
-  /** What stands for the flights, m (see [[FlightSummary.headlineM]]): live, and the twins' mean. */
+  /** What stands for the flights, (see [[FlightSummary.headline]]): live, and the twins' mean. */
   def converged: Option[(Double, Double)] =
     for
-      ours   <- live.headlineM
-      theirs <- Distribution.of(virtual.flatMap(_.headlineM))
+      ours   <- live.headline
+      theirs <- Distribution.of(virtual.flatMap(_.headline))
     yield (ours, theirs.mean)
 
   /** How much further apart the live flight ended, as a share of the twins' distance. */

@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigFactory, ConfigObject, ConfigValue}
+import com.typesafe.config.{Config, ConfigFactory, ConfigObject, ConfigValue, ConfigValueFactory}
 import java.util.Locale
 import pureconfig.generic.derivation.{
   ConfigReaderDerivation,
@@ -11,6 +11,7 @@ import pureconfig.{ConfigFieldMapping, ConfigReader}
 import scala.annotation.nowarn
 import scala.deriving.Mirror
 import scala.jdk.CollectionConverters.*
+import skein.scenario.{Nearest, Scenarios}
 
 /** The keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every locale (pureconfig's own
   * mapping turns I into a dotless ı where the machine is Turkish); and those that mean nothing.
@@ -19,6 +20,11 @@ private[skein] object ConfigKeys:
 
   /** The key of a field. */
   def ofField(name: String): String = name.replaceAll("([A-Z])", "-$1").toLowerCase(Locale.ROOT)
+
+  /** A mistake that begins with a field's name, by its key. */
+  def ofMistake(mistake: String): String =
+    val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
+    ofField(name) + rest
 
   /** Reads a case class from an object with a key for each field. */
   inline def reader[A](using inline mirror: Mirror.Of[A]): ConfigReader[A] =
@@ -37,11 +43,11 @@ private[skein] object ConfigKeys:
     * @return
     *   None if all are known
     */
-  def unknown(config: Config, path: String): Option[String] =
+  def unknown(config: Config, path: String)(using Scenarios): Option[String] =
     lines(config.getConfig(path).root, known.getConfig(path).root, path)
 
   /** The same for a whole file, of which nothing but `path` is read. */
-  def unknownInFile(file: Config, path: String): Option[String] =
+  def unknownInFile(file: Config, path: String)(using Scenarios): Option[String] =
     val above  = path.split('.').toSeq
     val chains = above.inits.toSeq.reverse.tail
     chains
@@ -71,20 +77,20 @@ private[skein] object ConfigKeys:
     renamed.get(path) match
       case Some(now) => s"${value.origin.description}: no setting '$path' any more; it is '$now' now"
       case None      =>
-        val nearest = known.sorted.minBy(distance(key, _))
-        s"${value.origin.description}: no setting '$path'; the nearest is '$nearest'"
+        s"${value.origin.description}: no setting '$path'; the nearest is '${Nearest.to(key, known)}'"
 
-  private val renamed = Map("skein.fly.model" -> "predictor")
+  private val renamed = Map(
+    "skein.fly.model"        -> "predictor",
+    "skein.fly.pairs"        -> "duel.pairs",
+    "skein.fly.as-published" -> "duel.as-published",
+    "skein.fly.altitude-m"   -> "duel.altitude-m"
+  )
 
-  private lazy val known = ConfigFactory.parseResources(getClass.getClassLoader, "reference.conf").resolve()
+  private lazy val ours = ConfigFactory.parseResources(getClass.getClassLoader, "reference.conf").resolve()
 
-  /** How many letters must be inserted, left out or replaced. */
-  private[settings] def distance(from: String, to: String): Int =
-    val first = Vector.range(0, to.length + 1)
-    from.zipWithIndex
-      .foldLeft(first): (above, letter) =>
-        val (here, row) = letter
-        (1 to to.length).foldLeft(Vector(row + 1)): (left, column) =>
-          val replaced = above(column - 1) + (if here == to(column - 1) then 0 else 1)
-          left :+ replaced.min(above(column) + 1).min(left.last + 1)
-      .last
+  /** Scenarios' settings stand under their names. */
+  private def known(using scenarios: Scenarios): Config =
+    scenarios.kinds.foldLeft(ours): (known, kind) =>
+      kind.standard.settings.foldLeft(known):
+        case (known, (name, value)) =>
+          known.withValue(s"skein.fly.${kind.name}.${ofField(name)}", ConfigValueFactory.fromAnyRef(value))

@@ -1,13 +1,14 @@
 package skein.settings
 
-import com.typesafe.config.Config
+import com.typesafe.config.{Config, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.planning.Planner
-import skein.policy.{Fleet, TeamScenario}
+import skein.policy.{Agent, Fleet, Policy}
+import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -15,16 +16,8 @@ import skein.vehicle.ReducedModel
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
-  * @param pairs
-  *   duels side by side
-  * @param asPublished
-  *   of the duel alone
   * @param policies
-  *   with which the duel is flown too, beside the paper's
-  * @param scenario
-  *   `duel`, or one of [[TeamScenario.names]], whose settings stand under its name
-  * @param altitudeM
-  *   of the duel
+  *   with which the scenario is flown too, beside its own
   * @param predictor
   *   by which `predictive` predicts
   * @param movesInFlight
@@ -41,13 +34,7 @@ final case class FlySettings(
     duration: Span,
     period: Span,
     seed: Long,
-    pairs: Int,
-    asPublished: Boolean,
-    scenario: String = FlySettings.Duel,
-    altitudeM: Double = Fleet.DuelAltitudeM,
-    surround: TeamScenario.Surround = TeamScenario.Surround(),
-    formation: TeamScenario.Formation = TeamScenario.Formation(),
-    crossing: TeamScenario.Crossing = TeamScenario.Crossing(),
+    scenario: Scenario = PaperDuel(),
     predictor: PredictionModel = PredictionModel.Quadrotor,
     movesInFlight: Int = Steer.MostOutstanding,
     deadline: Option[Span] = None,
@@ -63,15 +50,12 @@ final case class FlySettings(
     case PredictionModel.Fitted(model, _) => model
     case _                                => ReducedModel.AirSim)
 
-  /** Absent for the duel. */
-  def team: Option[TeamScenario] = Seq(surround, formation, crossing).find(_.name == scenario)
-
   /** Who flies. */
-  def agents: Fleet = team.fold(Fleet.duels(pairs, asPublished, altitudeM))(_.scenario)
+  def fleet: Fleet = scenario.fleet
 
   /** How the loops are run. */
   def loopSettings: LoopSettings =
-    val altitudes = agents.agents.map(-_.startPositionNed.z)
+    val altitudes = fleet.agents.map(-_.startPositionNed.z)
     val timely    = LoopSettings
       .every(period)
       .copy(
@@ -80,7 +64,7 @@ final case class FlySettings(
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
       )
-    if asPublished then timely.asPublished else timely
+    if scenario.asPublished then timely.asPublished else timely
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
     * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
@@ -104,7 +88,7 @@ final case class FlySettings(
     (truth.toVector ++ others).distinct.zipWithIndex.map:
       case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
 
-/** A policy that is flown in the place of the paper's.
+/** A policy that is flown in the place of the scenario's.
   *
   * @param name
   *   short, in tables; no two of an experiment share one
@@ -114,7 +98,7 @@ final case class ChosenPolicy(name: String, file: PolicyFile)
 /** One flight of an experiment.
   *
   * @param policy
-  *   without one, the paper's fly
+  *   without one, the scenario's fly
   */
 final case class FlightPlan(
     id: String,
@@ -124,8 +108,8 @@ final case class FlightPlan(
     policy: Option[ChosenPolicy] = None
 ):
   /** Who flies, in the scenario of the settings. */
-  def agents(settings: FlySettings): Fleet =
-    policy.fold(settings.agents)(_.file.flownIn(settings.agents))
+  def fleet(settings: FlySettings): Fleet =
+    policy.fold(settings.fleet)(_.file.flownIn(settings.fleet))
 
   /** Where its recording goes. */
   def file(folder: Path): Path = folder.resolve(id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb")
@@ -138,8 +122,6 @@ final case class FlightPlan(
       copy(id = s"$id-virtual${if index == 0 then "" else s"-${index + 1}"}", seed = seed + index)
 
 object FlySettings:
-  val Duel = "duel"
-
   /** The air of forward simulation and of the built-in simulator is that at the ground. */
   val MostAltitudeM = 1000.0
 
@@ -151,13 +133,21 @@ object FlySettings:
     * @return
     *   or every mistake, with its file, line, and what was expected
     */
-  def read(config: Config): Either[String, FlySettings] =
+  def read(config: Config)(using Scenarios): Either[String, FlySettings] =
     for
       _        <- ConfigKeys.unknown(config, "skein.fly").toLeft(())
+      scenario <- ScenarioSettings.read(config)
+      timed =
+        if config.hasPath(Duration) then config
+        else config.withValue(Duration, ConfigValueFactory.fromAnyRef(s"${scenario.duration.toSeconds}s"))
       settings <-
-        ConfigSource.fromConfig(config).at("skein.fly").load[FlySettings].left.map(_.prettyPrint())
+        given ConfigReader[Scenario]    = ConfigReader.fromFunction(_ => Right(scenario))
+        given ConfigReader[FlySettings] = ConfigKeys.reader
+        ConfigSource.fromConfig(timed).at("skein.fly").load[FlySettings].left.map(_.prettyPrint())
       valid <- validated(settings)
     yield valid
+
+  private val Duration = "skein.fly.duration"
 
   private def validated(settings: FlySettings): Either[String, FlySettings] =
     val mistakes = Seq(
@@ -171,11 +161,8 @@ object FlySettings:
       Option.when(
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
-      Option.when(
-        settings.pairs < 1 || settings.pairs > 50
-      )(s"pairs: expected 1 to 50, came ${settings.pairs}"),
-      Option.when(!(settings.altitudeM > 0 && settings.altitudeM <= MostAltitudeM))(
-        s"altitude-m: expected more than 0 and up to $MostAltitudeM m, came ${settings.altitudeM}"
+      settings.fleet.agents.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
+        s"${settings.scenario.name}: expected starts above 0 and up to $MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
@@ -183,48 +170,32 @@ object FlySettings:
       Option.when(settings.deadline.exists(_ <= Span.Zero))(
         s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
-      Option.when(settings.scenario != Duel && settings.team.isEmpty)(
-        s"scenario: expected $Duel or one of ${TeamScenario.names.mkString(", ")}, came '${settings.scenario}'"
-      ),
-      Option.when(settings.scenario != Duel && settings.asPublished)(
-        s"as-published: expected with the scenario $Duel, came with '${settings.scenario}'"
-      ),
-      Option.when(settings.scenario != Duel && settings.pairs != 1)(
-        s"pairs: expected with the scenario $Duel, came ${settings.pairs} with '${settings.scenario}'"
-      ),
-      Option.when(settings.scenario != Duel && settings.policies.nonEmpty)(
-        s"policies: expected with the scenario $Duel, came with '${settings.scenario}'"
+      settings.policies.find(file => !settings.fleet.agents.exists(isReplacedBy(file))).map(file =>
+        s"policies: expected with a scenario in which a ${PolicyFile.name(file.role)} plays against one opponent, came with '${settings.scenario.name}'"
       )
-    ).flatten ++ settings.team.toSeq.flatMap(_.mistakes).map(inKeys) ++
-      settings.planning.mistakes.map(mistake => inKeys(s"planning.$mistake"))
+    ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
 
+  private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
+
+  private def isReplacedBy(file: PolicyFile)(agent: Agent) =
+    agent.role == file.role && agent.policy.isInstanceOf[Policy]
+
   private def predictorMistake(settings: FlySettings): Option[String] =
-    settings.agents.agents
+    settings.fleet.agents
       .flatMap(agent => PredictionModel.mistake(settings.predictor, -agent.startPositionNed.z))
       .headOption
       .map("predictor: " + _)
 
   private def planMistake(settings: FlySettings): Option[String] =
     val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
-    settings.agents.agents
+    settings.fleet.agents
       .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
       .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
       .map(lagS =>
         s"planning.step: plans need vehicles with a lag of at least ${shortest.fixed(2)} s, 2.5 steps; theirs is ${lagS.fixed(2)} s"
       )
-
-  /** A mistake that begins with a setting's name, by its key in the configuration. */
-  private def inKeys(mistake: String): String =
-    val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
-    ConfigKeys.ofField(name) + rest
-
-  private given ConfigReader[FlySettings] = ConfigKeys.reader
-
-  private given ConfigReader[TeamScenario.Surround]  = ConfigKeys.reader
-  private given ConfigReader[TeamScenario.Formation] = ConfigKeys.reader
-  private given ConfigReader[TeamScenario.Crossing]  = ConfigKeys.reader
 
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 

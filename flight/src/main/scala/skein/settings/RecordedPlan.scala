@@ -1,20 +1,19 @@
 package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.policy.{Fleet, TeamScenario}
+import skein.measure.RecordedScenario
+import skein.policy.Fleet
 import skein.record.{Parameter, Recording}
+import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  def scenario: Fleet = plan.agents(settings)
+  def fleet: Fleet = plan.fleet(settings)
 
 object RecordedPlan:
-  private val Pairs       = "pairs"
-  private val AsPublished = "asPublished"
-  private val AltitudeM   = "altitudeM"
-  private val Predictor   = "predictor"
+  private val Predictor = "predictor"
 
   /** Under which recordings of older versions keep it. */
   private val Model    = "model"
@@ -28,15 +27,7 @@ object RecordedPlan:
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[Parameter] =
-    val scenario = settings.team match
-      case Some(team) => team.settings.map((name, value) => Parameter(s"${team.name}.$name", value))
-      case None       =>
-        Seq(
-          Parameter(Pairs, settings.pairs.toString),
-          Parameter(AsPublished, settings.asPublished.toString),
-          Parameter(AltitudeM, settings.altitudeM.toString)
-        )
-    scenario ++ Seq(
+    ScenarioSettings.recorded(settings.scenario) ++ Seq(
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
@@ -57,7 +48,7 @@ object RecordedPlan:
     * @return
     *   or what is missing, or is not what `skein fly` records
     */
-  def of(recording: Recording): Either[String, RecordedPlan] =
+  def of(recording: Recording)(using Scenarios): Either[String, RecordedPlan] =
     val flight     = recording.flight
     val parameters = recording.heading.parameters.map(parameter => parameter.name -> parameter.value).toMap
 
@@ -69,28 +60,6 @@ object RecordedPlan:
     /** Recordings of older versions have not got all. */
     def optional[A](name: String, expected: String)(parse: String => Option[A]): Either[String, Option[A]] =
       if parameters.contains(name) then parameter(name, expected)(parse).map(Some(_)) else Right(None)
-
-    def flown(settings: FlySettings): Either[String, FlySettings] =
-      if TeamScenario.names.contains(flight.scenario) then
-        TeamScenario
-          .of(flight.scenario, recording.heading.parametersOf(flight.scenario))
-          .map: team =>
-            val named = settings.copy(scenario = flight.scenario)
-            team match
-              case surround: TeamScenario.Surround   => named.copy(surround = surround)
-              case formation: TeamScenario.Formation => named.copy(formation = formation)
-              case crossing: TeamScenario.Crossing   => named.copy(crossing = crossing)
-      else
-        for
-          pairs       <- parameter(Pairs, "a number from 1")(_.toIntOption.filter(_ > 0))
-          asPublished <- parameter(AsPublished, "true or false")(_.toBooleanOption)
-          // Recordings from before the duel could be flown elsewhere have none.
-          altitudeM <- optional(AltitudeM, "metres")(_.toDoubleOption.filter(_ > 0))
-        yield settings.copy(
-          pairs = pairs,
-          asPublished = asPublished,
-          altitudeM = altitudeM.getOrElse(settings.altitudeM)
-        )
 
     for
       loop     <- LoopKind.parse(flight.loop)
@@ -104,17 +73,15 @@ object RecordedPlan:
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
         else Right(PlanSettings())
-      settings <- flown(
-        FlySettings(
-          List(loop),
-          List(link),
-          flight.duration,
-          flight.period,
-          flight.seed,
-          1,
-          false,
-          planning = planning
-        )
+      scenario <- RecordedScenario.of(recording)
+      settings = FlySettings(
+        List(loop),
+        List(link),
+        flight.duration,
+        flight.period,
+        flight.seed,
+        scenario,
+        planning = planning
       )
       policy <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
     yield RecordedPlan(

@@ -10,9 +10,9 @@ import skein.airsim.*
 import skein.flight.FlightRigs
 import skein.link.*
 import skein.loop.*
-import skein.policy.Fleet
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.RpcClient
+import skein.scenario.PaperDuel
 import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -45,7 +45,7 @@ object TortureFlight:
     import system.dispatcher
 
     private val clock    = Clock.ofNanos(VirtualTime.clock(system))
-    private val scenario = Fleet.duels(ordeal.pairs, ordeal.asPublished)
+    private val scenario = PaperDuel(ordeal.pairs, ordeal.asPublished).fleet
     private val start    = clock.now()
     private val faults   = LinkProfile
       .symmetric(ordeal.link)

@@ -21,9 +21,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     List(LatencyProfile.direct),
     duration = Span.ofSeconds(20),
     period = Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false
+    seed = 1
   )
 
   /** @param told
@@ -66,7 +64,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       import system.dispatcher
       val clock     = Clock.ofNanos(VirtualTime.clock(system))
       val wentWrong = Span.ofSeconds(5)
-      val duel      = settings(loop).agents.agents.map(agent =>
+      val duel      = settings(loop).fleet.agents.map(agent =>
         VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
       )
       val world =

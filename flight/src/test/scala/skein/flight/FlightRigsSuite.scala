@@ -42,9 +42,7 @@ class FlightRigsSuite extends munit.FunSuite:
     List(LatencyProfile.direct),
     duration = Span.ofSeconds(1),
     period = Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false
+    seed = 1
   )
 
   /** What became of starting a flight, and how many listeners were left when all was over. */

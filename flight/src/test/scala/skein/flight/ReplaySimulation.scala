@@ -3,8 +3,8 @@ package skein.flight
 import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.policy.Fleet
 import skein.record.*
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -12,6 +12,7 @@ import skein.vehicle.ReducedModel
 
 /** Run = run = replay, for every loop. */
 class ReplaySimulation extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
 
   override val munitTimeout: scala.concurrent.duration.Duration =
     scala.concurrent.duration.Duration(5, "min")
@@ -22,8 +23,6 @@ class ReplaySimulation extends munit.FunSuite:
     duration = Span.ofSeconds(3),
     period = Span.ofMillis(100),
     seed = 3,
-    pairs = 1,
-    asPublished = false,
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
@@ -75,8 +74,7 @@ class ReplaySimulation extends munit.FunSuite:
       settings.copy(
         loops = List(LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),
         links = List(link),
-        pairs = 4,
-        asPublished = true
+        scenario = PaperDuel(pairs = 4, asPublished = true)
       ),
       folder
     )
@@ -86,7 +84,7 @@ class ReplaySimulation extends munit.FunSuite:
     val forged    = recording.decisions(7)
     val heading   = Radians(forged.heading.value + 1e-12)
     val changed   = recording.copy(decisions = recording.decisions.updated(7, forged.copy(heading = heading)))
-    val found     = Replay(Fleet.duel(), changed).firstDifference.getOrElse(fail("no difference found"))
+    val found     = Replay(PaperDuel().fleet, changed).firstDifference.getOrElse(fail("no difference found"))
     assertEquals(found.where, s"decision ${forged.sequence} of ${forged.vehicle}")
     assertEquals(found.column, "headingRad")
     assertEquals((found.recorded, found.again), (heading.value.toString, forged.heading.value.toString))
@@ -100,7 +98,7 @@ class ReplaySimulation extends munit.FunSuite:
         reading.copy(state =
           state.map(read => read.copy(velocityNed = read.velocityNed + Vector3(0, 0, 1e-9)))
         )
-    val found = Replay(Fleet.duel(), recording.copy(readings = forged)).firstDifference
+    val found = Replay(PaperDuel().fleet, recording.copy(readings = forged)).firstDifference
     assert(found.exists(_.column.endsWith("Sequence")), found.toString)
 
   folder.test("flying again what was recorded with another seed gives other decisions"): folder =>

@@ -4,8 +4,8 @@ import scala.collection.mutable.ArrayBuffer
 import scala.concurrent.duration.*
 import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{Fleet, TeamScenario}
 import skein.record.Reading
+import skein.scenario.{Crossing, Formation, PaperDuel, Scenario, Surround}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -21,23 +21,15 @@ class RolloutParitySimulation extends munit.FunSuite:
   private def settings(
       loop: LoopKind,
       link: LatencyProfile,
-      asPublished: Boolean,
-      pairs: Int,
-      altitudeM: Double,
-      scenario: String,
-      duration: Span,
-      crossing: Int
+      scenario: Scenario,
+      duration: Span
   ) = FlySettings(
     List(loop),
     List(link),
     duration,
     Span.ofMillis(100),
     1,
-    pairs,
-    asPublished,
-    scenario = scenario,
-    crossing = TeamScenario.Crossing(vehicles = crossing),
-    altitudeM = altitudeM
+    scenario
   )
 
   /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
@@ -48,22 +40,18 @@ class RolloutParitySimulation extends munit.FunSuite:
       loop: LoopKind,
       link: LatencyProfile,
       seed: Long,
-      asPublished: Boolean = false,
-      pairs: Int = 1,
-      altitudeM: Double = Fleet.DuelAltitudeM,
-      team: String = FlySettings.Duel,
-      duration: Span = minute,
-      crossing: Int = 8
+      scenario: Scenario = PaperDuel(),
+      duration: Span = minute
   ): Unit =
-    val asked  = settings(loop, link, asPublished, pairs, altitudeM, team, duration, crossing)
+    val asked  = settings(loop, link, scenario, duration)
     val flown  = TappedFlight.fly(asked, FlightPlan("parity", loop, link, seed))
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings
-        .of(loop, if asPublished then every.asPublished else every, FlightRigs.askTimeout)
+        .of(loop, if scenario.asPublished then every.asPublished else every, FlightRigs.askTimeout)
         .getOrElse(fail(s"${loop.label} has no timing"))
-    val scenario = asked.agents
-    val vehicles = scenario.agents.map(_.name)
+    val fleet    = asked.fleet
+    val vehicles = fleet.agents.map(_.name)
     val clue     = s"${loop.label} over ${link.name}, seed $seed"
 
     val readings, commands = ArrayBuffer.empty[Note]
@@ -71,10 +59,10 @@ class RolloutParitySimulation extends munit.FunSuite:
       override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit =
         readings += Note(vehicle, number, Span.ofNanos(atNs), x, y)
       override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
-        val velocity = scenario.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
+        val velocity = fleet.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
         commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
     val model   = VelocityResponses.quadrotor(hoveredS = flown.hovered.toSeconds)
-    val rollout = Rollout(Engagement.of(scenario, duration.toSeconds), timing, flown.delays, model)
+    val rollout = Rollout(Engagement.of(fleet, duration.toSeconds), timing, flown.delays, model)
     val _       = rollout.fly(0, observer = observer)
 
     def same(what: String, recorded: Seq[Note], again: Seq[Note]): Unit =
@@ -141,20 +129,22 @@ class RolloutParitySimulation extends munit.FunSuite:
       check(loop, profile(link), seed)
 
   test("stream over vpn, lower, where vehicles answer faster"):
-    check(LoopKind.Stream, profile("vpn"), 4, altitudeM = 6)
+    check(LoopKind.Stream, profile("vpn"), 4, PaperDuel(altitudeM = 6))
 
   for (team, loop) <- Seq(
-      "surround"  -> LoopKind.Paused,
-      "surround"  -> LoopKind.Stream,
-      "formation" -> LoopKind.Stream,
-      "crossing"  -> LoopKind.Stream,
-      "crossing"  -> LoopKind.Futures,
-      "formation" -> LoopKind.Predictive
+      Surround()             -> LoopKind.Paused,
+      Surround()             -> LoopKind.Stream,
+      Formation()            -> LoopKind.Stream,
+      Crossing(vehicles = 8) -> LoopKind.Stream,
+      Crossing(vehicles = 8) -> LoopKind.Futures,
+      Formation()            -> LoopKind.Predictive
     )
   do
-    test(s"${loop.label} over vpn, the team of $team, whose policies regard all and choose their speed"):
+    test(
+      s"${loop.label} over vpn, the team of ${team.name}, whose policies regard all and choose their speed"
+    ):
       val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
-      check(loop, link, 5, team = team, duration = Span.ofSeconds(15))
+      check(loop, link, 5, team, duration = Span.ofSeconds(15))
 
   test(
     "futures over direct, twenty vehicles that cross: eighty tasks overlap, each with a reading of every vehicle"
@@ -163,9 +153,8 @@ class RolloutParitySimulation extends munit.FunSuite:
       LoopKind.Futures,
       LatencyProfile.direct,
       1,
-      team = "crossing",
-      duration = Span.ofSeconds(8),
-      crossing = 20
+      Crossing(),
+      Span.ofSeconds(8)
     )
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
@@ -186,10 +175,10 @@ class RolloutParitySimulation extends munit.FunSuite:
 
   for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
     test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
-      check(loop, LatencyProfile.vpn, 1, pairs = 2)
+      check(loop, LatencyProfile.vpn, 1, PaperDuel(pairs = 2))
 
   test("stream over vpn as published: spread questions, answers in order, a decision at each"):
-    check(LoopKind.Stream, LatencyProfile.vpn, 3, asPublished = true)
+    check(LoopKind.Stream, LatencyProfile.vpn, 3, PaperDuel(asPublished = true))
 
   private def profile(name: String): LatencyProfile =
     LatencyProfile.parse(name, Left(_)).fold(error => fail(error.message), identity)

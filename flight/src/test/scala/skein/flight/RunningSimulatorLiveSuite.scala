@@ -25,9 +25,7 @@ class RunningSimulatorLiveSuite extends munit.FunSuite:
     List(LatencyProfile.none),
     duration = Span.ofSeconds(2),
     period = Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false
+    seed = 1
   )
 
   private val duel = Vector(

@@ -23,9 +23,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     List(LatencyProfile.direct),
     duration = Span.ofSeconds(8),
     period = Span.ofMillis(100),
-    seed = 1,
-    pairs = 1,
-    asPublished = false
+    seed = 1
   )
 
   /** One short flight. */

@@ -9,6 +9,7 @@ import skein.loop.*
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
+import skein.scenario.Scenario
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 
@@ -30,16 +31,19 @@ class SensorLiveSuite extends munit.FunSuite:
           val kept = memory.getOrElse(altitude)
           (Action.Velocity(Vector3(1, 0, altitude - kept)), Some(kept))
 
-  private val fleet = Fleet(Vector(
-    Agent("Drone", Role.Traveller, MetresPerSecond(1), Vector3(0, 0, -20), Radians(0), KeepAltitude)
-  ))
+  private case class Alone() extends Scenario:
+    def agents: Vector[Agent] = Vector(
+      Agent("Drone", Role.Traveller, MetresPerSecond(1), Vector3(0, 0, -20), Radians(0), KeepAltitude)
+    )
+
+  private val fleet = Alone().fleet
 
   private def fly(kind: LoopKind): Future[Recording] =
     import system.dispatcher
     val drone = Vector(VehicleSettings("Drone"))
     val world =
       SimulatorSettings(WorldSettings(drone, text = WorldSettings.render(drone)), Address("127.0.0.1", 0))
-    val flight   = PortFlight(kind.label, kind, fleet, Span.ofSeconds(3), ClockKind.Real, Clock.system)
+    val flight   = PortFlight(kind.label, kind, Alone(), Span.ofSeconds(3), ClockKind.Real, Clock.system)
     val recorder = MemoryRecorder(flight.heading)
     for
       server <- SimulatorServer.start(world, TcpTransport(), Clock.system)

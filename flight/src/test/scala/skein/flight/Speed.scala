@@ -17,9 +17,7 @@ import skein.units.*
     List(LatencyProfile.vpn),
     duration = Span.ofSeconds(60),
     period = Span.ofMillis(100),
-    seed = 5,
-    pairs = 1,
-    asPublished = false
+    seed = 5
   )
   val plan  = settings.plans.head
   val times = (1 to flights).map: flight =>

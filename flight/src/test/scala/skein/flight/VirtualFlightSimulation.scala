@@ -15,9 +15,7 @@ class VirtualFlightSimulation extends munit.FunSuite:
     List(LatencyProfile.vpn),
     duration = Span.ofSeconds(3),
     period = Span.ofMillis(100),
-    seed = 7,
-    pairs = 1,
-    asPublished = false
+    seed = 7
   )
 
   private def digest(plan: FlightPlan): Digest =

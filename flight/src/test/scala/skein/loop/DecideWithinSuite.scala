@@ -5,14 +5,15 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
-import skein.policy.{Fleet, KeepHeading, Policy}
+import skein.policy.{KeepHeading, Policy}
 import skein.record.*
+import skein.scenario.PaperDuel
 import skein.signal.*
 import skein.units.*
 import skein.vtime.VirtualTime
 
 class DecideWithinSuite extends munit.FunSuite:
-  private val scenario = Fleet.duel()
+  private val scenario = PaperDuel().fleet
   private val pursuer  = 1
 
   /** Decisions and events of five turns by a policy that is late in the third. */

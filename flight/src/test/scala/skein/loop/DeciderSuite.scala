@@ -1,13 +1,13 @@
 package skein.loop
 
-import skein.policy.Fleet
 import skein.record.Reading
+import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 class DeciderSuite extends munit.FunSuite:
 
-  private val scenario = Fleet.duel()
+  private val scenario = PaperDuel().fleet
   private val evader   = Decider(scenario, 0)
   private val pursuer  = Decider(scenario, 1)
 

@@ -3,9 +3,10 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Fleet, Policy, Role}
+import skein.policy.{Action, Policy, Role}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{MemoryRecorder, Recording, Samples}
+import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -56,7 +57,7 @@ class FailedFlightSuite extends munit.FunSuite:
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val duel               = Fleet.duel()
+      val duel               = PaperDuel().fleet
       var decisions          = 0
       val failing: Policy    = (_, _, _, _, own, _, _) =>
         decisions += 1

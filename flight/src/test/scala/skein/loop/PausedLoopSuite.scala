@@ -2,9 +2,10 @@ package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Fleet}
+import skein.policy.Action
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.record.{MemoryRecorder, Samples}
+import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -75,7 +76,7 @@ class PausedLoopSuite extends munit.FunSuite:
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val scenario           = Fleet.duel()
+      val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
       val stepper            = FragileStepper(world, failingStep, failedResumes)
       val crafts             = world.crafts.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))

@@ -3,9 +3,10 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Fleet}
+import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, MemoryRecorder, Reading, Samples}
+import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -24,7 +25,7 @@ class PictureSuite extends munit.FunSuite:
   private def reading(vehicle: Int, sequence: Long, validMs: Double, sentMs: Double, receivedMs: Double) =
     val state =
       Kinematics(Vector3(sequence.toDouble, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
-    val name = Fleet.duel().agents(vehicle).name
+    val name = PaperDuel().fleet.agents(vehicle).name
     Reading(sequence, name, Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs)))
 
   private val first = reading(0, 0, 10, 0, 30)
@@ -40,7 +41,7 @@ class PictureSuite extends munit.FunSuite:
       given ExecutionContext = system.dispatcher
       val recorder           = MemoryRecorder(Samples.heading)
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val team               = Team(Fleet.duel(), Vector(Silent, Silent), clock, recorder, LoopSettings())
+      val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
       Source(percepts).via(team.picture).runWith(Sink.seq).map: sights =>
         val stale = recorder.recording.events.filter(_.kind == EventKind.Dropped).map(_.detail)
         (sights.toVector, stale)

@@ -4,8 +4,9 @@ import java.util.concurrent.{CountDownLatch, Executors}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future}
 import skein.port.{VehicleError, VehiclePort}
+import skein.scenario.PaperDuel
 import skein.units.Clock
-import skein.policy.{Action, Fleet}
+import skein.policy.Action
 import skein.record.{MemoryRecorder, Samples}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -32,7 +33,7 @@ class TeamLiveSuite extends munit.FunSuite:
     given ExecutionContext = ExecutionContext.fromExecutor(pool)
     val craft              = Slow()
     val team               = Team(
-      Fleet.duel(),
+      PaperDuel().fleet,
       Vector(craft, craft),
       Clock.system,
       MemoryRecorder(Samples.heading),

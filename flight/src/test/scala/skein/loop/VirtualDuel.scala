@@ -3,8 +3,8 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.ExecutionContext
 import skein.loop.planning.CountedPlanWorkers
-import skein.policy.Fleet
 import skein.record.{MemoryRecorder, Prediction, Recording, Samples}
+import skein.scenario.PaperDuel
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -44,7 +44,7 @@ object VirtualDuel:
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
-      val scenario           = Fleet.duel()
+      val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, link, seed, clock)
       world.watch = (at, states) =>
         if at > duration - measured && at <= duration then

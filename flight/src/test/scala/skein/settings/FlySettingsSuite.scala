@@ -1,9 +1,13 @@
 package skein.settings
 
 import com.typesafe.config.ConfigFactory
+import java.nio.file.Files
+import skein.policy.{PolicyFamily, Role}
+import skein.scenario.{PaperDuel, Scenarios, Surround}
 import skein.units.Span
 
 class FlySettingsSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
 
   private def read(text: String): Either[String, FlySettings] =
     FlySettings.read(ConfigFactory.parseString(text).withFallback(ConfigFactory.load()))
@@ -22,7 +26,7 @@ class FlySettingsSuite extends munit.FunSuite:
     assert(clue(
       read("skein.fly.model = drag")
     ).left.exists(_.contains("no setting 'skein.fly.model' any more; it is 'predictor' now")))
-    val high = read("skein.fly { predictor = reduced, altitude-m = 5 }")
+    val high = read("skein.fly { predictor = reduced, duel.altitude-m = 5 }")
     assert(clue(high).left.exists(_.contains("reduced holds at 20.0 m")))
 
   test("in a file, a key outside of skein.fly is refused, since nothing reads it"):
@@ -44,7 +48,39 @@ class FlySettingsSuite extends munit.FunSuite:
     assertEquals(read("").map(_.deadline), Right(None))
     assertEquals(read("skein.fly.deadline = 20 ms").map(_.deadline), Right(Some(Span.ofMillis(20))))
 
-  test("the distance between words counts letters to change"):
-    assertEquals(ConfigKeys.distance("durration", "duration"), 1)
-    assertEquals(ConfigKeys.distance("", "loops"), 5)
-    assertEquals(ConfigKeys.distance("seed", "period"), 4)
+  test("a scenario's settings stand under its name; what was set elsewhere says where it is now"):
+    val flown = read("skein.fly { scenario = surround, surround { ring-m = 10, vehicles = 4 } }")
+    assertEquals(flown.map(_.scenario), Right(Surround(vehicles = 4, ringM = 10)))
+    assertEquals(read("").map(_.scenario), Right(PaperDuel()))
+    val old = read("skein.fly { pairs = 2, altitude-m = 5 }").left.getOrElse("")
+    assert(clue(old).contains("no setting 'skein.fly.pairs' any more; it is 'duel.pairs' now"))
+    assert(old.contains("it is 'duel.altitude-m' now"))
+
+  test("a scenario's mistakes say where they stand, what was expected and what came"):
+    val none = read("skein.fly.scenario = crosing").left.getOrElse("")
+    assert(clue(none).contains("came 'crosing'; the nearest is 'crossing'"))
+    val text = "skein.fly { scenario = crossing\n crossing { vehicles = many, streams = 3 } }"
+    val said = read(text).left.getOrElse("")
+    assert(
+      clue(said).contains("skein.fly.crossing.vehicles: expected a whole number, came 'many' (String: 2)")
+    )
+    val unsound =
+      read("skein.fly { scenario = crossing, crossing { spacing-m = -1, streams = 3 } }").left.getOrElse("")
+    assert(clue(unsound).contains("skein.fly.crossing.spacing-m: expected more than 0, came -1.0"))
+    assert(unsound.contains("skein.fly.crossing.streams: expected 2 or 4, came 3"))
+
+  test("a flight lasts as long as its scenario says, unless it is told otherwise"):
+    assertEquals(read("").map(_.duration), Right(Span.ofSeconds(60)))
+    assertEquals(read("skein.fly.duration = 5 s").map(_.duration), Right(Span.ofSeconds(5)))
+
+  test("a policy file needs a scenario in which its role plays against one opponent"):
+    val file = Files.createTempFile("policy", ".conf")
+    Files.writeString(
+      file,
+      PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse("lead-pursuit").toOption.get).hocon("")
+    )
+    assert(read(s"skein.fly.policies = [\"$file\"]").isRight)
+    val said = read(s"skein.fly { scenario = surround, policies = [\"$file\"] }").left.getOrElse("")
+    assert(
+      clue(said).contains("policies: expected with a scenario in which a pursuer plays against one opponent")
+    )

@@ -1,6 +1,7 @@
 package skein.forward
 
 import skein.policy.{Agent, Fleet, Policy, Role, TeamPolicy}
+import skein.scenario.PaperDuel
 
 /** One vehicle of a duel or of a team, as a rollout flies it.
   *
@@ -48,11 +49,11 @@ object Duel:
       Duelist.of(agent).copy(policy = agent.duelPolicy)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 
-  val paper: Duel = of(Fleet.duel())
+  val paper: Duel = of(PaperDuel().fleet)
 
   /** The paper's duel at another altitude. */
   def paperAt(altitudeM: Double, durationS: Double): Duel =
-    of(Fleet.duel(altitudeM = altitudeM), durationS)
+    of(PaperDuel(altitudeM = altitudeM).fleet, durationS)
 
 /** What an episode came to. Distances are horizontal, taken once a period.
   *

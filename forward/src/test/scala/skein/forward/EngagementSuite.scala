@@ -1,10 +1,11 @@
 package skein.forward
 
 import skein.policy.*
+import skein.scenario.PaperDuel
 import skein.units.*
 
 class EngagementSuite extends munit.FunSuite:
-  private val duel = Fleet.duel().agents
+  private val duel = PaperDuel().fleet.agents
 
   private def agent(role: Role, number: Int, north: Double, east: Double, policy: Policy): Agent =
     duel
@@ -33,7 +34,7 @@ class EngagementSuite extends munit.FunSuite:
 
   test("a scenario of one pursuer and one evader is the duel, to the last bit, in every loop"):
     for loop <- loops do
-      val one  = Rollout(Engagement.of(Fleet.duel()), loop, DelayTable.vpn, Reduced.AirSim).fly(3)
+      val one  = Rollout(Engagement.of(PaperDuel().fleet), loop, DelayTable.vpn, Reduced.AirSim).fly(3)
       val same = Rollout(Duel.paper, loop, DelayTable.vpn, Reduced.AirSim).fly(3)
       assertEquals(one, same, loop.toString)
 

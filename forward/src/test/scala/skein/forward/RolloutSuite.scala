@@ -1,7 +1,8 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{Fleet, PaperEvader, PaperPursuer, Policy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
@@ -125,4 +126,4 @@ class RolloutSuite extends munit.FunSuite:
     assertClose(Seq(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy), Seq(x, y, vx, vy), 3e-4)
 
   test("the default duel is the scenario's"):
-    assertEquals(Duel.of(Fleet.duel()).evader.policy, PaperEvader())
+    assertEquals(Duel.of(PaperDuel().fleet).evader.policy, PaperEvader())

@@ -10,7 +10,8 @@ import skein.forward.{
   VelocityResponse,
   VelocityResponses
 }
-import skein.policy.{Fleet, Role}
+import skein.policy.Role
+import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -25,7 +26,7 @@ class AirSimModelSuite extends munit.FunSuite:
       flown += vehicle
       vehicle
     val _ = Rollout(
-      Duel.of(Fleet.duel()),
+      Duel.of(PaperDuel().fleet),
       LoopTiming.Stream(),
       DelayTable.vpn,
       tapped

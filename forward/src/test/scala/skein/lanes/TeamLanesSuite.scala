@@ -3,6 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.policy.*
+import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.scenario.*
 import skein.simd.WorldRandom
@@ -25,18 +26,18 @@ class TeamLanesSuite extends munit.FunSuite:
   private def within(random: SplitMix64, least: Double, most: Double) =
     least + (most - least) * random.nextDouble()
 
-  private val scenarios: Seq[(String, SplitMix64 => TeamScenario)] = Seq(
+  private val scenarios: Seq[(String, SplitMix64 => Scenario)] = Seq(
     "surround" -> (random =>
-      TeamScenario.Surround(6, ringM = within(random, 5, 12), pursuerMps = within(random, 6, 12))
+      Surround(6, ringM = within(random, 5, 12), pursuerMps = within(random, 6, 12))
     ),
     "formation" -> (random =>
-      TeamScenario.Formation(spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6))
+      Formation(spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6))
     )
   )
 
   /** Without the symmetry in which two pursuers are as near, and rounding decides who is the nearest. */
-  private def engagement(scenario: TeamScenario, durationS: Double) =
-    val all = Engagement.of(scenario.scenario, durationS)
+  private def engagement(scenario: Scenario, durationS: Double) =
+    val all = Engagement.of(scenario.fleet, durationS)
     all.copy(agents =
       all.agents.zipWithIndex.map((agent, i) => agent.copy(startY = agent.startY + 0.3 * i * i))
     )

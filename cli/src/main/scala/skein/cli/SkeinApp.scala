@@ -1,0 +1,87 @@
+package skein.cli
+
+import java.nio.file.InvalidPathException
+import java.util.Locale
+import org.slf4j.LoggerFactory
+import skein.scenario.{ScenarioKind, Scenarios}
+
+/** A program with all of Skein's commands, for scenarios of one's own:
+  *
+  * {{{
+  * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
+  * }}}
+  *
+  * @param kinds
+  *   at least one; the first is flown where none is named
+  */
+open class SkeinApp(kinds: ScenarioKind[?]*):
+  // First of all: numbers, dates and what libraries do with letters are the same wherever the machine stands.
+  Locale.setDefault(Locale.ROOT)
+  Terminal.adapt()
+
+  final given scenarios: Scenarios = Scenarios(kinds*)
+
+  private[skein] final val commands: Seq[Command] = Seq(
+    FlyCommand(),
+    SpreadCommand(),
+    SearchCommand,
+    BudgetCommand,
+    ServeCommand,
+    LinkCommand,
+    LatencyCommand,
+    ReportCommand(),
+    ExportCommand,
+    IdentifyCommand,
+    ReplayCommand(),
+    DigestCommand,
+    TortureCommand,
+    ScenariosCommand()
+  )
+
+  final def main(arguments: Array[String]): Unit =
+    val status = run(arguments.toSeq)
+    if !Edge.isInterrupted then sys.exit(status)
+
+  private[skein] final def run(arguments: Seq[String]): Int =
+    arguments.headOption match
+      case None | Some("--help" | "-h" | "help") =>
+        Console.out.println(help)
+        0
+      case Some(word) =>
+        commands.find(_.name == word) match
+          case Some(command) =>
+            // Set up before several threads of a command need it at once, which it would remark on.
+            val _ = LoggerFactory.getILoggerFactory
+            try command.run(arguments.tail)
+            catch
+              case mistake: InvalidPathException =>
+                Console.err.println(s"skein $word: ${wrongName(mistake)}")
+                1
+              // Said last, behind whatever other threads still print, and with an exit status of its own.
+              case error: Throwable =>
+                error.printStackTrace(Console.err)
+                Console.err.println(s"skein $word: ended by an error that nothing expected: $error")
+                1
+          case None =>
+            Console.err.println(
+              s"skein: no command '$word'. There are: ${commands.map(_.name).mkString(", ")}."
+            )
+            2
+
+  /** Where the locale knows ASCII alone, Java is not told what else a name holds. */
+  private def wrongName(mistake: InvalidPathException): String =
+    if mistake.getReason.contains("unmappable") then
+      s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot tell a file's name, came '${mistake.getInput}'; " +
+        "a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
+    else s"expected the name of a file or folder, came '${mistake.getInput}': ${mistake.getReason}"
+
+  private def help: String =
+    val width = commands.map(_.name.length).maxOption.getOrElse(0)
+    val lines = commands.map(command => s"  ${command.name.padTo(width, ' ')}  ${command.summary}")
+    s"""Skein: control graphs for teams of drones that know how old their data is.
+       |
+       |Usage: ./skein COMMAND [OPTION…]
+       |
+       |${lines.mkString("\n")}
+       |
+       |./skein COMMAND --help tells a command's options.""".stripMargin

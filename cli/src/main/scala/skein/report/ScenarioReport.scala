@@ -1,0 +1,65 @@
+package skein.report
+
+import skein.figures.Figure
+import skein.measure.{FlightSet, FlightSummary, ScenarioFlights}
+import skein.scenario.{ScenarioKind, Scenarios}
+
+/** What a report has of one kind of scenario: its results as tables, and its pictures. A kind that has some of its own
+  * extends it and gives these in the place of the general ones:
+  *
+  * {{{
+  * object PatrolKind extends ScenarioKind(Patrol()), ScenarioReport:
+  *   override def figures(set: FlightSet): Vector[Figure] = super.figures(set) :+ …
+  * }}}
+  */
+trait ScenarioReport:
+
+  /** @param set
+    *   the flights of this kind, with any settings
+    */
+  def results(set: FlightSet): Vector[Section] = set.scenarios.flatMap: flown =>
+    Vector(
+      Section(
+        s"Results: ${flown.scenario.name}",
+        ScenarioTables.note(flown.scenario),
+        Some(ScenarioTables.flights(flown))
+      ),
+      Section(
+        s"Limits broken: ${flown.scenario.name}",
+        ScenarioTables.limits(flown.scenario),
+        Some(ScenarioTables.violations(flown))
+      )
+    )
+
+  /** What many flights of each loop over each link come to. */
+  def spread(flights: Vector[FlightSummary]): Vector[Section] = ScenarioFlights.of(flights).map(flown =>
+    Section(s"Spread: ${flown.scenario.name}", table = Some(ScenarioTables.spread(flown)))
+  )
+
+  def figures(set: FlightSet): Vector[Figure] = set.scenarios.flatMap(Figure.ofScenario)
+
+object ScenarioReport:
+
+  /** For each kind that there are flights of, in the registry's order; then for those that are not known here. */
+  private[report] def each[A](set: FlightSet)(show: (ScenarioReport, FlightSet) => Vector[A])(using
+      Scenarios
+  ): Vector[A] =
+    eachName(set.all)((report, name) => show(report, set.ofKind(name)))
+
+  private[report] def eachName[A](flights: Seq[FlightSummary])(show: (ScenarioReport, String) => Vector[A])(
+      using scenarios: Scenarios
+  ): Vector[A] =
+    val flown   = flights.map(_.scenarioName).distinct.toVector
+    val known   = scenarios.kinds.filter(kind => flown.contains(kind.name)).map(kind => (of(kind), kind.name))
+    val unknown = flown.diff(scenarios.names).map((Unknown, _))
+    (known ++ unknown).flatMap(show(_, _))
+
+  private def of(kind: ScenarioKind[?]): ScenarioReport = kind match
+    case own: ScenarioReport => own
+    case _                   => General
+
+  private object General extends ScenarioReport
+
+  /** Where the vehicles flew is known of every flight. */
+  private object Unknown extends ScenarioReport:
+    override def figures(set: FlightSet): Vector[Figure] = Figure.trajectories(set).toVector

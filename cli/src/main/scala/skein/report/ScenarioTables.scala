@@ -1,0 +1,100 @@
+package skein.report
+
+import skein.measure.{Distribution, Numbers, ScenarioFlights}
+import skein.scenario.{Measured, Scenario}
+
+/** Tables of a scenario's flights. */
+object ScenarioTables:
+
+  /** A row per flight: its measures, the first against the paused truth's, and how far the vehicles were from where they
+    * are in the paused truth at the same time.
+    */
+  def flights(flown: ScenarioFlights): TextTable =
+    val names = flown.scenario.measures.map(_.title)
+    TextTable(
+      Vector("<loop", "<link", "flown s") ++ withPaused(names, "vs paused") :+ "off truth m",
+      flown.flights.map: flight =>
+        val cells = flight.result.measured.map(text)
+        Vector(
+          flight.summary.name,
+          flight.summary.flight.link,
+          Numbers.fixed(flight.summary.flownS, 1)
+        ) ++ withPaused(
+          cells,
+          flown.deviation(flight).fold("")(share => s"${Numbers.signed(share * 100)} %")
+        ) :+ flown.offTruthM(flight).fold("")(Numbers.fixed(_, 2))
+    )
+
+  /** Behind the first measure, if there is any. */
+  private def withPaused(cells: Vector[String], against: String): Vector[String] =
+    cells.take(1) ++ cells.headOption.map(_ => against) ++ cells.drop(1)
+
+  /** A row per flight and limit that was broken in it, the first and the worst time named. */
+  def violations(flown: ScenarioFlights): TextTable = TextTable(
+    Vector("<loop", "<link", "<limit", "times", "<vehicles", "from s", "to s", "worst", "at s"),
+    for
+      flight          <- flown.flights
+      (limit, broken) <- flown.scenario.limits.map(limit =>
+        (limit, flight.result.violations.filter(_.limit.text == limit.text))
+      )
+      (one, index) <- broken.take(MostListed).zipWithIndex
+    yield
+      val first = index == 0
+      Vector(
+        if first then flight.summary.name else "",
+        if first then flight.summary.flight.link else "",
+        if first then limit.text else "",
+        if first then broken.size.toString else "",
+        one.vehicles.map(flown.scenario.agents(_).name).mkString(", "),
+        Numbers.fixed(one.fromS, 2),
+        Numbers.fixed(one.toS, 2),
+        Numbers.fixed(one.worst, 2),
+        Numbers.fixed(one.worstAtS, 2)
+      )
+  )
+
+  /** How to read [[violations]]. */
+  def limits(scenario: Scenario): String =
+    s"May not happen: ${scenario.limits.map(_.text).mkString("; ")}. Each time is a stretch in which a limit was broken, " +
+      s"of each vehicle or pair; of a flight's, the first $MostListed are listed."
+
+  private val MostListed = 5
+
+  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights; of counts the
+    * total and the flights that have any.
+    */
+  def spread(flown: ScenarioFlights): TextTable =
+    val groups = flown.flights.groupBy(flight => (flight.summary.name, flight.summary.flight.link))
+    val order  = flown.flights.map(flight => (flight.summary.name, flight.summary.flight.link)).distinct
+    val names  = flown.scenario.measures.map(_.title)
+    TextTable(
+      Vector("<loop", "<link", "flights") ++ names :+ "off truth m",
+      order.map: group =>
+        val flights = groups(group)
+        Vector(group._1, group._2, flights.size.toString) ++
+          names.indices.map(index => summed(flights.map(_.result.measured(index)))) :+
+          spreadText(flights.flatMap(flown.offTruthM))
+    )
+
+  private def summed(measures: Vector[Measured]): String =
+    val values = measures.flatMap(_.value)
+    if measures.head.measure.isCount then
+      s"${Numbers.fixed(values.sum, 0)} in ${values.count(_ > 0)} flights"
+    else
+      val missing = measures.size - values.size
+      spreadText(values) + (if missing > 0 then s", $missing never" else "")
+
+  private def spreadText(values: Vector[Double]): String =
+    def two(value: Double) = Numbers.fixed(value, 2)
+    Distribution.of(values).fold("")(all =>
+      s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
+    )
+
+  private def text(measured: Measured): String = measured.value match
+    case None                                    => "never"
+    case Some(value) if measured.measure.isCount => Numbers.fixed(value, 0)
+    case Some(value)                             => Numbers.fixed(value, 2)
+
+  /** What a table's columns mean. */
+  def note(scenario: Scenario): String =
+    s"${scenario.note} Off truth: root mean square distance of the vehicles from where they are in the paused truth at the same time.".trim

@@ -1,0 +1,27 @@
+package skein.scenario
+
+import skein.policy.*
+import skein.units.*
+
+/** What our scenarios at one altitude share. */
+private object AtOneAltitude:
+  val MostVehicles = 100
+
+  def agent(
+      name: String,
+      role: Role,
+      speedMps: Double,
+      northM: Double,
+      eastM: Double,
+      altitudeM: Double,
+      headingRad: Double,
+      policy: TeamPolicy
+  ): Agent =
+    Agent(
+      name,
+      role,
+      MetresPerSecond(speedMps),
+      Vector3(northM, eastM, -altitudeM),
+      Radians(headingRad),
+      policy
+    )

@@ -1,0 +1,115 @@
+package skein.scenario
+
+import skein.policy.*
+import skein.units.Metres
+
+/** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone avoids all
+  * others.
+  *
+  * @param streams
+  *   2, northward and eastward; or 4
+  * @param spacingM
+  *   between two vehicles of a stream
+  * @param entryM
+  *   from the first vehicle of a stream to the middle of the crossing
+  * @param laneM
+  *   by which each stream keeps to the right of the middle
+  * @param minimumM
+  *   the separation that is set
+  * @param marginM
+  *   kept on top of it by the avoidance rule, which does not know that vehicles lag behind their commands
+  * @param horizonS
+  *   for which the avoidance rule looks ahead
+  */
+final case class Crossing(
+    vehicles: Int = 20,
+    streams: Int = 4,
+    spacingM: Double = 6,
+    entryM: Double = 25,
+    laneM: Double = 4,
+    cruiseMps: Double = 8,
+    mostMps: Double = 10,
+    minimumM: Double = 2,
+    marginM: Double = 1,
+    horizonS: Double = 3,
+    altitudeM: Double = 5
+) extends Scenario:
+  import Crossing.*
+
+  override def mistakes: Seq[String] =
+    Scenario.outside("vehicles", vehicles, 2, AtOneAltitude.MostVehicles).toSeq ++
+      Scenario.notPositive(this, "laneM", "marginM") ++
+      Option.when(streams != 2 && streams != 4)(s"streams: expected 2 or 4, came $streams")
+
+  def agents: Vector[Agent] = routes.zipWithIndex.map: (route, vehicle) =>
+    val (northM, eastM)         = onLane(route.headingRad, route.startM)
+    val (goalNorthM, goalEastM) = onLane(route.headingRad, route.goalM)
+    val policy = Avoidance(goalNorthM, goalEastM, cruiseMps, mostMps, minimumM, marginM, horizonS)
+    val name   = s"Vehicle${vehicle + 1}"
+    AtOneAltitude.agent(name, Role.Traveller, cruiseMps, northM, eastM, altitudeM, route.headingRad, policy)
+
+  override def limits: Vector[Limit] = Vector(separation)
+
+  override def series: Vector[Series] = Vector(smallest)
+
+  override def measures: Vector[Measure] = Vector(
+    smallest.least("closest"),
+    smallest.leastAt("at"),
+    Measure.count("violations")(separation.violations(_).size),
+    Measure.count("arrived")(arrivalsS(_).size),
+    Measure("to goal", "s"): tracks =>
+      val arrivals = arrivalsS(tracks)
+      Option.when(arrivals.nonEmpty)(arrivals.sum / arrivals.size)
+    ,
+    Measure("per min", ""): tracks =>
+      val arrivals = arrivalsS(tracks)
+      arrivals.maxOption.map(arrivals.size / _ * 60)
+  )
+
+  override def note: String =
+    s"Smallest separation of any two vehicles, and how often two came nearer than the set minimum of $minimumM m; " +
+      s"arrived: within $ArrivedM m of the goal."
+
+  /** By stream. */
+  override def shade(vehicle: Int): Int = vehicle % streams
+
+  /** Where the vehicles want to be, north and east, m. */
+  def goals: Vector[(Double, Double)] = routes.map(route => onLane(route.headingRad, route.goalM))
+
+  private def separation = Limit.horizontalSeparation(Metres(minimumM))
+
+  /** Of the two nearest to one another. */
+  private def smallest = Series("smallest separation", "m", Some(Bound("set minimum", minimumM))): tracks =>
+    val pairs = tracks.pairs
+    instant => pairs.iterator.map(tracks.distanceM(_, _, instant)).min
+
+  /** When vehicles came to their goals, s, for those that did. */
+  private def arrivalsS(tracks: Tracks): Vector[Double] =
+    for
+      (vehicle, (north, east)) <- tracks.vehicles.toVector.zip(goals)
+      instant                  <- tracks.instants.find(tracks.distanceM(vehicle, north, east, _) < ArrivedM)
+    yield tracks.timeS(instant)
+
+  /** By vehicle: the streams take vehicles in turn, and those of a stream fly one behind the other. The first of a
+    * stream flies furthest, so that all fly equally far and nobody waits in another's way.
+    */
+  private def routes: Vector[Route] =
+    Vector.tabulate(vehicles): vehicle =>
+      val (stream, rank) = (vehicle % streams, vehicle / streams)
+      val lastRank       = (vehicles - 1 - stream) / streams
+      Route(
+        headingRad = stream * math.Pi / 2,
+        startM = -(entryM + rank * spacingM),
+        goalM = entryM + (lastRank - rank) * spacingM
+      )
+
+  private def onLane(headingRad: Double, alongM: Double): (Double, Double) =
+    val (cos, sin) = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
+    (alongM * cos - laneM * sin, alongM * sin + laneM * cos)
+
+object Crossing:
+  /** From its goal, a vehicle counts as arrived. */
+  private val ArrivedM = 3.0
+
+  /** Places along the heading, from the middle of the crossing, m. */
+  private final case class Route(headingRad: Double, startM: Double, goalM: Double)

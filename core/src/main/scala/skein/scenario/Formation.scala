@@ -1,0 +1,90 @@
+package skein.scenario
+
+import skein.policy.*
+
+/** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the right and
+  * left in turn.
+  *
+  * @param vehicles
+  *   the leader included
+  * @param spacingM
+  *   of the slots, backwards and sideways
+  * @param mostMps
+  *   the fastest a follower is commanded
+  * @param straightM
+  *   of the circuit; its half turns have the radius `radiusM`
+  * @param lagS
+  *   time constant with which vehicles follow their commands; AirSim's at low altitude take about 1.5 s
+  */
+final case class Formation(
+    vehicles: Int = 5,
+    spacingM: Double = 4,
+    leaderMps: Double = 5,
+    mostMps: Double = 10,
+    straightM: Double = 50,
+    radiusM: Double = 20,
+    lagS: Double = 1.5,
+    altitudeM: Double = 5
+) extends Scenario:
+  import Formation.*
+
+  override def mistakes: Seq[String] =
+    Scenario.outside("vehicles", vehicles, 2, AtOneAltitude.MostVehicles).toSeq ++
+      Scenario.notPositive(this, "straightM", "lagS")
+
+  def circuit: Racetrack = Racetrack(straightM, radiusM)
+
+  /** Where slots are in the leader's frame: metres ahead and to the right, by follower. */
+  def slots: Vector[(Double, Double)] =
+    Vector.tabulate(vehicles - 1): follower =>
+      val rank = follower / 2 + 1
+      val side = if follower % 2 == 0 then 1 else -1
+      (-rank * spacingM, side * rank * spacingM)
+
+  def agents: Vector[Agent] =
+    val leading   = LeadOnCircuit(circuit, leaderMps, leaderMps * lagS)
+    val leader    = AtOneAltitude.agent("Leader", Role.Leader, leaderMps, 0, 0, altitudeM, 0, leading)
+    val followers = slots.zipWithIndex.map:
+      case ((aheadM, rightM), follower) =>
+        val policy = KeepSlot(0, circuit, aheadM, rightM, mostMps, lagS)
+        val name   = s"Follower${follower + 1}"
+        AtOneAltitude.agent(name, Role.Follower, leaderMps, aheadM, rightM, altitudeM, 0, policy)
+    leader +: followers
+
+  override def series: Vector[Series] =
+    Vector(Series("slot error, rms", "m")(tracks => instant => rms(slotErrorsM(tracks, instant))))
+
+  override def measures: Vector[Measure] =
+    val settled = Window.After(SettlingS)
+    val largest = Series("largest", "m")(tracks => instant => slotErrorsM(tracks, instant).max)
+    Vector(
+      Measure("slot rms", "m")(tracks =>
+        settled.of(tracks).map(over => rms(over.flatMap(slotErrorsM(tracks, _))))
+      ),
+      largest.most("largest", settled),
+      largest.mostAt("at", settled)
+    )
+
+  override def note: String =
+    s"Distance of the followers to their slots after the first $SettlingS s: root mean square, and the largest."
+
+  /** From each follower to its slot in the frame along the circuit where the leader is, m. */
+  private def slotErrorsM(tracks: Tracks, instant: Int): Vector[Double] =
+    val (north, east) = (tracks.northM(0)(instant), tracks.eastM(0)(instant))
+    val heading       = circuit.headingRad(circuit.nearest(north, east))
+    val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
+    slots.zip(tracks.vehicles.tail).map:
+      case ((ahead, right), follower) =>
+        tracks.distanceM(
+          follower,
+          north + ahead * cos - right * sin,
+          east + ahead * sin + right * cos,
+          instant
+        )
+
+object Formation:
+  /** For the vehicles to get under way; not counted. */
+  private val SettlingS = 10.0
+
+  private def rms(values: Seq[Double]): Double =
+    math.sqrt(values.map(value => value * value).sum / values.size)

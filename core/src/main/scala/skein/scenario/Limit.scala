@@ -1,0 +1,153 @@
+package skein.scenario
+
+import skein.units.*
+
+/** What may not happen: a quantity of some vehicles that must stay at or above a value, or at or below it.
+  *
+  * @param name
+  *   what is broken, for example `separation`
+  * @param groups
+  *   whose quantity it is: of so many vehicles in the fleet, every group of places that it holds for
+  * @param quantity
+  *   of a group, by instant
+  */
+final class Limit private (
+    val name: String,
+    val unit: String,
+    val value: Double,
+    val isLeast: Boolean,
+    groups: Range => Vector[Vector[Int]],
+    quantity: (Tracks, Vector[Int]) => Int => Double
+):
+  /** For example `separation of at least 5 m`. */
+  def text: String =
+    s"$name of at ${if isLeast then "least" else "most"} ${Limit.brief(value)} $unit".trim
+
+  /** Every stretch of time in which it was broken, by group. */
+  def violations(tracks: Tracks): Vector[Violation] =
+    groups(tracks.vehicles).flatMap: group =>
+      val of = quantity(tracks, group)
+      stretches(tracks.instants, instant => isBroken(of(instant))).map: (first, last) =>
+        val worst = (first to last).map(instant => (of(instant), instant)).reduce: (one, other) =>
+          if if isLeast then other._1 < one._1 else other._1 > one._1 then other else one
+        Violation(this, group, tracks.timeS(first), tracks.timeS(last), worst._1, tracks.timeS(worst._2))
+
+  private def isBroken(found: Double) = if isLeast then found < value else found > value
+
+  private def stretches(instants: Range, holds: Int => Boolean): Vector[(Int, Int)] =
+    val (found, open) = instants.foldLeft((Vector.empty[(Int, Int)], Option.empty[Int])):
+      case ((found, open), instant) =>
+        (open, holds(instant)) match
+          case (None, true)         => (found, Some(instant))
+          case (Some(first), false) => (found :+ (first, instant - 1), None)
+          case _                    => (found, open)
+    found ++ open.map((_, instants.last))
+
+object Limit:
+
+  /** Between any two vehicles, in space. */
+  def separation(least: Metres): Limit =
+    new Limit(
+      "separation",
+      "m",
+      least.value,
+      true,
+      pairs,
+      (tracks, two) => tracks.separationM(two(0), two(1), _)
+    )
+
+  /** Between any two vehicles, in the horizontal plane alone. */
+  def horizontalSeparation(least: Metres): Limit =
+    new Limit(
+      "separation",
+      "m",
+      least.value,
+      true,
+      pairs,
+      (tracks, two) => tracks.distanceM(two(0), two(1), _)
+    )
+
+  /** Of every vehicle, above the origin. */
+  def floor(altitude: Metres): Limit =
+    least("altitude", "m", altitude.value)((tracks, vehicle) => tracks.altitudeM(vehicle, _))
+
+  /** Of every vehicle, above the origin. */
+  def ceiling(altitude: Metres): Limit =
+    most("altitude", "m", altitude.value)((tracks, vehicle) => tracks.altitudeM(vehicle, _))
+
+  /** Of every vehicle, in space. */
+  def speed(most: MetresPerSecond): Limit =
+    Limit.most("speed", "m/s", most.value)((tracks, vehicle) => tracks.velocityNed(vehicle, _).norm)
+
+  /** Every vehicle stays in a circle, seen from above. */
+  def geofence(north: Metres, east: Metres, radius: Metres): Limit =
+    most("distance from the geofence's middle", "m", radius.value)((tracks, vehicle) =>
+      tracks.distanceM(vehicle, north.value, east.value, _)
+    )
+
+  /** Every vehicle stays in a polygon, seen from above; the quantity is how far it is outside.
+    *
+    * @param corners
+    *   north and east, in turn; at least three
+    */
+  def geofence(corners: Vector[(Metres, Metres)]): Limit =
+    require(corners.sizeIs >= 3, s"a geofence has at least three corners, came ${corners.size}")
+    val fence = Fence(corners.map((north, east) => (north.value, east.value)))
+    most("distance outside the geofence", "m", 0)((tracks, vehicle) =>
+      instant => fence.outsideM(tracks.northM(vehicle)(instant), tracks.eastM(vehicle)(instant))
+    )
+
+  /** A quantity of every vehicle that must not fall below a value. */
+  def least(name: String, unit: String, value: Double)(of: (Tracks, Int) => Int => Double): Limit =
+    new Limit(name, unit, value, true, single, (tracks, one) => of(tracks, one.head))
+
+  /** A quantity of every vehicle that must not rise above a value. */
+  def most(name: String, unit: String, value: Double)(of: (Tracks, Int) => Int => Double): Limit =
+    new Limit(name, unit, value, false, single, (tracks, one) => of(tracks, one.head))
+
+  private def single(vehicles: Range) = vehicles.toVector.map(Vector(_))
+
+  private def pairs(vehicles: Range) =
+    for one <- vehicles.toVector; other <- (0 until one).toVector yield Vector(other, one)
+
+  private def brief(value: Double): String =
+    if value == StrictMath.rint(value) && value.abs < 1e9 then value.toLong.toString else value.toString
+
+/** One stretch of time in which a limit was broken.
+  *
+  * @param vehicles
+  *   their places
+  * @param fromS
+  *   since all vehicles were first seen
+  * @param worst
+  *   of the quantity, in the limit's unit, and when that was
+  */
+final case class Violation(
+    limit: Limit,
+    vehicles: Vector[Int],
+    fromS: Double,
+    toS: Double,
+    worst: Double,
+    worstAtS: Double
+)
+
+/** A polygon seen from above: corners north and east, m. */
+private final class Fence(corners: Vector[(Double, Double)]):
+  private val edges = corners.zip(corners.tail :+ corners.head)
+
+  /** How far a place is outside, m; 0 inside. */
+  def outsideM(north: Double, east: Double): Double =
+    if isInside(north, east) then 0 else edges.map((from, to) => distanceM(north, east, from, to)).min
+
+  private def isInside(north: Double, east: Double): Boolean =
+    edges.count { case ((n1, e1), (n2, e2)) =>
+      (e1 > east) != (e2 > east) && north < (n2 - n1) * (east - e1) / (e2 - e1) + n1
+    } % 2 == 1
+
+  private def distanceM(north: Double, east: Double, from: (Double, Double), to: (Double, Double)): Double =
+    val (alongN, alongE) = (to._1 - from._1, to._2 - from._2)
+    val length           = alongN * alongN + alongE * alongE
+    val share            =
+      if length == 0 then 0.0
+      else (((north - from._1) * alongN + (east - from._2) * alongE) / length).max(0).min(1)
+    StrictMath.hypot(north - from._1 - share * alongN, east - from._2 - share * alongE)

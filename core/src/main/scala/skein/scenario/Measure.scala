@@ -1,0 +1,107 @@
+package skein.scenario
+
+/** A number that a flight comes to. For example `Measure("out of sight", "s")(tracks => …)`.
+  *
+  * @param unit
+  *   may be empty
+  * @param isCount
+  *   of events: over several flights it is added up
+  * @param of
+  *   absent where the flight never came to it
+  */
+final class Measure private (
+    val name: String,
+    val unit: String,
+    val isCount: Boolean,
+    val of: Tracks => Option[Double]
+):
+  /** With the unit, as tables have it. */
+  def title: String = s"$name $unit".trim
+
+object Measure:
+  def apply(name: String, unit: String)(of: Tracks => Option[Double]): Measure =
+    new Measure(name, unit, false, of)
+
+  /** Events, for example vehicles that arrived. */
+  def count(name: String)(of: Tracks => Int): Measure =
+    new Measure(name, "", true, tracks => Some(of(tracks).toDouble))
+
+/** A quantity over the time of a flight: drawn, and reduced to measures.
+  *
+  * {{{
+  * private val apart = Series("distance", "m")(tracks => instant => tracks.separationM(0, 1, instant))
+  * override def series   = Vector(apart)
+  * override def measures = Vector(apart.mean("mean distance"), apart.least("closest"))
+  * }}}
+  *
+  * @param bound
+  *   that the quantity is held to, drawn as a line
+  * @param at
+  *   its value by instant
+  */
+final class Series(val name: String, val unit: String, val bound: Option[Bound])(at: Tracks => Int => Double):
+
+  def curve(tracks: Tracks): Curve = Curve(tracks, at(tracks))
+
+  /** With the unit. */
+  def title: String = if unit.isEmpty then name else s"$name, $unit"
+
+  def mean(name: String, over: Window = Window.Whole): Measure =
+    reduced(name, over)(values => values.sum / values.size)
+
+  /** Root of the mean square. */
+  def rms(name: String, over: Window = Window.Whole): Measure =
+    reduced(name, over)(values => math.sqrt(values.map(value => value * value).sum / values.size))
+
+  /** Standard deviation. */
+  def sd(name: String, over: Window = Window.Whole): Measure = reduced(name, over): values =>
+    val mean = values.sum / values.size
+    math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)
+
+  def least(name: String, over: Window = Window.Whole): Measure = reduced(name, over)(_.min)
+
+  def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over)(_.max)
+
+  /** When it was least, the first time, s. */
+  def leastAt(name: String, over: Window = Window.Whole): Measure = Measure(name, "s"): tracks =>
+    val value = at(tracks)
+    over.of(tracks).map(instants => tracks.timeS(instants.minBy(value)))
+
+  /** When it was most, the first time, s. */
+  def mostAt(name: String, over: Window = Window.Whole): Measure = Measure(name, "s"): tracks =>
+    val value = at(tracks)
+    over.of(tracks).map(instants => tracks.timeS(instants.maxBy(value)))
+
+  /** How long a condition held in all, s. */
+  def timeWhere(name: String, over: Window = Window.Whole)(holds: Double => Boolean): Measure =
+    Measure(name, "s"): tracks =>
+      val value = at(tracks)
+      over.of(tracks).map(_.count(instant => holds(value(instant))) * tracks.stepS)
+
+  /** From the first instant on at which a condition held, s; absent where it never did. */
+  def firstWhere(name: String)(holds: Double => Boolean): Measure = Measure(name, "s"): tracks =>
+    val value = at(tracks)
+    tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
+
+  private def reduced(name: String, over: Window)(reduce: IndexedSeq[Double] => Double): Measure =
+    Measure(name, unit): tracks =>
+      val value = at(tracks)
+      over.of(tracks).map(instants => reduce(instants.map(value)))
+
+object Series:
+  def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =
+    new Series(name, unit, bound)(at)
+
+/** What a quantity is held to.
+  *
+  * @param name
+  *   in the legend
+  */
+final case class Bound(name: String, value: Double)
+
+/** A quantity at equal instants: seconds since all vehicles were first seen, and its values. */
+final case class Curve(points: Vector[(Double, Double)])
+
+object Curve:
+  def apply(tracks: Tracks, value: Int => Double): Curve =
+    Curve(tracks.instants.toVector.map(instant => (tracks.timeS(instant), value(instant))))

@@ -1,0 +1,58 @@
+package skein.scenario
+
+import java.util.Locale
+import skein.policy.Role
+import skein.units.*
+
+/** Where one vehicle was, by the simulator's clock; ascending, each instant once, at least one.
+  *
+  * @param positionsNed
+  *   by instant, m, world frame
+  * @param velocitiesNed
+  *   by instant, m/s
+  */
+final case class Track private (
+    vehicle: String,
+    role: String,
+    times: Vector[Instant],
+    positionsNed: Vector[Vector3],
+    velocitiesNed: Vector[Vector3]
+):
+  def from: Instant = times.head
+  def to: Instant   = times.last
+
+  def isA(role: Role): Boolean = Role.parse(this.role) == role
+
+  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, seen every 100 ms, is less than
+    * 2 cm from them. Outside the track's times, its first or last position.
+    */
+  def at(time: Instant): Vector3 = between(time, positionsNed)
+
+  /** Likewise, m/s. */
+  def velocityAt(time: Instant): Vector3 = between(time, velocitiesNed)
+
+  private def between(time: Instant, values: Vector[Vector3]): Vector3 =
+    val above = times.search(time).insertionPoint
+    if above == 0 then values.head
+    else if above == times.size then values.last
+    else
+      val share = time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
+      values(above - 1) + (values(above) - values(above - 1)) * share
+
+object Track:
+
+  /** @param samples
+    *   instant, position and velocity, in any order; of one instant the first counts
+    */
+  def of(vehicle: String, role: String, samples: Vector[(Instant, Vector3, Vector3)]): Track =
+    val ordered = samples.distinctBy(_._1).sortBy(_._1)
+    Track(vehicle, role.toLowerCase(Locale.ROOT), ordered.map(_._1), ordered.map(_._2), ordered.map(_._3))
+
+  /** Where velocities were not measured: each is that of the way to the next sample. */
+  def ofPositions(vehicle: String, role: String, samples: Vector[(Instant, Vector3)]): Track =
+    val ordered = samples.distinctBy(_._1).sortBy(_._1)
+    val moved   = ordered.zip(ordered.drop(1)).map { case ((from, start), (to, end)) =>
+      (end - start) * (1 / to.since(from).toSeconds)
+    }
+    val velocities = if moved.isEmpty then Vector(Vector3.Zero) else moved :+ moved.last
+    of(vehicle, role, ordered.zip(velocities).map { case ((at, place), velocity) => (at, place, velocity) })

@@ -1,0 +1,91 @@
+package skein.scenario
+
+import skein.units.*
+
+/** Where all vehicles of a flight were at equal instants of the simulator's clock, by vehicle and instant; vehicles by
+  * their places in the scenario. World frame NED, m.
+  */
+final class Tracks private (
+    tracks: Vector[Track],
+    from: Instant,
+    val northM: Vector[Array[Double]],
+    val eastM: Vector[Array[Double]],
+    val downM: Vector[Array[Double]]
+):
+
+  def vehicles: Range = northM.indices
+
+  def instants: Range = northM.head.indices
+
+  /** Between two instants, s. */
+  def stepS: Double = Tracks.step.toSeconds
+
+  /** Since all were first seen, s. */
+  def timeS(instant: Int): Double = instant * stepS
+
+  /** For which all were seen, s. */
+  def lastS: Double = timeS(instants.last)
+
+  def positionNed(vehicle: Int, instant: Int): Vector3 =
+    Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
+
+  /** As it was read, m/s. */
+  def velocityNed(vehicle: Int, instant: Int): Vector3 =
+    tracks(vehicle).velocityAt(from + Tracks.step * instant)
+
+  /** Above the origin, m. */
+  def altitudeM(vehicle: Int, instant: Int): Double = -downM(vehicle)(instant)
+
+  /** Between two vehicles, in the horizontal plane, m. */
+  def distanceM(one: Int, other: Int, instant: Int): Double =
+    StrictMath.hypot(
+      northM(one)(instant) - northM(other)(instant),
+      eastM(one)(instant) - eastM(other)(instant)
+    )
+
+  /** From a vehicle to a place, in the horizontal plane, m. */
+  def distanceM(vehicle: Int, north: Double, east: Double, instant: Int): Double =
+    StrictMath.hypot(northM(vehicle)(instant) - north, eastM(vehicle)(instant) - east)
+
+  /** Between two vehicles, in space, m. */
+  def separationM(one: Int, other: Int, instant: Int): Double =
+    (positionNed(one, instant) - positionNed(other, instant)).norm
+
+  /** Every two vehicles, once. */
+  def pairs: Vector[(Int, Int)] =
+    for one <- vehicles.toVector; other <- (0 until one).toVector yield (one, other)
+
+  /** How far the vehicles were from where those of another flight were at the same time since the start: root of the mean
+    * square over vehicles and instants, m.
+    *
+    * @param inSpace
+    *   else in the horizontal plane
+    */
+  def rmsFrom(other: Tracks, inSpace: Boolean): Double =
+    val both    = instants.take(other.instants.size)
+    val squares =
+      for
+        vehicle <- vehicles.iterator
+        instant <- both.iterator
+        away  = distanceM(vehicle, other.northM(vehicle)(instant), other.eastM(vehicle)(instant), instant)
+        above = if inSpace then downM(vehicle)(instant) - other.downM(vehicle)(instant) else 0.0
+      yield away * away + above * above
+    math.sqrt(squares.sum / (vehicles.size * both.size))
+
+object Tracks:
+  private val step = Span.ofMillis(20)
+
+  /** Over the time for which all tracks run; none if there is no such time. */
+  def of(tracks: Vector[Track]): Option[Tracks] =
+    val from = tracks.map(_.from).maxOption
+    val to   = tracks.map(_.to).minOption
+    from.zip(to).filter(_ < _).map: (from, to) =>
+      val count  = (to.since(from).toNanos / step.toNanos + 1).toInt
+      val places = tracks.map(track => Vector.tabulate(count)(index => track.at(from + step * index)))
+      Tracks(
+        tracks,
+        from,
+        places.map(_.map(_.x).toArray),
+        places.map(_.map(_.y).toArray),
+        places.map(_.map(_.z).toArray)
+      )

@@ -1,0 +1,23 @@
+package skein.scenario
+
+/** The part of a flight that a measure is of. */
+enum Window:
+  case Whole
+
+  /** The end; a flight that was shorter has no such part. */
+  case Last(seconds: Double)
+
+  /** All but the begin; of a flight that was shorter, the whole. */
+  case After(seconds: Double)
+
+  /** Instants of it; never empty. */
+  def of(tracks: Tracks): Option[Range] = this match
+    case Whole          => Some(tracks.instants)
+    case After(seconds) =>
+      val settled = tracks.instants.dropWhile(tracks.timeS(_) < seconds)
+      Some(if settled.isEmpty then tracks.instants else settled)
+    case Last(seconds) =>
+      val many = (seconds / tracks.stepS).toInt
+      Option.when(tracks.instants.size >= 0.95 * many)(
+        tracks.instants.drop(tracks.instants.size - 1 - many max 0)
+      )

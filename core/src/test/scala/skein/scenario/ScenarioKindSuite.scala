@@ -1,0 +1,78 @@
+package skein.scenario
+
+import skein.policy.Agent
+
+class ScenarioKindSuite extends munit.FunSuite:
+
+  private case class OverTheRidge(
+      scouts: Int = 2,
+      heightM: Double = 30,
+      isNight: Boolean = false,
+      area: String = "north"
+  ) extends Scenario:
+    def agents: Vector[Agent] = Vector.empty
+
+  private val kind = ScenarioKind(OverTheRidge())
+
+  test("a case class is a kind of scenario: its fields are its settings, named by their defaults' types"):
+    assertEquals(kind.name, "over-the-ridge")
+    assertEquals(
+      kind.read(Map("scouts" -> "3", "heightM" -> "12.5", "isNight" -> "true", "area" -> "south")),
+      Right(OverTheRidge(3, 12.5, true, "south"))
+    )
+    assertEquals(kind.read(Map("scouts" -> "4")), Right(OverTheRidge(scouts = 4)))
+
+  test("what is wrong with settings is told all at once: expected, came, nearest"):
+    assertEquals(
+      kind.read(Map("scuots" -> "3", "heightM" -> "high", "isNight" -> "dusk")),
+      Left(Seq(
+        "no setting 'scuots'; the nearest is 'scouts'",
+        "heightM: expected a number, came 'high'",
+        "isNight: expected true or false, came 'dusk'"
+      ))
+    )
+
+  test("ours are read back from what they are recorded as"):
+    for scenario <- Seq(
+        PaperDuel(pairs = 3, asPublished = true),
+        Surround(vehicles = 4),
+        Formation(radiusM = 12.5),
+        Crossing(streams = 2)
+      )
+    do
+      val recorded = scenario.settings.map((name, value) => scenario.recordedAs(name) -> value).toMap
+      assertEquals(Scenarios.ours.ofRecording(scenario.title, recorded), Right(scenario))
+      assertEquals(scenario.mistakes, Nil)
+
+  test("recordings of duels name their settings as ever; a setting that came later takes its default"):
+    assertEquals(PaperDuel().recordedAs("pairs"), "pairs")
+    assertEquals(Surround().recordedAs("ringM"), "surround.ringM")
+    assertEquals(
+      Scenarios.ours.ofRecording(
+        "duel, pursuer lead-pursuit lead=1",
+        Map("pairs" -> "2", "asPublished" -> "false")
+      ),
+      Right(PaperDuel(pairs = 2))
+    )
+
+  test("what cannot be flown is named by its setting"):
+    assertEquals(
+      Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
+      Seq(
+        "vehicles: expected 2 to 100, came 1",
+        "spacingM: expected more than 0, came -1.0",
+        "streams: expected 2 or 4, came 3"
+      )
+    )
+
+  test("a kind that is not known is told with the nearest that is; no two kinds share a name"):
+    assertEquals(
+      Scenarios.ours.kind("crosing"),
+      Left("expected duel, surround, formation, crossing, came 'crosing'; the nearest is 'crossing'")
+    )
+    intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
+
+  test("the distance between words counts letters to change"):
+    assertEquals(Nearest.distance("durration", "duration"), 1)
+    assertEquals(Nearest.distance("", "loops"), 5)
+    assertEquals(Nearest.distance("seed", "period"), 4)

@@ -1,0 +1,29 @@
+package skein.measure
+
+import skein.record.Recording
+import skein.scenario.Track
+
+/** Where a recording says its vehicles were. */
+object RecordedTracks:
+
+  /** The track of every vehicle that was seen: from the recorded truth, if there is any, else from the readings. */
+  def of(recording: Recording): Vector[Track] =
+    val truths   = recording.truths.groupBy(_.vehicle)
+    val readings = if truths.isEmpty then recording.readings.groupBy(_.vehicle) else Map.empty
+    for
+      vehicle <- recording.heading.vehicles.toVector
+      track   <- truths
+        .get(vehicle.name)
+        .map(seen =>
+          Track.ofPositions(vehicle.name, vehicle.role, seen.map(truth => (truth.validAt, truth.positionNed)))
+        )
+        .orElse(readings.get(vehicle.name).map(seen =>
+          Track.of(
+            vehicle.name,
+            vehicle.role,
+            seen.map: reading =>
+              val state = reading.state
+              (state.validAt, state.value.positionNed, state.value.velocityNed)
+          )
+        ))
+    yield track

@@ -1,0 +1,52 @@
+package skein.settings
+
+import com.typesafe.config.{Config, ConfigObject, ConfigValue}
+import scala.jdk.CollectionConverters.*
+import skein.record.Parameter
+import skein.scenario.{Scenario, ScenarioKind, Scenarios}
+
+/** A scenario in configurations and recordings. `skein.fly.scenario` names it, and what is set of it stands under its
+  * name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
+  */
+object ScenarioSettings:
+
+  /** Reads it from `skein.fly`. Where none is named, the first that is known is flown.
+    *
+    * @return
+    *   or every mistake: where it stands, what was expected, and what came
+    */
+  def read(config: Config)(using Scenarios): Either[String, Scenario] =
+    for
+      kind <- kind(config)
+      path = s"skein.fly.${kind.name}"
+      set <- settingsAt(config, path)
+      fields = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
+      values = set.flatMap((key, value) => fields.get(key).map(_ -> value.unwrapped.toString))
+      scenario <- kind.read(values).left.map(
+        _.map(mistake => s"$path.${ConfigKeys.ofMistake(mistake)}${origin(set, mistake)}").mkString("\n")
+      )
+    yield scenario
+
+  /** Of which kind it is. */
+  def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
+    val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)
+    scenarios.kind(named).left.map(mistake => s"$Name: $mistake")
+
+  /** As a recording keeps it. */
+  def recorded(scenario: Scenario): Seq[Parameter] =
+    scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
+
+  private val Name = "skein.fly.scenario"
+
+  private def settingsAt(config: Config, path: String): Either[String, Map[String, ConfigValue]] =
+    if !config.hasPath(path) then Right(Map.empty)
+    else
+      config.getValue(path) match
+        case settings: ConfigObject => Right(settings.asScala.toMap)
+        case other                  =>
+          Left(s"${other.origin.description}: $path: expected settings in braces, came '${other.unwrapped}'")
+
+  private def origin(set: Map[String, ConfigValue], mistake: String): String =
+    set.get(ConfigKeys.ofMistake(mistake).takeWhile(_ != ':')).fold("")(value =>
+      s" (${value.origin.description})"
+    )
