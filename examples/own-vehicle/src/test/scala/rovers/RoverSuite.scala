@@ -18,7 +18,7 @@ class RoverSuite extends munit.FunSuite:
   private val loops = Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream)
 
   private def distances(recording: Recording): Seq[(Double, Double)] =
-    FlightSummary.of(recording).distance.get.points.map((atS, distance) => (atS, distance))
+    FlightSummary.of(recording).result.get.curves.head._2.points
 
   for loop <- loops do
     test(
