@@ -3,8 +3,8 @@ package skein.bench
 import java.lang.management.ManagementFactory
 import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
 import skein.lanes.{Judged, TeamBatch, TeamCandidate, TeamWorlds}
-import skein.policy.TeamScenario
-import skein.scenario.{OffRing, Quantity, OffSlots, Reduction, WidestGap}
+
+import skein.scenario.*
 import skein.simd.WorldRandom
 
 /** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream` over `vpn`,
@@ -40,17 +40,17 @@ object TeamRates:
       )
 
   private def surround(vehicles: Int)(number: Int): TeamCandidate =
-    val scenario = TeamScenario.Surround(vehicles, ringM = 6 + 0.02 * number, pursuerMps = 7 + 0.01 * number)
+    val scenario = Surround(vehicles, ringM = 6 + 0.02 * number, pursuerMps = 7 + 0.01 * number)
     candidate(scenario, Vector(OffRing(scenario.ringM), WidestGap))
 
   private def formation(vehicles: Int)(number: Int): TeamCandidate =
-    val scenario       = TeamScenario.Formation(vehicles, spacingM = 3 + 0.01 * number)
+    val scenario       = Formation(vehicles, spacingM = 3 + 0.01 * number)
     val (ahead, right) = scenario.slots.unzip
     candidate(scenario, Vector(OffSlots(scenario.circuit, IArray.from(ahead), IArray.from(right))))
 
-  private def candidate(scenario: TeamScenario, by: Vector[Quantity]) =
+  private def candidate(scenario: Scenario, by: Vector[Quantity]) =
     TeamCandidate(
-      Engagement.of(scenario.scenario, DurationS),
+      Engagement.of(scenario.fleet, DurationS),
       by.map(Judged(_, Reduction.Rms, DurationS - 10))
     )
 

@@ -79,9 +79,8 @@ final case class Crossing(
   private def separation = Limit.horizontalSeparation(Metres(minimumM))
 
   /** Of the two nearest to one another. */
-  private def smallest = Series("smallest separation", "m", Some(Bound("set minimum", minimumM))): tracks =>
-    val pairs = tracks.pairs
-    instant => pairs.iterator.map(tracks.distanceM(_, _, instant)).min
+  private def smallest =
+    Series.of("smallest separation", "m", Separation, Some(Bound("set minimum", minimumM)))
 
   /** When vehicles came to their goals, s, for those that did. */
   private def arrivalsS(tracks: Tracks): Vector[Double] =

@@ -52,21 +52,23 @@ final case class Formation(
     leader +: followers
 
   override def series: Vector[Series] =
-    Vector(Series("slot error, rms", "m")(tracks => instant => rms(slotErrorsM(tracks, instant))))
+    Vector(offSlots)
 
   override def measures: Vector[Measure] =
     val settled = Window.After(SettlingS)
     val largest = Series("largest", "m")(tracks => instant => slotErrorsM(tracks, instant).max)
     Vector(
-      Measure("slot rms", "m")(tracks =>
-        settled.of(tracks).map(over => rms(over.flatMap(slotErrorsM(tracks, _))))
-      ),
+      offSlots.rms("slot rms", settled),
       largest.most("largest", settled),
       largest.mostAt("at", settled)
     )
 
   override def note: String =
     s"Distance of the followers to their slots after the first $SettlingS s: root mean square, and the largest."
+
+  private def offSlots =
+    val (ahead, right) = slots.unzip
+    Series.of("slot error, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
 
   /** From each follower to its slot in the frame along the circuit where the leader is, m. */
   private def slotErrorsM(tracks: Tracks, instant: Int): Vector[Double] =
@@ -85,6 +87,3 @@ final case class Formation(
 object Formation:
   /** For the vehicles to get under way; not counted. */
   private val SettlingS = 10.0
-
-  private def rms(values: Seq[Double]): Double =
-    math.sqrt(values.map(value => value * value).sum / values.size)

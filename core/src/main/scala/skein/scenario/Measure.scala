@@ -46,21 +46,17 @@ final class Series(val name: String, val unit: String, val bound: Option[Bound])
   /** With the unit. */
   def title: String = if unit.isEmpty then name else s"$name, $unit"
 
-  def mean(name: String, over: Window = Window.Whole): Measure =
-    reduced(name, over)(values => values.sum / values.size)
+  def mean(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Mean)
 
   /** Root of the mean square. */
-  def rms(name: String, over: Window = Window.Whole): Measure =
-    reduced(name, over)(values => math.sqrt(values.map(value => value * value).sum / values.size))
+  def rms(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Rms)
 
   /** Standard deviation. */
-  def sd(name: String, over: Window = Window.Whole): Measure = reduced(name, over): values =>
-    val mean = values.sum / values.size
-    math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size)
+  def sd(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Sd)
 
-  def least(name: String, over: Window = Window.Whole): Measure = reduced(name, over)(_.min)
+  def least(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Least)
 
-  def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over)(_.max)
+  def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
 
   /** When it was least, the first time, s. */
   def leastAt(name: String, over: Window = Window.Whole): Measure = Measure(name, "s"): tracks =>
@@ -83,14 +79,18 @@ final class Series(val name: String, val unit: String, val bound: Option[Bound])
     val value = at(tracks)
     tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
 
-  private def reduced(name: String, over: Window)(reduce: IndexedSeq[Double] => Double): Measure =
+  private def reduced(name: String, over: Window, reduction: Reduction): Measure =
     Measure(name, unit): tracks =>
       val value = at(tracks)
-      over.of(tracks).map(instants => reduce(instants.map(value)))
+      over.of(tracks).map(instants => reduction.of(instants.map(value)))
 
 object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =
     new Series(name, unit, bound)(at)
+
+  /** Of a quantity that a search can judge by, too. */
+  def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
+    Series(name, unit, bound)(tracks => instant => quantity.of(tracks.places(instant)))
 
 /** What a quantity is held to.
   *

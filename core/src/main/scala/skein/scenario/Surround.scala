@@ -33,18 +33,17 @@ final case class Surround(
       AtOneAltitude.agent(s"Pursuer${pursuer + 1}", Role.Pursuer, pursuerMps, 0, eastM, altitudeM, 0, policy)
     evader +: pursuers
 
-  override def series: Vector[Series] =
-    Vector(Series("off the ring, rms", "m")(tracks => instant => offRingM(ringM, tracks, instant to instant)))
+  private def offRing = Series.of("off the ring, rms", "m", OffRing(ringM))
+
+  override def series: Vector[Series] = Vector(offRing)
 
   override def measures: Vector[Measure] =
-    val last                                                            = Window.Last(10)
-    def over(name: String, unit: String)(of: (Tracks, Range) => Double) =
-      Measure(name, unit)(tracks => last.of(tracks).map(of(tracks, _)))
+    val last = Window.Last(10)
     Vector(
-      over("off ring", "m")(offRingM(ringM, _, _)),
-      over("ring", "m")((tracks, range) => mean(range.map(meanDistanceM(tracks, _)))),
-      over("nearest", "m")((tracks, range) => range.map(distancesM(tracks, _).min).min),
-      over("gap", "°")((tracks, range) => mean(range.map(gapDeg(tracks, _)))),
+      offRing.rms("off ring", last),
+      Series("ring", "m")(tracks => instant => mean(distancesM(tracks, instant))).mean("ring", last),
+      Series("nearest", "m")(tracks => instant => distancesM(tracks, instant).min).least("nearest", last),
+      gap.mean("gap", last),
       Measure("surrounded after", "s")(surroundedFromS)
     )
 
@@ -54,32 +53,16 @@ final case class Surround(
       s"(${(360.0 / (vehicles - 1)).round}° is even); surrounded: from when on no such angle reaches 180°."
 
 object Surround:
+  private val gap = Series.of("gap", "°", WidestGap)
 
   /** Of the pursuers from the evader, the first vehicle, m. */
   private def distancesM(tracks: Tracks, instant: Int) =
     tracks.vehicles.tail.map(tracks.distanceM(0, _, instant))
 
-  private def meanDistanceM(tracks: Tracks, instant: Int): Double = mean(distancesM(tracks, instant))
-
-  /** Root mean square of how far the pursuers are from the ring, m. */
-  private def offRingM(ringM: Double, tracks: Tracks, over: Range): Double =
-    math.sqrt(mean(over.flatMap(distancesM(tracks, _)).map(_ - ringM).map(off => off * off)))
-
-  /** The largest angle between neighbouring pursuers, as the evader sees them, degrees. */
-  private def gapDeg(tracks: Tracks, instant: Int): Double =
-    val bearings = tracks.vehicles.tail
-      .map(pursuer =>
-        StrictMath.atan2(
-          tracks.eastM(pursuer)(instant) - tracks.eastM(0)(instant),
-          tracks.northM(pursuer)(instant) - tracks.northM(0)(instant)
-        )
-      )
-      .sorted
-    bearings.zip(bearings.tail :+ (bearings.head + 2 * math.Pi)).map((one, next) => next - one).max.toDegrees
-
   /** From when on the evader stays between its pursuers, s: no gap reaches 180° any more. */
   private def surroundedFromS(tracks: Tracks): Option[Double] =
-    val outside = tracks.instants.lastIndexWhere(gapDeg(tracks, _) >= 180)
-    Option.when(outside < tracks.instants.last)(tracks.timeS(outside + 1))
+    val gaps    = gap.curve(tracks).points
+    val outside = gaps.lastIndexWhere(_._2 >= 180)
+    Option.when(outside < gaps.size - 1)(gaps(outside + 1)._1)
 
   private def mean(values: Seq[Double]): Double = values.sum / values.size

@@ -29,6 +29,11 @@ final class Tracks private (
   def positionNed(vehicle: Int, instant: Int): Vector3 =
     Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
 
+  /** Of all vehicles. */
+  def places(instant: Int): Places =
+    def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))
+    Places(now(northM), now(eastM), now(downM))
+
   /** As it was read, m/s. */
   def velocityNed(vehicle: Int, instant: Int): Vector3 =
     tracks(vehicle).velocityAt(from + Tracks.step * instant)
@@ -50,10 +55,6 @@ final class Tracks private (
   /** Between two vehicles, in space, m. */
   def separationM(one: Int, other: Int, instant: Int): Double =
     (positionNed(one, instant) - positionNed(other, instant)).norm
-
-  /** Every two vehicles, once. */
-  def pairs: Vector[(Int, Int)] =
-    for one <- vehicles.toVector; other <- (0 until one).toVector yield (one, other)
 
   /** How far the vehicles were from where those of another flight were at the same time since the start: root of the mean
     * square over vehicles and instants, m.

@@ -5,7 +5,6 @@ import skein.forward.*
 import skein.policy.*
 import skein.scenario.*
 import skein.signal.SplitMix64
-import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -89,7 +88,7 @@ class TeamLanesSuite extends munit.FunSuite:
       agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 3, 50)
 
   private def agree(
-      draw: SplitMix64 => TeamScenario,
+      draw: SplitMix64 => Scenario,
       timing: LoopTiming,
       link: Delays,
       plant: VelocityResponse,
@@ -120,7 +119,7 @@ class TeamLanesSuite extends munit.FunSuite:
         math.hypot(x - truth(i)._1, y - truth(i)._2)
       assert(off.max < mostM, s"world $world: ${off.max} m at score ${off.indices.maxBy(off) / count}")
 
-  private val quantities: Seq[(String, SplitMix64 => TeamScenario, Int => Vector[Quantity])] =
+  private val quantities: Seq[(String, SplitMix64 => Scenario, Int => Vector[Quantity])] =
     val circuit = Racetrack(50, 20)
     Seq(
       ("surround", scenarios(0)._2, i => Vector(OffRing(7 + 0.01 * i), WidestGap, Separation)),
@@ -165,7 +164,7 @@ class TeamLanesSuite extends munit.FunSuite:
           )
 
   test("what cannot fly by lanes says why, and is flown by the scalar reference"):
-    val team     = Engagement.of(TeamScenario.Crossing(4).scenario, 5)
+    val team     = Engagement.of(Crossing(4).fleet, 5)
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
     assert(batch.engine(crossing).startsWith("scalar: a policy is no formula: skein.policy.Avoidance"))
