@@ -2,7 +2,6 @@ package skein.loop
 
 import skein.loop.planning.Plan
 import skein.planning.{JointPlanner, PlanProblem}
-import skein.record.Decision
 import skein.units.Instant
 
 /** What one vehicle's decisions are made by when they are made again, with its memory. Immutable. */

@@ -27,7 +27,7 @@ private object Observed:
       val picture  = builder.add(team.pictureWithForecast)
 
       for vehicle <- team.vehicles do
-        StreamLoop.sense(team, vehicle, start, stop).map(Percept.Read(_, _)) ~> percepts.in(vehicle)
+        StreamLoop.sense(team, vehicle, start, stop).map(Percept.Read(_)) ~> percepts.in(vehicle)
       team.due(start).via(stop.flow) ~> percepts.in(due)
       for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(due + 1 + sensor)
       percepts ~> picture

@@ -6,7 +6,7 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import scala.util.{Failure, Success}
 import skein.port.{SteppedTime, VehicleError}
-import skein.record.*
+import skein.record.EventKind
 import skein.signal.Stamped
 import skein.units.*
 
@@ -76,7 +76,7 @@ private final class PausedFlight(
       sensed   <- orFail(team.senseAll())
       now  = readings(0).state.validAt
       seen = readings.foldLeft(step.picture)((seen, reading) =>
-        seen.withReading(reading._1, reading._2.copy(state = PausedLoop.timeless(reading._2.state)))
+        seen.withReading(reading.copy(state = PausedLoop.timeless(reading.state)))
       )
       picture = sensed.foldLeft(seen)((seen, reading) =>
         seen.withSensorReading(reading.copy(values = PausedLoop.timeless(reading.values)))
@@ -84,22 +84,21 @@ private final class PausedFlight(
       _       = verifyStep(step, now)
       decided =
         team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
-      _ = send(decided.map(_._2), picture)
+      _ = send(decided.map(_._2))
       // A move has reached the simulator when the one that it replaces has ended.
       _ <- Future.traverse(replaced)(orFail)
       _ <- orFail(stepper.continueFor(team.settings.period))
     yield
-      val moved = team.vehicles.zip(decided).foldLeft(picture):
-        case (seen, (vehicle, (_, decision))) =>
-          seen.withMove(Move.of(vehicle, decision, now))
+      val moved = decided.foldLeft(picture):
+        case (seen, (_, decision)) => seen.withMove(Move.of(decision, now))
       Some((Step(step.number + 1, decided.map(_._1), moved), Done))
 
-  private def send(decisions: Vector[Decision], picture: Picture): Unit =
+  private def send(decisions: Vector[Decision]): Unit =
     replaced = newest
-    newest = decisions.zipWithIndex.map: (decision, vehicle) =>
-      team.log.decided(vehicle, decision, picture)
-      team.log.sent(vehicle, decision, clock.now())
-      team.move(vehicle, decision).andThen(result => team.log.ended(vehicle, decision, clock.now(), result))
+    newest = decisions.map: decision =>
+      team.log.decided(decision)
+      team.log.sent(decision, clock.now())
+      team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
   private def verifyStep(step: Step, now: Instant): Unit =
     for before <- step.picture.readings(0) do

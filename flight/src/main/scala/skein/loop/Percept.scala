@@ -1,16 +1,14 @@
 package skein.loop
 
 import skein.forecast.Evidence
-import skein.record.Reading
-import skein.signal.Stamped
 
 /** What enters the picture. */
 enum Percept:
-  /** Readings by vehicle, and the vehicles to decide upon them. */
-  case Seen(readings: Map[Int, Reading], deciders: Set[Int])
+  /** Readings of different vehicles, and the vehicles to decide upon them. */
+  case Seen(readings: Vector[Reading], deciders: Set[Int])
 
   /** A reading that nobody decides upon at once. */
-  case Read(vehicle: Int, reading: Reading)
+  case Read(reading: Reading)
 
   /** What a sensor said. */
   case Measured(reading: SensorReading)
@@ -23,21 +21,6 @@ enum Percept:
 
   /** What a forecast is told of besides. */
   case Heard(evidence: Evidence)
-
-/** What a sensor of a vehicle said.
-  *
-  * @param sequence
-  *   counts the answers asked of this sensor, in the order in which they were asked for
-  * @param columns
-  *   names of the values, with units
-  */
-final case class SensorReading(
-    vehicle: Int,
-    sensor: String,
-    sequence: Long,
-    columns: Vector[String],
-    values: Stamped[Vector[Double]]
-)
 
 /** A picture and the vehicles to decide upon it. */
 final case class Sight(picture: Picture, deciders: Set[Int])

@@ -1,19 +1,7 @@
 package skein.loop
 
-import skein.policy.{
-  Action,
-  AgentPolicy,
-  Fleet,
-  Observation,
-  PlanarPolicy,
-  Policy,
-  Role,
-  Seen,
-  Sensed,
-  TeamSight
-}
+import skein.policy.{Action, AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Seen, Sensed, TeamSight}
 import skein.forecast.{Estimate, Evidence, Forecast}
-import skein.record.{Decision, Observations, Predicted, PredictedMotion, Reading, Sensing, Sighting, TrueAge}
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -34,8 +22,8 @@ final case class Move(
 )
 
 object Move:
-  def of(vehicle: Int, decision: Decision, sentAt: Instant): Move =
-    Move(vehicle, decision.sequence, decision.heading.value, sentAt, decision.speed, decision.action)
+  def of(decision: Decision, sentAt: Instant): Move =
+    Move(decision.vehicle, decision.sequence, decision.heading.value, sentAt, decision.speed, decision.action)
 
 /** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
   * two clocks relate.
@@ -55,11 +43,11 @@ final case class Picture(
     forecast: Option[Forecast] = None,
     estimates: Option[Vector[Estimate]] = None
 ):
-  def withReading(vehicle: Int, reading: Reading): Picture =
+  def withReading(reading: Reading): Picture =
     copy(
-      readings = readings.updated(vehicle, Some(reading)),
+      readings = readings.updated(reading.vehicle, Some(reading)),
       alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
-    ).withEvidence(Evidence.Seen(vehicle, reading.state))
+    ).withEvidence(Evidence.Seen(reading.vehicle, reading.state))
 
   /** Nothing changes where a newer one is held already. */
   def withSensorReading(reading: SensorReading): Picture =
@@ -75,9 +63,13 @@ final case class Picture(
   def kinematics(vehicle: Int): Kinematics =
     estimates.fold(readings(vehicle).get.state.value)(_(vehicle).kinematics)
 
+  /** Commanded last to a vehicle, as far as known; before the first command that of the start. */
+  def headingRad(vehicle: Int, fleet: Fleet): Double =
+    moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.headingRad)
+
   /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
-  def isNews(vehicle: Int, reading: Reading): Boolean =
-    readings(vehicle).forall(held => reading.state.isNewerThan(held.state))
+  def isNews(reading: Reading): Boolean =
+    readings(reading.vehicle).forall(held => reading.state.isNewerThan(held.state))
 
   /** Whether every vehicle was seen at least once; only then can be decided. */
   def isComplete: Boolean = readings.forall(_.isDefined)
@@ -141,7 +133,9 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
       self,
       places.map(seen(picture, now, _)),
       opponentIn(picture),
-      places.map(place => Radians(if place == self then memory.headingRad else headingIn(picture, place))),
+      places.map(place =>
+        Radians(if place == self then memory.headingRad else picture.headingRad(place, scenario))
+      ),
       elapsed(memory, now),
       memory.decisions,
       agent.speed,
@@ -161,37 +155,10 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
   def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
     TeamSight.of(observation(memory, picture, now))
 
-  /** What a decision was made from besides what it names itself: the other vehicles, where the whole team was regarded.
-    */
-  def sightings(picture: Picture, decision: Decision, regardsTeam: Boolean): Vector[Sighting] =
-    if !regardsTeam then Vector.empty
-    else
-      for
-        other <- scenario.agents.indices.toVector
-        reading = picture.readings(other).get
-        if other != self && reading.vehicle != decision.opponent.vehicle
-      yield Sighting(
-        agent.name,
-        decision.sequence,
-        reading.vehicle,
-        reading.sequence,
-        picture.estimates.map: estimates =>
-          val expected = estimates(other).kinematics
-          PredictedMotion(expected.positionNed, expected.velocityNed)
-      )
-
-  /** What a decision was made from of what sensors said. */
-  def sensings(picture: Picture, decision: Decision): Vector[Sensing] =
-    picture.sensed(self).toVector.sortBy(_._1).map: (sensor, reading) =>
-      Sensing(agent.name, decision.sequence, sensor, reading.sequence)
-
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 
   private def opponentIn(picture: Picture): Int =
     scenario.opponentOf(self, picture.kinematics(_).positionNed)
-
-  private def headingIn(picture: Picture, other: Int): Double =
-    picture.moves(other).fold(scenario.agents(other).startHeading.value)(_.headingRad)
 
   /** The decision for a course that was chosen, however that was done.
     *
@@ -205,51 +172,15 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
       heading: Double,
       speed: Option[MetresPerSecond]
   ): (Memory, Decision) =
-    val other                      = opponentIn(picture)
-    val own                        = picture.readings(self).get
-    val opponent                   = picture.readings(other).get
-    val opponentHeading            = headingIn(picture, other)
-    val (here, there)              = (picture.kinematics(self), picture.kinematics(other))
-    val toOpponent                 = there.positionNed - here.positionNed
-    val (toEvader, pursuerHeading) = agent.role match
-      case Role.Evader => (toOpponent * -1, opponentHeading)
-      case _           => (toOpponent, memory.headingRad)
-    val (cos, sin) = (StrictMath.cos(pursuerHeading), StrictMath.sin(pursuerHeading))
-    val decision   = Decision(
+    val decision = Decision(
+      vehicle = self,
       sequence = memory.decisions,
-      vehicle = agent.name,
       decidedAt = now,
-      own = own,
-      opponent = opponent,
-      relativeX = Metres(toEvader.x * cos + toEvader.y * sin),
-      relativeY = Metres(-toEvader.x * sin + toEvader.y * cos),
+      picture = picture,
+      opponent = opponentIn(picture),
       headingBefore = Radians(memory.headingRad),
-      opponentHeading = Radians(opponentHeading),
-      heading = Radians(heading),
       elapsed = elapsed(memory, now),
-      observations = Observations(
-        ownAge = own.state.ageByArrival(now),
-        opponentAge = opponent.state.ageByArrival(now),
-        sinceOwnMove = picture.moves(self).map(move => now.since(move.sentAt)),
-        sinceOpponentMove = picture.moves(other).map(move => now.since(move.sentAt))
-      ),
-      trueAge = picture.alignment.map(alignment =>
-        TrueAge(
-          own = now.since(alignment.toController(own.state.validAt)),
-          opponent = now.since(alignment.toController(opponent.state.validAt)),
-          clockOffset = alignment.offset,
-          uncertainty = alignment.uncertainty
-        )
-      ),
-      predicted = picture.estimates.map(estimates =>
-        Predicted(
-          estimates(self).predictedFor,
-          here.positionNed,
-          here.velocityNed,
-          there.positionNed,
-          there.velocityNed
-        )
-      ),
+      heading = Radians(heading),
       speed = speed
     )
     (memory.copy(headingRad = heading, decidedAt = Some(now), decisions = memory.decisions + 1), decision)

@@ -5,7 +5,6 @@ import org.apache.pekko.stream.*
 import org.apache.pekko.stream.scaladsl.*
 import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.Future
-import skein.record.Decision
 
 /** [[PredictiveLoop]] that plans: for the vehicles of a [[JointPlanning]], thousands of manoeuvres are flown forward from
   * the estimates of each tick until the deadline, each vehicle's against the plans of all others, and the first actions of
@@ -24,7 +23,7 @@ object PlanLoop:
       val lead     = team.settings.planning.deadline + planning.deadTime
       val observed = builder.add(Observed(team, stop))
       val cast     = builder.add(Broadcast[Sight](single.size + 1))
-      val planned  = builder.add(Broadcast[Vector[(Int, Decision)]](planning.vehicles.size))
+      val planned  = builder.add(Broadcast[Vector[Decision]](planning.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))
 
@@ -51,5 +50,5 @@ object PlanLoop:
       ClosedShape
     })
 
-  private def only(vehicle: Int): Flow[Vector[(Int, Decision)], Decision, NotUsed] =
-    Flow[Vector[(Int, Decision)]].mapConcat(_.collect { case (`vehicle`, decision) => decision })
+  private def only(vehicle: Int): Flow[Vector[Decision], Decision, NotUsed] =
+    Flow[Vector[Decision]].mapConcat(_.filter(_.vehicle == vehicle))

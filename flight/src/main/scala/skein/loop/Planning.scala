@@ -2,7 +2,6 @@ package skein.loop
 
 import skein.planning.*
 import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
-import skein.record.Decision
 import skein.signal.Kinematics
 import skein.units.*
 

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.policy.Fleet
-import skein.record.*
+import skein.record.{Decision as DecisionRow, Reading as ReadingRow, *}
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -16,15 +16,17 @@ import skein.units.*
 final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings = PlanSettings()):
   import Replay.*
 
+  private val rows     = Rows(scenario)
   private val paused   = recording.flight.isPaused
   private val indexOf  = scenario.agents.map(_.name).zipWithIndex.toMap
   private val readings =
     if paused then recording.readings.map(read => read.copy(state = PausedLoop.timeless(read.state)))
     else recording.readings
   private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
-  private val heard      = scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name)))
-  private val sighted    = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
-  private val measured   = recording.measurements
+  private val heard      =
+    scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name).map(message)))
+  private val sighted  = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
+  private val measured = recording.measurements
     .map(read => (read.vehicle, read.sensor, read.sequence) -> read)
     .toMap
   private val sensings = recording.sensings.groupBy(sensing => (sensing.vehicle, sensing.decision))
@@ -69,19 +71,19 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       .collectFirst { case (_, Some(difference)) => difference }
 
   /** All decisions, but for those made together last of which a recording that broke off has not got all. */
-  private def whole: Vector[Decision] =
+  private def whole: Vector[DecisionRow] =
     val cut = together.maxByOption(_._1).filter(_._2.size < planners.size).map(_._1)
     recording.decisions.filterNot(decision =>
       cut.contains(decision.decidedAt) && planners.contains(decision.vehicle)
     )
 
-  private def again(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
+  private def again(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
     (minds.decided.get(recorded.vehicle, recorded.sequence), minds.jointly) match
       case (Some(decision), _)                                       => Right((minds, decision))
       case (None, Some(mind)) if planners.contains(recorded.vehicle) => againTogether(minds, mind, recorded)
       case _                                                         => againAlone(minds, recorded)
 
-  private def againAlone(minds: Minds, recorded: Decision): Either[Difference, (Minds, Decision)] =
+  private def againAlone(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
     for
       self    <- vehicle(recorded, "vehicle", recorded.vehicle)
       picture <- picture(recorded, self, minds.single(self).regardsTeam)
@@ -91,17 +93,17 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
         if missed((recorded.vehicle, recorded.sequence)) then
           mind.decideBy(instead(self), picture, recorded.decidedAt)
         else mind.decide(picture, recorded.decidedAt)
-      (minds.copy(single = minds.single.updated(self, next)), decision)
+      (minds.copy(single = minds.single.updated(self, next)), rows.decision(decision))
 
   private def againTogether(
       minds: Minds,
       mind: JointMind,
-      recorded: Decision
-  ): Either[Difference, (Minds, Decision)] =
-    val made = together(recorded.decidedAt)
+      recorded: DecisionRow
+  ): Either[Difference, (Minds, DecisionRow)] =
+    val recordedToo = together(recorded.decidedAt)
     for
       all <- collected(planners): name =>
-        made.get(name).toRight(Difference(
+        recordedToo.get(name).toRight(Difference(
           where(recorded),
           "vehicle",
           name,
@@ -113,8 +115,9 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
         )
       slices <- searched(recorded)
     yield
-      val (next, decisions) = mind.decide(pictures, recorded.decidedAt, slices)
-      val decided = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+      val (next, made) = mind.decide(pictures, recorded.decidedAt, slices)
+      val decisions    = made.map(rows.decision)
+      val decided      = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
       // Where its number is another, it differs from what is recorded.
       val own = decisions(planners.indexOf(recorded.vehicle))
       (minds.copy(jointly = Some(next), decided = decided), own)
@@ -126,7 +129,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       case (missing, _)      => Left(missing.head)
 
   /** What a decision was made from. */
-  private def picture(recorded: Decision, self: Int, regardsTeam: Boolean): Either[Difference, Picture] =
+  private def picture(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, Picture] =
     for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
       own      <- reading(recorded, "ownSequence", recorded.own)
@@ -150,7 +153,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
         .getOrElse(possible.head)
 
   /** What the vehicle's sensors had said. */
-  private def sensed(of: Decision, self: Int): Either[Difference, Map[String, SensorReading]] =
+  private def sensed(of: DecisionRow, self: Int): Either[Difference, Map[String, SensorReading]] =
     collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
       measured
         .get((of.vehicle, sensing.sensor, sensing.measurement))
@@ -164,7 +167,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
     .map(_.toMap)
 
   /** How far each search of a decision went. */
-  private def searched(of: Decision): Either[Difference, Vector[Int]] =
+  private def searched(of: DecisionRow): Either[Difference, Vector[Int]] =
     planned
       .get((of.vehicle, of.sequence))
       .map(_.slices.map(_.toInt))
@@ -175,7 +178,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
     fallback.policy(scenario.agents(self)).fold(Decider(scenario, self))(Decider(scenario, self, _))
 
   /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
-  private def othersSeen(of: Decision, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
+  private def othersSeen(of: DecisionRow, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
     val rest = scenario.agents.indices.filter(index => index != self && index != opponent)
     rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
       val name = scenario.agents(vehicle).name
@@ -186,16 +189,17 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
         )
         reading <- bySequence
           .get((name, sighting.reading))
+          .map(message)
           .toRight(Difference(where(of), "sighting", s"$name ${sighting.reading}", "no such reading"))
       yield readings.updated(vehicle, reading)
 
-  private def sightingOf(of: Decision, vehicle: String): Option[Sighting] =
+  private def sightingOf(of: DecisionRow, vehicle: String): Option[Sighting] =
     sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
 
   /** The picture with what was known of the vehicles that the decision was not made from. It was drawn at some moment
     * after the readings used had come, so there is one for each reading that came since.
     */
-  private def pictures(known: Picture, recorded: Decision): Vector[Picture] =
+  private def pictures(known: Picture, recorded: DecisionRow): Vector[Picture] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
     val others   = scenario.agents.indices.filter(known.readings(_).isEmpty).toVector
     val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))
@@ -206,16 +210,17 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       if picture.isComplete
     yield picture.copy(estimates = recorded.predicted.map(estimates(picture, recorded, _)))
 
-  private def estimates(picture: Picture, recorded: Decision, predicted: Predicted) =
+  private def estimates(picture: Picture, recorded: DecisionRow, predicted: Predicted) =
     picture.readings.flatten.map: reading =>
+      val name      = rows.name(reading.vehicle)
       val read      = reading.state.value
       val estimated =
-        if reading.vehicle == recorded.vehicle then
+        if name == recorded.vehicle then
           moved(read, predicted.ownPositionNed, predicted.ownVelocityNed)
-        else if reading.vehicle == recorded.opponent.vehicle then
+        else if name == recorded.opponent.vehicle then
           moved(read, predicted.opponentPositionNed, predicted.opponentVelocityNed)
         else
-          sightingOf(recorded, reading.vehicle).flatMap(_.predicted) match
+          sightingOf(recorded, name).flatMap(_.predicted) match
             case Some(motion) => moved(read, motion.positionNed, motion.velocityNed)
             case None         => moved(read, OutOfSight, read.velocityNed)
       skein.forecast.Estimate(estimated, predicted.actsAt, reading.state.validAt)
@@ -228,19 +233,22 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
     val (least, most) = (age.clockOffset - age.uncertainty, age.clockOffset + age.uncertainty)
     ClockAlignment.of(Stamped((), Instant.Epoch, Instant.Epoch + least, Instant.Epoch + most))
 
-  private def vehicle(of: Decision, column: String, name: String): Either[Difference, Int] =
+  /** Of a vehicle that the fleet has. */
+  private def message(read: ReadingRow): Reading = Reading(indexOf(read.vehicle), read.sequence, read.state)
+
+  private def vehicle(of: DecisionRow, column: String, name: String): Either[Difference, Int] =
     indexOf.get(name).toRight(Difference(where(of), column, name, "no vehicle of the scenario"))
 
-  private def reading(of: Decision, column: String, used: Reading): Either[Difference, Reading] =
+  private def reading(of: DecisionRow, column: String, used: ReadingRow): Either[Difference, Reading] =
     bySequence.get((used.vehicle, used.sequence)) match
-      case Some(read) if read == used => Right(read)
+      case Some(read) if read == used => Right(message(read))
       case Some(read)                 =>
         Left(Difference(where(of), column, used.toString, s"another in the table of readings: $read"))
       case None =>
         Left(Difference(where(of), column, used.sequence.toString, "missing in the table of readings"))
 
   private def move(
-      of: Decision,
+      of: DecisionRow,
       column: String,
       vehicle: Int,
       since: Option[Span]
@@ -270,7 +278,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       decision.action
     )
 
-  private def where(decision: Decision): String = s"decision ${decision.sequence} of ${decision.vehicle}"
+  private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
   /** @param jointly
@@ -281,7 +289,7 @@ object Replay:
   private final case class Minds(
       single: Vector[Mind],
       jointly: Option[JointMind],
-      decided: Map[(String, Long), Decision]
+      decided: Map[(String, Long), DecisionRow]
   )
 
   /** The parameter that names what was done where deadlines were missed. */

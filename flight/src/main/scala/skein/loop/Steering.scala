@@ -2,7 +2,6 @@ package skein.loop
 
 import skein.flow.Steered
 import skein.port.VehicleError
-import skein.record.Decision
 
 /** A command to one vehicle that was sent or has ended. */
 final case class Steering(vehicle: Int, event: Steered[Decision, Either[VehicleError, Boolean]])

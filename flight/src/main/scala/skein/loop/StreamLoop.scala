@@ -6,7 +6,7 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import skein.flow.*
 import skein.port.VehicleError
-import skein.record.{Decision, EventKind, Reading}
+import skein.record.EventKind
 import skein.units.*
 
 /** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the latest
@@ -27,7 +27,7 @@ object StreamLoop:
       val fan      = builder.add(Broadcast[Steering](3))
 
       for vehicle <- team.vehicles do
-        sense(team, vehicle, start, stop) ~> readings.in(vehicle)
+        sense(team, vehicle, start, stop).map((vehicle, _)) ~> readings.in(vehicle)
         cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered.in(vehicle)
 
       readings ~> joinLatest(team) ~> percepts.in(0)
@@ -48,7 +48,7 @@ object StreamLoop:
       vehicle: Int,
       start: Instant,
       stop: SharedKillSwitch
-  ): Source[(Int, Reading), ?] =
+  ): Source[Reading, ?] =
     val settings = team.settings
     val offset   = settings.spread * vehicle.toLong / team.vehicles.size.toLong
     Sense
@@ -65,7 +65,6 @@ object StreamLoop:
           ticks => team.log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
       )
       .via(stop.flow)
-      .map((vehicle, _))
 
   private[loop] def joinLatest(team: Team): Flow[(Int, Reading), Percept, ?] =
     val everyone = team.vehicles.toSet
@@ -77,7 +76,7 @@ object StreamLoop:
             team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
         )
       )
-      .map(Percept.Seen(_, everyone))
+      .map(newest => Percept.Seen(newest.values.toVector, everyone))
 
   private def pacedDecisions(team: Team, vehicle: Int): Flow[Sight, Decision, ?] =
     if team.settings.decideThenPace then team.decide(vehicle).via(team.pace(vehicle))

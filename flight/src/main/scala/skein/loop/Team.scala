@@ -12,7 +12,7 @@ import skein.forecast.{Commanded, Evidence, Forecast}
 import skein.loop.planning.{Plan, PlanWorkers}
 import skein.policy.{Action, AgentPolicy, Fleet, Policy}
 import skein.port.{VehicleError, VehiclePort}
-import skein.record.*
+import skein.record.{EventKind, Recorder}
 import skein.units.*
 import skein.vehicle.Setpoint
 
@@ -45,7 +45,9 @@ final class Team(
       .read()
       .map:
         case Right(state) =>
-          Right(log.read(vehicle, sequence, state))
+          val reading = Reading(vehicle, sequence, state)
+          log.read(reading)
+          Right(reading)
         case Left(error) =>
           log.failed(vehicle, s"reading $sequence", error)
           Left(error)
@@ -89,11 +91,11 @@ final class Team(
           case error           => Future.successful(error)
 
   /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
-  def readAll(): Future[Either[VehicleError, Map[Int, Reading]]] =
-    vehicles.foldLeft(Future.successful[Either[VehicleError, Map[Int, Reading]]](Right(Map.empty))):
+  def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
+    vehicles.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
       (soFar, vehicle) =>
         soFar.flatMap:
-          case Right(readings) => read(vehicle).map(_.map(reading => readings.updated(vehicle, reading)))
+          case Right(readings) => read(vehicle).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
   /** Joins percepts to pictures; emits those on which somebody shall decide. */
@@ -112,12 +114,11 @@ final class Team(
           percept match
             case Percept.Seen(readings, deciders) =>
               val seen =
-                readings.foldLeft(picture)((picture, reading) => picture.withReading(reading._1, reading._2))
+                readings.foldLeft(picture)(_.withReading(_))
               (seen, Option.when(seen.isComplete)(Sight(seen, deciders)))
-            case Percept.Read(vehicle, reading) if picture.isNews(vehicle, reading) =>
-              (picture.withReading(vehicle, reading), None)
-            case Percept.Read(vehicle, reading) =>
-              log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+            case Percept.Read(reading) if picture.isNews(reading) => (picture.withReading(reading), None)
+            case Percept.Read(reading)                            =>
+              log.note(EventKind.Dropped, Some(reading.vehicle), s"reading ${reading.sequence} is stale")
               (picture, None)
             case Percept.Measured(reading) => (picture.withSensorReading(reading), None)
             case Percept.Moved(move)       =>
@@ -182,10 +183,8 @@ final class Team(
       // Not `filter`: it fetches one element ahead, which would grow old in it.
       .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
-        val (next, decision) = decideAt(vehicle, memory, seen._1, seen._2)
-        (next, (decision, seen._1)))
-      .via(Tap(log.decided(vehicle, _, _)))
-      .map(_._1)
+        decideAt(vehicle, memory, seen._1, seen._2))
+      .via(Tap(log.decided(_)))
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
     *
@@ -203,31 +202,29 @@ final class Team(
       policy: (Memory, (Picture, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[Sight, Decision, NotUsed] =
     type Seen = (Picture, Instant)
-    def withPicture(decided: (Memory, Decision), seen: Seen) = (decided._1, (decided._2, seen._1))
-    val otherwise                                            = instead.fold(Otherwise.Hold()): fallback =>
+    val otherwise = instead.fold(Otherwise.Hold()): fallback =>
       val decider = Decider(scenario, vehicle, fallback)
       Otherwise.Ask((memory: Memory, seen: Seen) =>
-        withPicture(decider.decide(memory, seen._1, seen._2), seen)
+        decider.decide(memory, seen._1, seen._2)
       )
     Flow[Sight]
       .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
       .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
-        policy(memory, seen).map(withPicture(_, seen))
+        policy(memory, seen)
       ))
       .map:
         case Timely.Decided(decision)     => Some(decision)
         case Timely.Missed(miss, instead) =>
-          log.missed(vehicle, miss, instead.map(_._1.sequence))
+          log.missed(vehicle, miss, instead.map(_.sequence))
           instead
-      .collect { case Some(decided) => decided }
-      .via(Tap(log.decided(vehicle, _, _)))
-      .map(_._1)
+      .collect { case Some(decision) => decision }
+      .via(Tap(log.decided(_)))
 
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(scenario, settings.planning, settings.seed)
 
   /** Plans upon each sight for all vehicles that plan, and records the decisions and how they were planned. */
-  def plan(planning: JointPlanning)(using ActorSystem): Flow[Sight, Vector[(Int, Decision)], NotUsed] =
+  def plan(planning: JointPlanning)(using ActorSystem): Flow[Sight, Vector[Decision], NotUsed] =
     type Seen = (Picture, Instant)
     val vehicles = planning.vehicles
     Flow[Sight]
@@ -236,13 +233,12 @@ final class Team(
         (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
         (memories, seen: Seen, parts, answer) =>
           val (next, planned) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
-          (next, (planned, answer, seen._1))
+          (next, (planned, answer))
       ))
-      .via(Tap((planned, answer, picture) =>
-        for (vehicle, one) <- vehicles.zip(planned) do
-          log.planned(vehicle, one, answer, picture, planning.regardsTeam(vehicle))
+      .via(Tap((planned, answer) =>
+        for one <- planned do log.planned(one, answer, planning.regardsTeam(one.decision.vehicle))
       ))
-      .map((planned, _, _) => vehicles.zip(planned.map(_.decision)))
+      .map((planned, _) => planned.map(_.decision))
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
@@ -276,7 +272,7 @@ final class Team(
           clock,
           settings.movesInFlight
         )(
-          move(vehicle, _),
+          move(_),
           () => crafts(vehicle).hover(),
           Team.isCertain,
           decision =>
@@ -294,11 +290,11 @@ final class Team(
 
   /** The moves sent. */
   def sent: Flow[Steering, Move, NotUsed] = Flow[Steering].collect:
-    case Steering(vehicle, Steered.Sent(decision, at)) => Move.of(vehicle, decision, at)
+    case Steering(_, Steered.Sent(decision, at)) => Move.of(decision, at)
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
   def told: Flow[Steering, Percept, NotUsed] = Flow[Steering].collect(Function.unlift:
-    case Steering(vehicle, Steered.Sent(decision, at)) => Some(Percept.Moved(Move.of(vehicle, decision, at)))
+    case Steering(_, Steered.Sent(decision, at)) => Some(Percept.Moved(Move.of(decision, at)))
     case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
       Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
     case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
@@ -320,9 +316,9 @@ final class Team(
       .map(_._2)
 
   /** Sends what was decided; the answer comes when the move ends. */
-  def move(vehicle: Int, decision: Decision): Future[Either[VehicleError, Boolean]] =
-    val answer =
-      crafts(vehicle).act(action(vehicle, decision), settings.moveDuration)
+  def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
+    import decision.vehicle
+    val answer = crafts(vehicle).act(action(decision), settings.moveDuration)
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
@@ -354,8 +350,9 @@ final class Team(
       Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
     }(Acting.setpoint)
 
-  private def action(vehicle: Int, decision: Decision): Action =
+  private def action(decision: Decision): Action =
     decision.action.getOrElse:
+      import decision.vehicle
       val velocity = scenario.agents(vehicle).velocityNed(decision.heading.value, decision.speed)
       Action.VelocityAt(velocity.x, velocity.y, altitude(vehicle))
 

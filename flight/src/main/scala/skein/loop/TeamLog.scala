@@ -5,12 +5,12 @@ import skein.flow.{Miss, Steered, Verified}
 import skein.loop.planning.Plan
 import skein.policy.Fleet
 import skein.port.VehicleError
-import skein.record.*
-import skein.signal.{Kinematics, Stamped}
+import skein.record.{Acknowledgement, Event, EventKind, Planned, Prediction, Recorder}
 import skein.units.*
 
 /** Tells a recorder what happens to a team in flight. */
 final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
+  private val rows = Rows(scenario)
 
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
@@ -34,27 +34,11 @@ final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
     note(TeamLog.kindOf(error), Some(vehicle), s"$what: ${error.message}")
 
-  /** A vehicle told where it is; returns the recorded reading. */
-  def read(vehicle: Int, sequence: Long, state: Stamped[Kinematics]): Reading =
-    val reading = Reading(sequence, name(vehicle), state)
-    recorder.offer(reading)
-    reading
+  /** A vehicle told where it is. */
+  def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
 
   /** A sensor said something. */
-  def sensed(reading: SensorReading): Unit =
-    import reading.values.{receivedAt, sentAt, validAt, value}
-    recorder.offer(
-      Measurement(
-        reading.sequence,
-        name(reading.vehicle),
-        reading.sensor,
-        reading.columns,
-        value,
-        validAt,
-        sentAt,
-        receivedAt
-      )
-    )
+  def sensed(reading: SensorReading): Unit = recorder.offer(rows.measurement(reading))
 
   /** How a prediction turned out that one vehicle's controller made. */
   def predicted(decider: Int, verified: Verified): Unit =
@@ -71,19 +55,13 @@ final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock
     )
 
   /** A decision and what it was made from. */
-  def decided(vehicle: Int, decision: Decision, picture: Picture): Unit =
-    decided(vehicle, decision, picture, deciders(vehicle).regardsTeam)
+  def decided(decision: Decision): Unit = decided(decision, deciders(decision.vehicle).regardsTeam)
 
   /** A planned decision, how it was planned, and what from. */
-  def planned(
-      vehicle: Int,
-      made: PlannedDecision,
-      answer: Plan.Answer,
-      picture: Picture,
-      regardsTeam: Boolean
-  ): Unit =
+  def planned(made: PlannedDecision, answer: Plan.Answer, regardsTeam: Boolean): Unit =
     val PlannedDecision(decision, action, plan, byPolicy) = made
-    decided(vehicle, decision, picture, regardsTeam)
+    import decision.vehicle
+    decided(decision, regardsTeam)
     recorder.offer(
       Planned(
         name(vehicle),
@@ -101,44 +79,31 @@ final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock
     for breach <- action.breaches.headOption do
       note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 
-  private def decided(vehicle: Int, decision: Decision, picture: Picture, regardsTeam: Boolean): Unit =
-    recorder.offer(decision)
-    deciders(vehicle).sightings(picture, decision, regardsTeam).foreach(recorder.offer)
-    deciders(vehicle).sensings(picture, decision).foreach(recorder.offer)
+  private def decided(decision: Decision, regardsTeam: Boolean): Unit =
+    recorder.offer(rows.decision(decision))
+    if regardsTeam then rows.sightings(decision).foreach(recorder.offer)
+    rows.sensings(decision).foreach(recorder.offer)
 
   /** A command was sent, or has ended. */
   def steered(steering: Steering): Unit = steering.event match
-    case Steered.Sent(decision, at)          => sent(steering.vehicle, decision, at)
-    case Steered.Ended(decision, at, result) => ended(steering.vehicle, decision, at, result)
+    case Steered.Sent(decision, at)          => sent(decision, at)
+    case Steered.Ended(decision, at, result) => ended(decision, at, result)
 
   /** A decision went on its way as a command. */
-  def sent(vehicle: Int, decision: Decision, at: Instant): Unit =
-    val agent    = scenario.agents(vehicle)
-    val velocity = agent.velocityNed(decision.heading.value, decision.speed)
-    recorder.offer(
-      Command(
-        decision.sequence,
-        agent.name,
-        Some(decision.sequence),
-        MetresPerSecond(velocity.x),
-        MetresPerSecond(velocity.y),
-        Metres(agent.startPositionNed.z),
-        at
-      )
-    )
+  def sent(decision: Decision, at: Instant): Unit = recorder.offer(rows.command(decision, at))
 
   /** What became of a command. */
-  def ended(vehicle: Int, decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
+  def ended(decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
     val outcome = result match
       case Success(Right(true))  => "done"
       case Success(Right(false)) => "superseded"
       case Success(Left(error))  =>
-        failed(vehicle, s"command ${decision.sequence}", error)
+        failed(decision.vehicle, s"command ${decision.sequence}", error)
         error.message
       case Failure(error) => error.toString
-    recorder.offer(Acknowledgement(name(vehicle), decision.sequence, at, outcome))
+    recorder.offer(Acknowledgement(name(decision.vehicle), decision.sequence, at, outcome))
 
-  private def name(vehicle: Int): String = scenario.agents(vehicle).name
+  private def name(vehicle: Int): String = rows.name(vehicle)
 
 object TeamLog:
   private def kindOf(error: VehicleError): EventKind = error match

@@ -6,7 +6,7 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
 import skein.policy.{KeepHeading, Policy}
-import skein.record.*
+import skein.record.{Decision as DecisionRow, Reading as _, *}
 import skein.scenario.PaperDuel
 import skein.signal.*
 import skein.units.*
@@ -17,7 +17,7 @@ class DecideWithinSuite extends munit.FunSuite:
   private val pursuer  = 1
 
   /** Decisions and events of five turns by a policy that is late in the third. */
-  private def flown(instead: Option[Policy]): (Vector[Decision], Vector[Event]) =
+  private def flown(instead: Option[Policy]): (Vector[DecisionRow], Vector[Event]) =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -33,10 +33,7 @@ class DecideWithinSuite extends munit.FunSuite:
           Quaternion.Identity,
           Vector3.Zero
         )
-        picture.withReading(
-          vehicle,
-          Reading(0, agent.name, Stamped(state, clock.now(), clock.now(), clock.now()))
-        )
+        picture.withReading(Reading(vehicle, 0, Stamped(state, clock.now(), clock.now(), clock.now())))
       var asked = -1
       Source
         .tick(0.millis, 100.millis, Sight(picture, Set(pursuer)))
@@ -47,8 +44,9 @@ class DecideWithinSuite extends munit.FunSuite:
             scala.concurrent.Future.successful(team.decideAt(pursuer, memory, seen._1, seen._2)))
         .runWith(Sink.seq)
         .map: decisions =>
-          assertEquals(recorder.recording.decisions, decisions.toVector)
-          (decisions.toVector, recorder.recording.events)
+          val recorded = recorder.recording
+          assertEquals(recorded.decisions, decisions.toVector.map(Rows(scenario).decision))
+          (recorded.decisions, recorded.events)
     .value
 
   test(

@@ -1,6 +1,5 @@
 package skein.loop
 
-import skein.record.Reading
 import skein.scenario.PaperDuel
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
@@ -23,15 +22,18 @@ class DeciderSuite extends munit.FunSuite:
   ) =
     val state = Kinematics(Vector3(x, y, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
     Reading(
+      vehicle,
       0,
-      scenario.agents(vehicle).name,
       Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs))
     )
 
   private val picture = Picture
     .empty(2)
-    .withReading(0, reading(0, 21, 4, 1010, 100, 120))
-    .withReading(1, reading(1, 1, 2, 1040, 130, 160))
+    .withReading(reading(0, 21, 4, 1010, 100, 120))
+    .withReading(reading(1, 1, 2, 1040, 130, 160))
+
+  /** As it is recorded. */
+  private def row(decided: (Memory, Decision)) = Rows(scenario).decision(decided._2)
 
   test("the pursuer integrates its turn over the time since its last decision"):
     val (first, _)  = pursuer.decide(pursuer.start, picture, millis(200))
@@ -42,26 +44,26 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(second.sequence, 1L)
 
   test("both deciders see the evader in the pursuer's frame"):
-    val heading       = math.Pi / 2
-    val (_, ofEvader) =
-      evader.decide(evader.start, picture.withMove(Move(1, 0, heading, millis(150))), millis(200))
+    val heading  = math.Pi / 2
+    val ofEvader =
+      row(evader.decide(evader.start, picture.withMove(Move(1, 0, heading, millis(150))), millis(200)))
     assertEqualsDouble(ofEvader.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofEvader.relativeY.value, -20, 1e-12)
-    val (_, ofPursuer) = pursuer.decide(pursuer.start.copy(headingRad = heading), picture, millis(200))
+    val ofPursuer = row(pursuer.decide(pursuer.start.copy(headingRad = heading), picture, millis(200)))
     assertEqualsDouble(ofPursuer.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
   test("the four observations count from arrival and from the moves sent"):
-    val moved         = picture.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
-    val (_, decision) = evader.decide(evader.start, moved, millis(200))
+    val moved    = picture.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
+    val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
     assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
     assertEquals(decision.observations.sinceOwnMove, Some(Span.ofMillis(50)))
     assertEquals(decision.observations.sinceOpponentMove, Some(Span.ofMillis(30)))
 
   test("the true age counts from the moment of sampling, within the stated uncertainty"):
-    val (_, decision) = evader.decide(evader.start, picture, millis(200))
-    val age           = decision.trueAge.get
+    val decision = row(evader.decide(evader.start, picture, millis(200)))
+    val age      = decision.trueAge.get
     // The offset lies in [-910, -890] by the first reading and in [-910, -880] by the second.
     val driftMs = 40 * ClockAlignment.MaxDrift
     assertEqualsDouble(age.clockOffset.toMillis, -900, driftMs)
@@ -70,5 +72,5 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
 
   test("no decision is made before every vehicle was seen"):
-    assert(!Picture.empty(2).withReading(0, reading(0, 0, 0, 0, 0, 0)).isComplete)
+    assert(!Picture.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)
     assert(picture.isComplete)

@@ -5,7 +5,7 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
-import skein.record.{EventKind, MemoryRecorder, Reading, Samples}
+import skein.record.{EventKind, MemoryRecorder, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -25,8 +25,7 @@ class PictureSuite extends munit.FunSuite:
   private def reading(vehicle: Int, sequence: Long, validMs: Double, sentMs: Double, receivedMs: Double) =
     val state =
       Kinematics(Vector3(sequence.toDouble, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
-    val name = PaperDuel().fleet.agents(vehicle).name
-    Reading(sequence, name, Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs)))
+    Reading(vehicle, sequence, Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs)))
 
   private val first = reading(0, 0, 10, 0, 30)
   private val later = reading(0, 1, 110, 100, 130)
@@ -48,19 +47,19 @@ class PictureSuite extends munit.FunSuite:
     .value
 
   test("a reading is news where it tells of a later moment, or was asked for when the other had come"):
-    val picture = Picture.empty(2).withReading(0, later)
-    assert(Picture.empty(2).isNews(0, late))
-    assert(!picture.isNews(0, late))
-    assert(!picture.isNews(0, later))
-    assert(picture.isNews(0, reading(0, 3, 111, 90, 160)))
-    assert(picture.isNews(0, reading(0, 3, 50, 131, 160)), "a simulator that was started again")
+    val picture = Picture.empty(2).withReading(later)
+    assert(Picture.empty(2).isNews(late))
+    assert(!picture.isNews(late))
+    assert(!picture.isNews(later))
+    assert(picture.isNews(reading(0, 3, 111, 90, 160)))
+    assert(picture.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
   test("a late reading is dropped and noted, and decided is upon the newer one"):
     val (sights, stale) = seen(
-      Percept.Read(0, first),
-      Percept.Read(1, other),
-      Percept.Read(0, later),
-      Percept.Read(0, late),
+      Percept.Read(first),
+      Percept.Read(other),
+      Percept.Read(later),
+      Percept.Read(late),
       Percept.Due(Set(0, 1))
     )
     assertEquals(sights.map(_.picture.readings), Vector(Vector(Some(later), Some(other))))
@@ -68,6 +67,6 @@ class PictureSuite extends munit.FunSuite:
     assertEquals(stale, Vector("reading 2 is stale"))
 
   test("nobody decides before everybody was seen"):
-    assertEquals(seen(Percept.Read(0, first), Percept.Due(Set(0, 1)))._1, Vector.empty)
-    assertEquals(seen(Percept.Seen(Map(0 -> first), Set(0)))._1, Vector.empty)
-    assertEquals(seen(Percept.Seen(Map(0 -> first, 1 -> other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
+    assertEquals(seen(Percept.Read(first), Percept.Due(Set(0, 1)))._1, Vector.empty)
+    assertEquals(seen(Percept.Seen(Vector(first), Set(0)))._1, Vector.empty)
+    assertEquals(seen(Percept.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))

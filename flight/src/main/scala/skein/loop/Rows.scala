@@ -1,0 +1,121 @@
+package skein.loop
+
+import skein.policy.{Fleet, Role}
+import skein.record.{
+  Command,
+  Decision as DecisionRow,
+  Measurement,
+  Observations,
+  Predicted,
+  PredictedMotion,
+  Reading as ReadingRow,
+  Sensing,
+  Sighting,
+  TrueAge
+}
+import skein.units.*
+
+/** The edge between a loop and its recorder: messages as rows. */
+private final class Rows(fleet: Fleet):
+
+  def name(vehicle: Int): String = fleet.agents(vehicle).name
+
+  def reading(read: Reading): ReadingRow = ReadingRow(read.sequence, name(read.vehicle), read.state)
+
+  def measurement(read: SensorReading): Measurement =
+    import read.values.{receivedAt, sentAt, validAt, value}
+    Measurement(
+      read.sequence,
+      name(read.vehicle),
+      read.sensor,
+      read.columns,
+      value,
+      validAt,
+      sentAt,
+      receivedAt
+    )
+
+  def decision(decision: Decision): DecisionRow =
+    import decision.{opponent as other, picture, vehicle as self}
+    val now                        = decision.decidedAt
+    val own                        = picture.readings(self).get
+    val opponent                   = picture.readings(other).get
+    val opponentHeading            = picture.headingRad(other, fleet)
+    val (here, there)              = (picture.kinematics(self), picture.kinematics(other))
+    val toOpponent                 = there.positionNed - here.positionNed
+    val (toEvader, pursuerHeading) = fleet.agents(self).role match
+      case Role.Evader => (toOpponent * -1, opponentHeading)
+      case _           => (toOpponent, decision.headingBefore.value)
+    val (cos, sin) = (StrictMath.cos(pursuerHeading), StrictMath.sin(pursuerHeading))
+    DecisionRow(
+      sequence = decision.sequence,
+      vehicle = name(self),
+      decidedAt = now,
+      own = reading(own),
+      opponent = reading(opponent),
+      relativeX = Metres(toEvader.x * cos + toEvader.y * sin),
+      relativeY = Metres(-toEvader.x * sin + toEvader.y * cos),
+      headingBefore = decision.headingBefore,
+      opponentHeading = Radians(opponentHeading),
+      heading = decision.heading,
+      elapsed = decision.elapsed,
+      observations = Observations(
+        ownAge = own.state.ageByArrival(now),
+        opponentAge = opponent.state.ageByArrival(now),
+        sinceOwnMove = picture.moves(self).map(move => now.since(move.sentAt)),
+        sinceOpponentMove = picture.moves(other).map(move => now.since(move.sentAt))
+      ),
+      trueAge = picture.alignment.map(alignment =>
+        TrueAge(
+          own = now.since(alignment.toController(own.state.validAt)),
+          opponent = now.since(alignment.toController(opponent.state.validAt)),
+          clockOffset = alignment.offset,
+          uncertainty = alignment.uncertainty
+        )
+      ),
+      predicted = picture.estimates.map(estimates =>
+        Predicted(
+          estimates(self).predictedFor,
+          here.positionNed,
+          here.velocityNed,
+          there.positionNed,
+          there.velocityNed
+        )
+      ),
+      speed = decision.speed,
+      action = decision.action
+    )
+
+  /** The other vehicles that a decision was made from besides its opponent, where the whole team was regarded. */
+  def sightings(decision: Decision): Vector[Sighting] =
+    for
+      other <- fleet.agents.indices.toVector
+      if other != decision.vehicle && other != decision.opponent
+    yield Sighting(
+      name(decision.vehicle),
+      decision.sequence,
+      name(other),
+      decision.picture.readings(other).get.sequence,
+      decision.picture.estimates.map: estimates =>
+        val expected = estimates(other).kinematics
+        PredictedMotion(expected.positionNed, expected.velocityNed)
+    )
+
+  /** What a decision was made from of what sensors said. */
+  def sensings(decision: Decision): Vector[Sensing] =
+    decision.picture.sensed(decision.vehicle).toVector.sortBy(_._1).map: (sensor, reading) =>
+      Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
+
+  /** A decision as the command that it went on its way as. */
+  def command(decision: Decision, at: Instant): Command =
+    val agent    = fleet.agents(decision.vehicle)
+    val velocity = agent.velocityNed(decision.heading.value, decision.speed)
+    Command(
+      decision.sequence,
+      agent.name,
+      Some(decision.sequence),
+      MetresPerSecond(velocity.x),
+      MetresPerSecond(velocity.y),
+      Metres(agent.startPositionNed.z),
+      at
+    )
