@@ -1,8 +1,9 @@
 package skein.report
 
-import skein.measure.{Deviation, Distribution, Numbers}
-import skein.record.{Event, EventKind}
+import skein.measure.{Deviation, Distribution, FlightSet, Numbers, Observation, PredictionErrors, PredictionGroup}
+import skein.record.{Event, EventKind, Planned, Recording}
 import skein.scenario.Scenarios
+import skein.units.*
 
 /** What the tables say, held against the flights that they are about. */
 class TablesSuite extends munit.FunSuite:
@@ -55,9 +56,9 @@ class TablesSuite extends munit.FunSuite:
 
   test("what happened is counted by flight; a rare kind of event has a column where any flight has it"):
     val refused = Event(streams.head.flight.startedAt, EventKind.Refused, None, "no")
-    val one     = streams.head.copy(events = streams.head.events :+ refused :+ refused)
+    val one     = streams.head.copy(events = streams.head.events :+ refused)
     val table   = SummaryTables.counts(Report.of(Seq(paused, one)))
-    assertEquals(row(table, "stream")("refused"), "2")
+    assertEquals(row(table, "stream")("refused"), "1")
     assertEquals(row(table, "paused")("refused"), "0")
     assertEquals(row(table, "stream")("readings"), one.readings.size.toString)
     assertEquals(row(table, "stream")("commands"), one.commands.size.toString)
@@ -70,3 +71,141 @@ class TablesSuite extends munit.FunSuite:
       assert(text.contains(title), s"no $title")
     for title <- Seq("Prediction error", PlanTable.title, "Live against virtual", "Results: surround") do
       assert(!text.contains(title), s"$title though there is none")
+
+  /** A duel of 20 s whose pursuer is so far north of the evader. */
+  private def duel(loop: String, seed: Long)(distanceM: Double => Double): Recording =
+    val flight   = SyntheticFlight(loop, "direct", seed, seconds = 20)
+    val like     = flight.readings.head
+    val sampled  = Instant.Epoch + Span.ofSeconds(100)
+    val readings =
+      for
+        tick    <- (0 to 200).toVector
+        vehicle <- flight.heading.vehicles
+      yield
+        val north = if vehicle.role.toLowerCase == "pursuer" then distanceM(tick / 10.0) else 0.0
+        val state = like.state.value.copy(positionNed = Vector3(north, 3, -20))
+        like.copy(
+          vehicle = vehicle.name,
+          state = like.state.copy(value = state, validAt = sampled + Span.ofMillis(100.0 * tick))
+        )
+    flight.copy(readings = readings)
+
+  /** Closes at 1 m/s, is 1.01 m apart at 10 s, and falls behind at 0.2 m/s. */
+  private def pass(more: Double)(second: Double) =
+    more + (if second < 10 then 11.01 - second else 1.01 + 0.2 * (second - 10))
+
+  private val steady = duel("paused", 1)(_ => 4.02)
+
+  test("distances: what was flown, where it was closest and when, its last 10 s, the truth's and the paper's"):
+    val table = SummaryTables.distances(Report.of(Seq(steady, duel("stream", 2)(pass(0)))))
+    assertEquals(
+      table.rows,
+      Vector(
+        Vector("paused", "direct", "20.0", "4.02", "0.0", "4.02", "0.00", "4.0 … 4.0", "") ++
+          Vector("8.53", "8.4 … 8.6", "3.75"),
+        Vector("stream", "direct", "20.0", "1.01", "10.0", "2.01", "0.58", "1.0 … 3.0", "-50.0 %") ++
+          Vector("9.31", "9.0 … 9.7", "3.78")
+      )
+    )
+
+  test("the spread of passes: of the mean, within a flight, of the closest, and how many were captures"):
+    val flights = Report.of(Seq(steady, duel("stream", 2)(pass(0)), duel("stream", 3)(pass(1)))).flights
+    assertEquals(
+      SpreadTable.of(flights).rows.last,
+      Vector("stream", "direct", "2", "2.51", "0.50", "2.01", "3.01", "0.58", "1.51", "1", "-37.6 %")
+    )
+
+  test("plans: how many candidates in what time, what was missed and broken, and when the evader was captured"):
+    def planned(candidates: Long, slices: Vector[Long], tookMs: Double, breaches: Long) =
+      Planned("Pursuer", 1, candidates, slices, Some(1), Span.ofMillis(tookMs), breaches)
+    val plans = Vector(
+      planned(1000, Vector(3, 4), 60, 0),
+      planned(500, Vector(2, 2), 62, 1),
+      planned(0, Vector(0, 0), 70, 2),
+      planned(300, Vector(1, 0), 60, 0)
+    )
+    val catches = duel("plan", 2)(pass(0)).copy(planned = plans)
+    val never   = duel("plan", 3)(pass(1)).copy(planned = plans.take(1))
+    val table   = PlanTable.of(Report.of(Seq(steady, catches, never)))
+    assertEquals(
+      table.rows,
+      Vector(
+        Vector("plan", "direct", "4", "450", "0", "3.0", "63", "70", "1", "2", "9.5", "14.7 %"),
+        Vector("plan", "direct", "1", "1000", "1000", "7.0", "60", "60", "0", "0", "never", "0.0 %")
+      )
+    )
+    assertEquals(table.header.size, table.rows.head.size)
+    assert(PlanTable.note(Report.of(Seq(catches))).contains("captured where"))
+
+  test("what teams planned has no captures"):
+    val unseen = duel("plan", 2)(pass(0)).copy(
+      planned = Vector(Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)),
+      readings = Vector.empty
+    )
+    val table = PlanTable.of(Report.of(Seq(unseen)))
+    assertEquals(table.rows.map(_.size), Vector(table.header.size))
+    assert(!table.header.contains("captured at s"), table.header)
+    assert(!PlanTable.note(Report.of(Seq(unseen))).contains("captured"))
+
+  test("prediction errors are in mm, and those of which none was verified are told"):
+    val own   = PredictionErrors(made = 50, Vector.tabulate(41)(index => (100.0, index * 2 / 1000.0)))
+    val none  = PredictionErrors(made = 0, Vector.empty)
+    val lost  = PredictionErrors(made = 3, Vector.empty)
+    val table = PredictionTable.of(
+      Vector(PredictionGroup("predictive", "vpn", own, none), PredictionGroup("plan", "vpn", lost, lost))
+    )
+    assertEquals(
+      table.rows,
+      Vector(
+        Vector("predictive", "vpn", "own vehicle", "50", "9", "100", "40.0", "76.0", "76.0"),
+        Vector("plan", "vpn", "own vehicle", "3", "3", "", "", "", ""),
+        Vector("plan", "vpn", "others", "3", "3", "", "", "", "")
+      )
+    )
+
+  test("observations stand beside the paper's of the same role, and true ages are means in ms"):
+    val recording = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
+    val table     = SummaryTables.observations(Report.of(Seq(recording)))
+    val paper     = table.header.indices.filter(table.header(_) == "paper")
+    assertEquals(
+      table.rows.map(row => row(2) +: paper.map(row).toVector),
+      Vector(Vector("evader", "26", "25", "79", "81"), Vector("pursuer", "25", "26", "79", "73"))
+    )
+    for (role, row) <- Seq("Evader", "Pursuer").zip(table.rows) do
+      val ages = recording.decisions.filter(_.vehicle == role).flatMap(_.trueAge)
+      def mean(of: Vector[Span]) = Numbers.brief(of.map(_.toMillis).sum / of.size)
+      assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
+    assertEquals(Observation.values.size, paper.size)
+
+  test("the page tells what was flown: parameters in their units, and when it began"):
+    val page = HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
+    val row  = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")
+    assertEquals(
+      row.split("[|]+").filter(_.nonEmpty).toSeq.take(11),
+      Seq("stream-direct", "stream", "direct", "7", "100", "12", "virtual", "synthetic", "duel", "0.1.0") :+
+        "2026-09-21T14:13:20Z"
+    )
+    assert(page.contains("Skein: 1 flights, scenario duel"), page.take(400))
+    assert(page.contains("one decision per vehicle every 100 ms; simulator synthetic; virtual clock"))
+
+  test("a set names its scenario only where all fly the same"):
+    val team  = SyntheticFlight("stream", "vpn", seed = 1, seconds = 12)
+    val other = team.copy(heading = team.heading.copy(flight = team.heading.flight.copy(scenario = "own")))
+    assert(HtmlReport.render(Report.of(Seq(team, other)), Nil).contains("<h1>Skein: 2 flights</h1>"))
+
+  test("flights that are shown are in the paper's order: by link, then by loop"):
+    val links = Seq("vpn", "zebra", "none", "direct")
+    val loops = Seq("stream", "paused", "sequential")
+    val summaries =
+      for
+        link <- links
+        loop <- loops
+        like = steady.heading
+      yield Recording(like.copy(flight = like.flight.copy(loop = loop, link = link)))
+    assertEquals(
+      FlightSet(Report.of(summaries).flights.reverse).flights.map(one => (one.flight.link, one.flight.loop)),
+      for
+        link <- Vector("none", "direct", "vpn", "zebra")
+        loop <- Vector("paused", "sequential", "stream")
+      yield (link, loop)
+    )

@@ -122,6 +122,8 @@ class TeamMeasuresSuite extends munit.FunSuite:
     val flights = set.scenarios.head
     val stream  = flights.flights.find(_.summary.flight.loop == "stream").get
     assertEquals(stream.result.measured.head.value, Some(2.0))
+    assertEquals(stream.summary.headline, Some(2.0))
+    assertEquals(stream.summary.published, None)
     assertEqualsDouble(flights.deviation(stream).get, 1, 1e-9)
     // Two of three vehicles are 1 m off.
     assertEqualsDouble(flights.offTruthM(stream).get, math.sqrt(2.0 / 3), 1e-9)
@@ -131,3 +133,46 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assert(text.contains("Results: surround") && text.contains("Distance between pursuer and evader"), text)
     val page = HtmlReport.render(set, ReportFigures.of(set))
     assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))
+
+  test("tables of teams: a row per flight, and one per loop and link with the spread of its flights"):
+    val scenario                                  = Crossing(vehicles = 3, streams = 2, minimumM = 2)
+    val goals                                     = scenario.goals
+    def pass(besideM: Double, arrives: Boolean) = (vehicle: Int, second: Double) =>
+      vehicle match
+        case 0 => ((second - 5) * 4, 200.0)
+        case 1 => (0.0, 200.0 + besideM)
+        case _ => if arrives && second >= 8 then goals(2) else (500.0, 500.0)
+    val set = Report.of(
+      Seq(
+        flown(scenario, 12, "paused")(pass(3, arrives = true)),
+        flown(scenario, 12)(pass(1, arrives = true)),
+        flown(scenario, 12)(pass(1.5, arrives = false)),
+        flown(scenario, 12)(pass(4, arrives = true))
+      )
+    )
+    val each = ScenarioTables.flights(set.scenarios.head)
+    assertEquals(
+      each.header.map(_.stripPrefix("<")).take(6),
+      Vector("loop", "link", "flown s", "closest m", "vs paused", "at s")
+    )
+    def column(table: TextTable, name: String) = table.header.map(_.stripPrefix("<")).indexOf(name)
+    assertEquals(
+      each.rows.map(_.take(5)),
+      Vector(
+        Vector("paused", "none", "12.0", "3.00", ""),
+        Vector("stream", "none", "12.0", "1.00", "-66.7 %"),
+        Vector("stream", "none", "12.0", "1.50", "-50.0 %"),
+        Vector("stream", "none", "12.0", "4.00", "+33.3 %")
+      )
+    )
+    assertEquals(each.rows.map(_(column(each, "violations"))), Vector("0", "1", "1", "0"))
+    assertEquals(each.rows.map(_(column(each, "to goal s"))), Vector("8.00", "8.00", "never", "8.00"))
+    assertEquals(each.rows.map(_.last).take(2), Vector("", "1.15")) // one of three is 2 m off
+
+    val spread = ScenarioTables.spread(set.scenarios.head)
+    assertEquals(spread.rows.map(_.take(3)), Vector(Vector("paused", "none", "1"), Vector("stream", "none", "3")))
+    val streams = spread.rows.last
+    assertEquals(streams(column(spread, "closest m")), "2.17 ± 1.31, 1.00 … 4.00")
+    assertEquals(streams(column(spread, "violations")), "2 in 2 flights")
+    assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
+    assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))

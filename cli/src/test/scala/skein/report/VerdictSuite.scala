@@ -22,6 +22,24 @@ class VerdictSuite extends munit.FunSuite:
       )
     )
 
+  test("the worst link is the one with the loop that is farthest off, and live flights come after virtual ones"):
+    val said = Verdict.sentences(Seq(
+      deviation("stream", "far", 0.3),
+      deviation("predictive", "far", 0.01),
+      deviation("stream", "near", -0.2),
+      deviation("predictive", "near", 0.1),
+      deviation("stream", "far", 0.9, "virtual"),
+      deviation("predictive", "far", 0.8, "virtual")
+    ))
+    assertEquals(
+      said,
+      Vector(
+        "Over far in virtual time, off the truth by: stream 90.0 %, predictive 80.0 %.",
+        "Over near, off the truth by: stream 20.0 %, predictive 10.0 %.",
+        "Over far, off the truth by: stream 30.0 %, predictive 1.0 %."
+      )
+    )
+
   test("live and virtual flights are not mixed"):
     val said = Verdict.sentences(Seq(
       deviation("stream", "vpn", 0.3),

@@ -9,5 +9,8 @@ class NumbersSuite extends munit.FunSuite:
       Seq("123", "10", "10", "9.9", "1.0", "1.0", "0.94", "0.05", "0", "-12", "-0.50")
     )
 
+  test("where the digits change, what is shown does not shrink"):
+    assertEquals(Seq(9.95, 0.95, -9.95, -0.95).map(Numbers.brief), Seq("10", "1.0", "-10", "-1.0"))
+
   test("signed numbers say their sign"):
     assertEquals(Seq(1.25, 0.0, -3.04).map(Numbers.signed), Seq("+1.3", "+0.0", "-3.0"))

@@ -52,11 +52,9 @@ object RecordingReader:
 
   private def checkVersion(file: Path, connection: Connection): Either[RecordError, Unit] =
     RecordingFile
-      .attempt(_ => RecordError.NotARecording(file, "it has no table 'format'")):
-        Using.resource(connection.createStatement()): statement =>
-          Using.resource(statement.executeQuery("SELECT max(version) FROM format")): rows =>
-            val _ = rows.next()
-            rows.getInt(1)
+      .attempt(_ => RecordError.NotARecording(file, "it has no table 'format'"))(
+        RecordingFormat.of(connection)
+      )
       .flatMap: found =>
         Either.cond(
           found >= RecordingFormat.oldest && found <= RecordingFormat.version,

@@ -8,7 +8,7 @@ import skein.record.Columns.*
 /** A table of a recording: the type of its rows, its name and its columns.
   *
   * @param since
-  *   the format that it came with; it has no rows in older files
+  *   the format that it came with: files of an older one do not have it, which reads as no rows
   */
 private[record] final case class Table[A <: Record](
     name: String,
@@ -41,7 +41,7 @@ private[record] final case class Table[A <: Record](
         case Some(column.sqlType)    => column.name
         case None if column.nullable => column.older.getOrElse("NULL")
         case _                       => column.older.getOrElse(column.name)
-    if isMissing(present) then Vector.empty
+    if isMissing(present, connection) then Vector.empty
     else
       Using.resource(connection.createStatement()): statement =>
         Using.resource(statement.executeQuery(
@@ -58,10 +58,10 @@ private[record] final case class Table[A <: Record](
     catch case bad: SQLException => throw SQLException(s"table $name, row $row: ${bad.getMessage}", bad)
 
   /** Whether an older file does not have it. */
-  def isMissing(connection: Connection): Boolean = isMissing(columnsIn(connection))
+  def isMissing(connection: Connection): Boolean = isMissing(columnsIn(connection), connection)
 
-  private def isMissing(present: Map[String, String]): Boolean =
-    present.isEmpty && since > RecordingFormat.oldest
+  private def isMissing(present: Map[String, String], connection: Connection): Boolean =
+    present.isEmpty && since > RecordingFormat.of(connection)
 
   /** Names and types. */
   private def columnsIn(connection: Connection): Map[String, String] =

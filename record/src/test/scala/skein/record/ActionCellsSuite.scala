@@ -19,3 +19,12 @@ class ActionCellsSuite extends munit.FunSuite:
   for action <- turned ++ others do
     test(s"$action is read back as it was"):
       assertEquals(ActionCells.of(action).action, action)
+
+  test("numbers that an action has not got are zero, so that equal actions have equal digests"):
+    def numbers(action: Action) =
+      val cells = ActionCells.of(action)
+      Seq(cells.x, cells.y, cells.z, cells.amount, cells.yaw)
+    for action <- Seq(Action.Hover, Action.Land, Action.Turn(Yaw.Still), Action.Turn(Yaw.Forward)) do
+      assertEquals(numbers(action), Seq(0.0, 0.0, 0.0, 0.0, 0.0), action.toString)
+    assertEquals(numbers(Action.Velocity(place, Yaw.Still)), Seq(1.25, -3.5, -20.75, 0, 0))
+    assertEquals(numbers(Action.VelocityAt(1, 2, Metres(3), Yaw.Turning(0.5))), Seq(1.0, 2, 3, 0, 0.5))

@@ -49,6 +49,23 @@ class RecordingSuite extends munit.FunSuite:
       assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
       assertEquals(Digest.ofFile(file), today)
 
+  folder.test("a table that came with a later format may be missing, one of the file's own format may not"):
+    folder =>
+      val file = folder.resolve("flight.duckdb")
+      record(file, Samples.oneOfEach*)
+      for
+        (table, came) <- Seq("sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
+        _ = execute(file, s"DROP TABLE $table")
+        format <- Seq(came, came - 1)
+      do
+        execute(file, s"UPDATE format SET version = $format")
+        RecordingReader.read(file) match
+          case Right(_) => assert(format < came, s"no $table in format $format")
+          case Left(RecordError.NotARecording(`file`, why)) =>
+            assert(format >= came, s"$table in format $format: $why")
+            assert(why.contains(table), why)
+          case other => fail(s"expected a recording or NotARecording, got $other")
+
   folder.test("rows are numbered through all tables in the order of their records"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.reading(1), Samples.decision(1), Samples.reading(2))
@@ -146,4 +163,19 @@ class RecordingSuite extends munit.FunSuite:
     recorder.offer(Samples.reading(3))
     assertEquals(recorder.failure.value.map(_.get), Some(RecordError.QueueFull(2)))
     assertEquals(recorder.close().value.map(_.get), Some(Left(RecordError.QueueFull(2))))
+    recorder.offer(Samples.reading(4))
     assertEquals(recorder.records, Samples.oneOfEach.take(2))
+    val ending = Ending(Samples.at(1), EndingKind.Failed, Some("full"))
+    recorder.offer(ending)
+    assertEquals(recorder.records, Samples.oneOfEach.take(2) :+ ending)
+
+  test("what is offered behind the end of a flight is not in its recording"):
+    val recorder = MemoryRecorder(Samples.heading)
+    recorder.offer(Samples.reading(1))
+    assertEquals(
+      recorder.close().value.flatMap(_.toOption).flatMap(_.toOption).map(_.rows("reading")),
+      Some(1L)
+    )
+    recorder.offer(Samples.reading(2))
+    recorder.offer(Ending(Samples.at(1), EndingKind.Completed, None))
+    assertEquals(recorder.records, Vector(Samples.reading(1)))

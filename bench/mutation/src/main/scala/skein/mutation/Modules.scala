@@ -21,11 +21,21 @@ private object Modules:
     Module("torture", "flight/src/main/scala/skein/torture", Vector("skein.torture.*Suite"))
   )
 
+  /** Without those that nobody can notice. */
   def mutants(root: Path, module: Module): Vector[Mutant] =
     val files = Using.resource(Files.walk(root.resolve(module.sources)))(
       _.iterator.asScala.filter(_.toString.endsWith(".scala")).toVector.sorted
     )
-    files.flatMap(file => Mutant.of(module.name, file, Files.readString(file)))
+    for
+      file <- files
+      source  = Files.readString(file)
+      mutants = Mutant.of(module.name, file, source)
+      known   = Equivalent.all.filter(_.file == file.getFileName.toString)
+      _       = known.find(one => !mutants.exists(one.covers(_, source))).foreach(one =>
+        sys.error(s"nothing is any longer what is known to be equivalent: $one")
+      )
+      mutant <- mutants if !known.exists(_.covers(mutant, source))
+    yield mutant
 
   /** The classes that a pattern such as `skein.flow.*` names: suites and laws, without those that need sockets or the
     * real clock.

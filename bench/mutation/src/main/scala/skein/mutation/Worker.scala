@@ -5,11 +5,16 @@ import java.io.{BufferedReader, File, InputStreamReader, PrintStream}
 import java.net.URLClassLoader
 import java.nio.file.{Files, Path}
 import org.junit.runner.{JUnitCore, Request}
+import scala.collection.mutable
+import scala.jdk.CollectionConverters.*
 import scala.util.Using
 
 /** Compiles one changed file after the other, and runs suites upon it. A process of its own, because a mutant may never
   * end. Reads from its standard input a line of the file with the changed source, or `-` for none, and the suites, with
   * blanks between; answers each by a line: `invalid`, `killed` and by which suite, or `survived`.
+  *
+  * The first question is for no change. From it on it knows which classes each suite loads, and runs only those upon a
+  * change that load a class of the changed file: the one that noticed the last change first.
   */
 object Worker:
 
@@ -18,6 +23,11 @@ object Worker:
     System.getProperty("mutation.folders").split(File.pathSeparator).toVector.map(Path.of(_))
 
   private val answers = System.out
+
+  /** By suite, the names of the project's own classes that it loads. */
+  private val loadedBy = mutable.Map.empty[String, Set[String]]
+
+  private var lastToNotice = ""
 
   def main(arguments: Array[String]): Unit =
     System.setOut(PrintStream(java.io.OutputStream.nullOutputStream))
@@ -32,25 +42,61 @@ object Worker:
         answers.flush()
     sys.exit(0)
 
-  private def judge(source: Option[Path], suites: Vector[String]): String =
-    val overlay = Files.createTempDirectory("mutant")
-    try
-      source.flatMap(error(_, overlay)).map(text => s"invalid $text").getOrElse:
-        val urls = (overlay +: folders).map(_.toUri.toURL).toArray
-        Using.resource(URLClassLoader(urls, getClass.getClassLoader)): loader =>
-          Thread.currentThread.setContextClassLoader(loader)
-          suites.find(!passes(_, loader)).fold("survived")(suite => s"killed $suite")
-    finally
-      Using.resource(Files.walk(overlay))(
-        _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
-      )
+  private def judge(source: Option[Path], suites: Vector[String]): String = source match
+    case None       => told(suites.find(!passesAlone(_)))
+    case Some(file) =>
+      val overlay = Files.createTempDirectory("mutant")
+      try
+        error(file, overlay).map(text => s"invalid $text").getOrElse:
+          val changed         = classesIn(overlay)
+          val able            = suites.filter(suite => loadedBy.get(suite).forall(_.exists(changed)))
+          val (first, others) = able.partition(_ == lastToNotice)
+          val noticedBy       = Using.resource(Loader(overlay +: folders)): loader =>
+            (first ++ others).find(!passes(_, loader))
+          noticedBy.foreach(lastToNotice = _)
+          told(noticedBy)
+      finally
+        Using.resource(Files.walk(overlay))(
+          _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
+        )
+
+  private def told(noticedBy: Option[String]): String = noticedBy.fold("survived")(suite => s"killed $suite")
+
+  /** Another suite's classes are not loaded for this one. */
+  private def passesAlone(suite: String): Boolean =
+    Using.resource(Loader(folders)): loader =>
+      val passed = passes(suite, loader)
+      loadedBy(suite) = loader.loaded
+      passed
+
+  private final class Loader(folders: Vector[Path])
+      extends URLClassLoader(folders.map(_.toUri.toURL).toArray, Worker.getClass.getClassLoader):
+    private val found = java.util.concurrent.ConcurrentHashMap.newKeySet[String]()
+
+    override def findClass(name: String): Class[?] =
+      val loaded = super.findClass(name)
+      val _      = found.add(name)
+      loaded
+
+    def loaded: Set[String] = found.asScala.toSet
+
+  private def classesIn(folder: Path): Set[String] = Using.resource(Files.walk(folder)):
+    _.iterator.asScala
+      .filter(_.toString.endsWith(".class"))
+      .map(folder.relativize(_).toString.stripSuffix(".class").replace('/', '.'))
+      .toSet
 
   /** Why it does not compile, in a line. */
   private def error(source: Path, overlay: Path): Option[String] =
-    val classes   = folders.mkString(File.pathSeparator) + File.pathSeparator + System.getProperty("java.class.path")
+    val classes =
+      folders.mkString(File.pathSeparator) + File.pathSeparator + System.getProperty("java.class.path")
     val arguments = Array("-classpath", classes, "-d", overlay.toString, "-nowarn", source.toString)
-    dotty.tools.dotc.Main.process(arguments, StoreReporter(null)).allErrors.headOption.map(_.message.replace('\n', ' '))
+    dotty.tools.dotc.Main.process(
+      arguments,
+      StoreReporter(null)
+    ).allErrors.headOption.map(_.message.replace('\n', ' '))
 
   private def passes(suite: String, loader: ClassLoader): Boolean =
+    Thread.currentThread.setContextClassLoader(loader)
     val result = JUnitCore().run(Request.aClass(loader.loadClass(suite)))
     result.wasSuccessful

@@ -1,0 +1,32 @@
+package skein.mutation
+
+/** Changes after which the program does what it did: nobody could notice them, and they do not count.
+  *
+  * @param line
+  *   what the changed line contains
+  * @param before
+  *   what is changed there, and `after` into what, as the tool prints it
+  */
+final case class Equivalent(file: String, line: String, before: String, after: String, because: String):
+
+  def covers(mutant: Mutant, source: String): Boolean =
+    mutant.file.getFileName.toString == file && mutant.before == before && mutant.after == after &&
+      source.linesIterator.drop(mutant.line - 1).next().contains(line)
+
+object Equivalent:
+  private val Never = "a random number of 53 bits is as good as never this very one"
+
+  val all: Vector[Equivalent] = Vector(
+    Equivalent("Digest.scala", "ByteBuffer.allocate(9)", "9", "10", "room that is not used"),
+    Equivalent(
+      "RecordingReader.scala",
+      "Table.flight.read",
+      "headOption",
+      "lastOption",
+      "a file holds one flight"
+    ),
+    Equivalent("Ordeal.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
+    Equivalent("Ordeal.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
+    Equivalent("Ordeal.scala", "random.nextDouble() < 0.6", "<", "<=", Never),
+    Equivalent("Ordeal.scala", "random.nextDouble() < p", "<", "<=", Never)
+  )

@@ -1,0 +1,100 @@
+package skein.measure
+
+import skein.identify.Arrival
+import skein.record.*
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** When commands arrived, told from readings that take 30 ms to the simulator and 10 ms back, every 100 ms for 1 s. The
+  * simulator's clock is 1000 s behind. So a command that leaves at t arrives t after the first reading.
+  */
+class FlownVehiclesSuite extends munit.FunSuite:
+  private val ms    = Span.ofMillis
+  private val start = Instant.Epoch + Span.ofSeconds(2000)
+
+  private def heading(loop: String) = Heading(
+    Flight("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
+    Seq(
+      Vehicle("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
+      Vehicle("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
+    )
+  )
+
+  private def readings(vehicle: String) =
+    for n <- 0 to 10 yield
+      val sent    = start + ms(100.0 * n)
+      val sampled = sent + ms(30)
+      val state = Kinematics(Vector3(n, -n, -20), Vector3(10, -10, 0), Quaternion.Identity, Vector3.Zero)
+      Reading(n, vehicle, Stamped(state, sampled - Span.ofSeconds(1000), sent, sampled + ms(10)))
+
+  private def command(number: Long, atMs: Double, vehicle: String = "Red", decision: Option[Long] = None) = Command(
+    number,
+    vehicle,
+    decision,
+    MetresPerSecond(number.toDouble),
+    MetresPerSecond(-number.toDouble),
+    Metres(-20 - number.toDouble),
+    start + ms(atMs)
+  )
+
+  private def ended(number: Long, atMs: Double, outcome: String) =
+    Acknowledgement("Red", number, start + ms(atMs), outcome)
+
+  private def flown(loop: String, records: Record*) =
+    FlownVehicles.of(Recording(heading(loop), readings("Red") ++ readings("Blue") ++ records))
+
+  private def arrivals(records: Record*): Seq[(Double, Double)] =
+    flown("stream", records*).flatMap(_.arrivals).map { case Arrival(at, x, y) =>
+      assertEquals(y, -x)
+      (math.round(at * 1e6) / 1e3, x)
+    }
+
+  test("a vehicle that was commanded is seen until its last command arrives, and one that was not is left out"):
+    val all = flown("stream", command(1, 50), command(2, 450))
+    assertEquals(all.map(_.name), Vector("f, Red"))
+    assertEquals(all.head.downM, -22.0)
+    assertEquals(all.head.arrivals.map(_.atS), Vector(0.05, 0.45))
+    assertEquals(all.head.sights.map(sight => math.round(sight.atS * 10).toInt), Vector(0, 1, 2, 3, 4))
+    val sight = all.head.sights(3)
+    assertEquals((sight.x, sight.y, sight.vx, sight.vy), (3.0, -3.0, 10.0, -10.0))
+
+  test("a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"):
+    // 60 ms instead of 40: half of it on either way.
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), ended(1, 310, "superseded"), ended(2, 900, "done")),
+      Seq(50.0 -> 1.0, 260.0 -> 2.0)
+    )
+    // An answer that came before the next command left is not the answer to it.
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), ended(1, 240, "superseded")),
+      Seq(50.0 -> 1.0, 250.0 -> 2.0)
+    )
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), ended(1, 310, "done")),
+      Seq(50.0 -> 1.0, 250.0 -> 2.0)
+    )
+
+  test("a command whose call failed counts only if it superseded the one before"):
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), ended(1, 300, "done"), ended(2, 400, "timed out")),
+      Seq(50.0 -> 1.0)
+    )
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), ended(1, 290, "superseded"), ended(2, 400, "timed out")),
+      Seq(50.0 -> 1.0, 250.0 -> 2.0)
+    )
+    assertEquals(flown("stream", command(1, 50), ended(1, 300, "refused")), Vector.empty)
+
+  test("none arrives before one that was sent earlier"):
+    // The second was answered late: by its round trip alone it would have come 100 ms after the third.
+    assertEquals(
+      arrivals(command(1, 50), command(2, 250), command(3, 280), ended(1, 550, "superseded")),
+      Seq(50.0 -> 1.0, 380.0 -> 2.0, 380.0 -> 3.0)
+    )
+
+  test("while the simulator stands still a command arrives when it is decided"):
+    val decided = Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(530) - Span.ofSeconds(1000))
+    val other   = decided.copy(vehicle = "Blue", decidedAt = start)
+    val all     = flown("paused", decided, other, command(1, 900, decision = Some(7)), command(2, 950))
+    assertEquals(all.map(_.arrivals.map(_.atS)), Vector(Vector(0.5)))
+    assertEquals(all.head.sights.size, 6)
