@@ -24,10 +24,15 @@ class FlownVehiclesSuite extends munit.FunSuite:
     for n <- 0 to 10 yield
       val sent    = start + ms(100.0 * n)
       val sampled = sent + ms(30)
-      val state = Kinematics(Vector3(n, -n, -20), Vector3(10, -10, 0), Quaternion.Identity, Vector3.Zero)
+      val state   = Kinematics(Vector3(n, -n, -20), Vector3(10, -10, 0), Quaternion.Identity, Vector3.Zero)
       Reading(n, vehicle, Stamped(state, sampled - Span.ofSeconds(1000), sent, sampled + ms(10)))
 
-  private def command(number: Long, atMs: Double, vehicle: String = "Red", decision: Option[Long] = None) = Command(
+  private def command(
+      number: Long,
+      atMs: Double,
+      vehicle: String = "Red",
+      decision: Option[Long] = None
+  ) = Command(
     number,
     vehicle,
     decision,
@@ -49,7 +54,9 @@ class FlownVehiclesSuite extends munit.FunSuite:
       (math.round(at * 1e6) / 1e3, x)
     }
 
-  test("a vehicle that was commanded is seen until its last command arrives, and one that was not is left out"):
+  test(
+    "a vehicle that was commanded is seen until its last command arrives, and one that was not is left out"
+  ):
     val all = flown("stream", command(1, 50), command(2, 450))
     assertEquals(all.map(_.name), Vector("f, Red"))
     assertEquals(all.head.downM, -22.0)
@@ -58,7 +65,9 @@ class FlownVehiclesSuite extends munit.FunSuite:
     val sight = all.head.sights(3)
     assertEquals((sight.x, sight.y, sight.vx, sight.vy), (3.0, -3.0, 10.0, -10.0))
 
-  test("a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"):
+  test(
+    "a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"
+  ):
     // 60 ms instead of 40: half of it on either way.
     assertEquals(
       arrivals(command(1, 50), command(2, 250), ended(1, 310, "superseded"), ended(2, 900, "done")),
@@ -93,8 +102,9 @@ class FlownVehiclesSuite extends munit.FunSuite:
     )
 
   test("while the simulator stands still a command arrives when it is decided"):
-    val decided = Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(530) - Span.ofSeconds(1000))
-    val other   = decided.copy(vehicle = "Blue", decidedAt = start)
-    val all     = flown("paused", decided, other, command(1, 900, decision = Some(7)), command(2, 950))
+    val decided =
+      Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(530) - Span.ofSeconds(1000))
+    val other = decided.copy(vehicle = "Blue", decidedAt = start)
+    val all   = flown("paused", decided, other, command(1, 900, decision = Some(7)), command(2, 950))
     assertEquals(all.map(_.arrivals.map(_.atS)), Vector(Vector(0.5)))
     assertEquals(all.head.sights.size, 6)

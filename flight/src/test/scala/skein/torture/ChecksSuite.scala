@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.LoopKind
+import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, RecordError, TrueAge}
 import skein.signal.Stamped
 import skein.units.*
@@ -61,6 +61,105 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(clean.copy(mostPending = 1000)).contains("1000 calls were under way at once"))
     assert(found(clean.copy(mostUnanswered = 5)).contains("5 unanswered moves"))
 
+  test("what is just allowed is no violation"):
+    val most = clean.vehicles.size * (clean.window + 3L)
+    assertEquals(found(clean.copy(mostPending = most, mostUnanswered = 4)), "")
+    assert(found(clean.copy(mostPending = most + 1)).contains(s"of $most at most"))
+    assertEquals(found(clean.copy(drifts = Vector(Metres(14), Metres(14)))), "")
+    assert(found(clean.copy(drifts = Vector(Metres(14.001), Metres(0)))).contains("flies on after the end"))
+    val gaps =
+      for craft <- clean.crafts; (one, next) <- craft.sendings.zip(craft.sendings.tail)
+      yield next.at.since(one.at)
+    assertEquals(found(clean.copy(minCommandInterval = gaps.min)), "")
+    assert(found(clean.copy(minCommandInterval = gaps.min + Span.ofNanos(1))).contains("two commands within"))
+
+  test("a third command outstanding, and calls that did not end, by vehicle and of the stepper"):
+    val counts = clean.crafts.head.commands
+    val most   = counts.most
+    counts.most = 3
+    try assert(found(clean).contains("Evader: 3 commands were outstanding at once"))
+    finally counts.most = most
+    counts.ended -= 1
+    try assert(found(clean).contains(s"Evader: ${counts.begun} command calls began, ${counts.ended} ended"))
+    finally counts.ended += 1
+    val steps = CallCount()
+    steps.begun = 2
+    steps.ended = 1
+    assert(found(clean.copy(steps = steps)).contains("2 calls of the stepper began, 1 ended"))
+    assertEquals(found(clean), "")
+
+  test("books that do not agree: calls nobody made, written or answered"):
+    val stats = clean.stats
+    val calls = clean.copy(stats = stats.copy(called = stats.called + 1, answered = stats.answered + 1))
+    assert(
+      found(calls).contains(s"was to be called ${stats.called} times, and was ${stats.called + 1} times")
+    )
+    val written = clean.copy(stats = stats.copy(sent = stats.called + 1))
+    assert(found(written).contains(s"${stats.called + 1} calls were written of ${stats.called}"))
+    assertEquals(found(clean.copy(stats = stats.copy(sent = stats.sent + 3, sentAgain = 3))), "")
+    val unwritten = clean.copy(stats = stats.copy(sent = stats.answered - 1))
+    assert(found(unwritten).contains(s"0 refused and 0 lost of ${stats.answered - 1} that were written"))
+    val twice = clean.copy(arrivals = clean.arrivals.flatMap(arrival => Vector.fill(2)(arrival)))
+    assert(found(
+      twice
+    ).contains(s"${twice.arrivals.size} moves arrived of ${clean.crafts.map(_.sendings.size).sum}"))
+
+  test("more commands on record than decisions, and more rows than a flight of its length has"):
+    val recording = clean.recording
+    val less      = recording.copy(decisions = recording.decisions.filterNot(_.vehicle == "Evader"))
+    assert(found(clean.copy(recording = less)).contains("Evader: 0 decisions led to"))
+    val short = clean.copy(endedAt = clean.startedAt + Span.ofMillis(1))
+    assert(found(short).contains("are many for this flight"), found(short))
+    val steps = CallCount()
+    steps.begun = 80
+    steps.ended = 80
+    assert(!found(short.copy(steps = steps)).contains("are many for this flight"), "80 steps are 8 s")
+
+  test("control that does not come back in calm: no decision upon something new, no command"):
+    val due = clean.calmFrom + Ordeal.ResumesWithin
+    val old = clean.recording.copy(decisions =
+      clean.recording.decisions.filterNot(decision =>
+        decision.own.state.sentAt >= clean.calmFrom && decision.decidedAt < due
+      )
+    )
+    assert(found(clean.copy(recording =
+      old
+    )).contains("Pursuer: nothing was decided on a new reading within 3"))
+    val silent = clean.copy(arrivals =
+      clean.arrivals.filter(arrival => arrival.at < clean.calmFrom || arrival.at >= due)
+    )
+    assert(found(silent).contains("Evader: no command came within 3"))
+    assert(!found(silent.copy(outcome = Outcome.Stopped)).contains("no command came within"))
+    assert(!found(silent.copy(endedAt = due - Span.ofMillis(1))).contains("no command came within"))
+    val paused = silent.copy(ordeal = clean.ordeal.copy(loop = LoopKind.Paused))
+    assert(!found(paused).contains("no command came within"))
+
+  test("a simulator that is left standing still by a flight that had time to let it run"):
+    val still = clean.copy(leftPaused = true)
+    assert(found(still).contains("left standing still"))
+    assert(!found(still.copy(endedAt = clean.calmFrom + Span.ofSeconds(2.9))).contains("left standing still"))
+
+  test("a flight that failed has the beginning on record alone"):
+    val begun = clean.recording.copy(readings = clean.recording.readings.take(10))
+    val cut   = clean.copy(recording = begun, outcome = Outcome.Failed("the disk is full"))
+    assert(!found(cut).contains("readings were asked for"))
+    assert(found(cut.copy(outcome = Outcome.Completed)).contains("readings were asked for"))
+
+  test(
+    "what a simulator told before it was started again with another clock is not held against its new one"
+  ):
+    def restarted(atS: Double, jump: Span) = clean.copy(runs =
+      clean.runs :+ Run(clean.startedAt + Span.ofSeconds(atS), clean.runs.head.clockOffset + jump)
+    )
+    val wrong = "ms old, told were"
+    for seconds <- Seq(100.0, -100.0, 1.5, -1.5) do
+      assert(found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
+    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still come.
+    for seconds <- Seq(0.5, -0.5) do
+      assert(!found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
+    assert(!found(restarted(7.3, Span.ofSeconds(100))).contains(wrong))
+    assertEquals(found(restarted(4, Span.Zero)), "")
+
   test("a vehicle that does not hover after the end"):
     assert(found(clean.copy(drifts =
       Vector(Metres(0.1), Metres(18))
@@ -82,14 +181,16 @@ class ChecksSuite extends munit.FunSuite:
     val forged    = withDecision(60)(_.copy(own = older)).copy(ordeal = published)
     assert(found(forged).contains("after the newer"))
 
-  test("an answer of a run before, with a later clock, is not newer than one of the run that followed (seed 1851)"):
+  test(
+    "an answer of a run before, with a later clock, is not newer than one of the run that followed (seed 1851)"
+  ):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       Stamped((), at(validMs), at(sentMs), at(receivedMs))
     def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
-    val runs = Vector(Run(at(0), Span.Zero), Run(at(34868), Span.ofMillis(4466.95)))
-    val late = answer(34651.434, 34600, 35042.149)
-    val next = answer(30594.875, 35000, 35129.657)
-    val later = answer(30665.453, 35100, 35196.082)
+    val runs           = Vector(Run(at(0), Span.Zero), Run(at(34868), Span.ofMillis(4466.95)))
+    val late           = answer(34651.434, 34600, 35042.149)
+    val next           = answer(30594.875, 35000, 35129.657)
+    val later          = answer(30665.453, 35100, 35196.082)
     assert(!KnowledgeChecks.isNewer(runs)(late, next))
     assert(KnowledgeChecks.isNewer(runs)(later, next))
     assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")

@@ -1,0 +1,88 @@
+package skein.torture
+
+import skein.loop.{LoopKind, Outcome}
+import skein.record.EventKind
+import skein.units.*
+
+/** Each mischief alone is really done, borne by the loop, and over when calm begins. */
+class MischiefSuite extends munit.FunSuite:
+
+  private def flown(meddling: Meddling): Evidence =
+    val ordeal = Ordeal
+      .of(11, Span.ofSeconds(8))
+      .copy(
+        loop = LoopKind.Stream,
+        pairs = 1,
+        asPublished = false,
+        faults = Vector.empty,
+        meddling = meddling,
+        restarts = Vector.empty,
+        disk = Disk.Sound,
+        stopAt = None
+      )
+    val seen = TortureFlight.fly(ordeal)
+    assertEquals(Checks.violations(seen), Vector.empty, meddling.toString)
+    assertEquals(seen.outcome, Outcome.Completed)
+    seen
+
+  private def troubles(seen: Evidence) =
+    seen.recording.events.filter(event =>
+      Set(EventKind.Refused, EventKind.TimedOut, EventKind.Disconnected)(event.kind)
+    )
+
+  private lazy val calm = flown(Meddling.None)
+
+  test("without any, every call is answered on the two connections that it takes"):
+    val stats = calm.stats
+    assertEquals(
+      (stats.refused, stats.timedOut, stats.lost, stats.unexpected, stats.ignored),
+      (0L, 0L, 0L, 0L, 0L)
+    )
+    assertEquals((stats.late, stats.malformed, stats.disconnected, stats.sentAgain), (0L, 0L, 0L, 0L))
+    assertEquals(troubles(calm), Vector.empty)
+    assert(
+      calm.mostPending >= 1 && calm.mostUnanswered >= 1 && calm.mostUnanswered <= 2,
+      calm.mostPending.toString
+    )
+
+  private def mischief(what: String, meddling: Meddling)(shows: Evidence => Boolean): Unit = test(what):
+    val seen = flown(meddling)
+    assert(shows(seen), seen.stats.toString)
+    val last = troubles(seen).map(_.at).maxOption.getOrElse(seen.startedAt)
+    assert(
+      last < seen.calmFrom + Ordeal.ResumesWithin,
+      s"trouble ${last.since(seen.calmFrom).toSeconds} s into the calm"
+    )
+
+  mischief(
+    "late answers are overtaken, and come when nobody waits",
+    Meddling(late = 0.3, lateBy = Span.ofSeconds(1.5))
+  ): seen =>
+    seen.stats.timedOut > 0 && seen.stats.late > 0
+
+  mischief("an answer that comes twice is known at the second time", Meddling(doubled = 0.5)): seen =>
+    seen.stats.unexpected > 10 && seen.stats.timedOut == 0
+
+  mischief("strays are no answers", Meddling(stray = 0.5)): seen =>
+    seen.stats.unexpected + seen.stats.ignored > 10 && seen.stats.ignored > 0 && seen.stats.unexpected > 0
+
+  mischief("garbage ends its connection, and another is made", Meddling(garbage = 0.05)): seen =>
+    seen.stats.disconnected > 0 && seen.stats.connected > calm.stats.connected
+
+  mischief("a move under an unknown name is refused", Meddling(refused = 0.4)): seen =>
+    seen.stats.refused > 0 && seen.arrivals.size < seen.crafts.map(_.sendings.size).sum
+
+  mischief("a lost answer is missed after its time", Meddling(lost = 0.2)): seen =>
+    seen.stats.timedOut > 0 && seen.stats.late == 0 && seen.stats.disconnected == 0
+
+  mischief("an answer of another type is an error on record, not a reading", Meddling(nonsense = 0.3)):
+    seen =>
+      seen.recording.readings.size < seen.crafts.map(_.reads.begun).sum && seen.stats.timedOut == 0
+
+  test("all seeds asked for are flown, each once, however many at once"):
+    for threads <- Seq(1, 3) do
+      var told = Vector.empty[Long]
+      Torture.all(Iterator(1L, 2L, 3L, 4L, 5L), Ordeal.Shortest, threads)(verdict =>
+        told :+= verdict.ordeal.seed
+      )
+      assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L, 5L))
