@@ -88,14 +88,7 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
     sum
 
   /** As [[Objective.parse]] reads it back, without the direction. */
-  def formula: String = terms.zipWithIndex
-    .map:
-      case ((1.0, measure), 0)    => measure.text
-      case ((weight, measure), 0) => s"$weight*${measure.text}"
-      case ((weight, measure), _) =>
-        val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
-        s"${if weight < 0 then "-" else "+"} $factor${measure.text}"
-    .mkString(" ")
+  def formula: String = WeightedSum.formula(terms)(_.text)
 
   def text: String = s"${direction.text} $formula"
 
@@ -104,11 +97,8 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
     if terms.map((_, measure) => measure.unit).distinct.size == 1 then terms.head._2.unit else ""
 
 object Objective:
-  private val Forms = "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
-  private val Term  =
-    """\s*([+-])?\s*(?:(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*\*\s*)?([A-Za-z]\w*)\s*(?:\(([^)]*)\))?\s*""".r
-  private val Directed = """\s*(minimi[sz]e|maximi[sz]e)\s+(.*)""".r
-
+  private val Forms =
+    "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
   /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
     * not. Without, a sum is minimised, and a single measure goes where the role wants it.
     *
@@ -116,44 +106,15 @@ object Objective:
     *   or what was expected, what came, and at which character
     */
   def parse(text: String, role: Role): Either[String, Objective] =
-    val (stated, formula) = text match
-      case Directed(word, rest) =>
-        (Some(if word.startsWith("min") then Direction.Minimise else Direction.Maximise), rest)
-      case _ => (None, text)
-    val offset = text.length - formula.length
-
-    def terms(from: Int, read: Vector[(Double, Measure)]): Either[String, Vector[(Double, Measure)]] =
-      if from == formula.length && read.nonEmpty then Right(read)
-      else
-        Term.findPrefixMatchOf(formula.substring(from)) match
-          case Some(term) if read.isEmpty || term.group(1) != null =>
-            val size = Option(term.group(2)).fold(1.0)(_.toDouble)
-            for
-              measure <- measureOf(term.group(3), Option(term.group(4)))
-                .left
-                .map(mistake =>
-                  s"objective '$text', at character ${offset + from + term.start(3) + 1}: $mistake"
-                )
-              all <- terms(
-                from + term.end,
-                read :+ ((if term.group(1) == "-" then -size else size) -> measure)
-              )
-            yield all
-          case _ =>
-            val expected =
-              if read.isEmpty then s"[WEIGHT*]MEASURE, where MEASURE is one of $Forms" else "+ or -"
-            Left(
-              s"objective '$text', at character ${offset + from + 1}: expected $expected, came '${formula.substring(from)}'"
-            )
-
     for
-      read <- terms(0, Vector.empty)
-      _    <- Either.cond(
+      sum <- WeightedSum.parse(text, Forms)(measureOf)
+      read = sum.terms
+      _ <- Either.cond(
         read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
         (),
         s"objective '$text': expected one capture radius, came ${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
       )
-    yield Objective(read, stated.getOrElse(naturally(read, role)))
+    yield Objective(read, sum.stated.getOrElse(naturally(read, role)))
 
   private def naturally(terms: Vector[(Double, Measure)], role: Role): Direction = terms match
     case Vector((1.0, measure)) =>

@@ -1,0 +1,51 @@
+package skein.optimise
+
+import skein.forward.Delays
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.simd.{LaneFunction, WorldRandom}
+
+/** Flies a team's candidates in [[TeamBatch]]: all meet the same episodes.
+  *
+  * @param candidate
+  *   of its parameters; a pure function
+  * @param weights
+  *   of what is judged, in its order: their sum is the objective
+  * @param seed
+  *   of the delays
+  */
+final class TeamEvaluator(
+    batch: TeamBatch,
+    candidate: Vector[Double] => TeamCandidate,
+    link: Delays,
+    weights: Vector[Double],
+    seed: Long
+) extends Evaluator:
+
+  override def sideBySide: Int = TeamEvaluator.SideBySide
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    talliesUnless(() => false)(candidates, episodes).get
+
+  override def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
+    val teams    = candidates.map(candidate)
+    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
+    val worlds   = Worlds(teams, keys)
+    val outcomes = batch.fly(worlds, isCancelled)
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(teams.size): number =>
+        Tally.of(keys.length): episode =>
+          val world = number * keys.length + episode
+          weights.indices.map(i => weights(i) * outcomes.values(i)(world)).sum
+
+  private final class Worlds(teams: Vector[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
+    def size: Int                            = teams.size * keys.length
+    def key(world: Int): Int                 = keys(world % keys.length)
+    def link(world: Int): Delays             = TeamEvaluator.this.link
+    def candidate(world: Int): TeamCandidate = teams(world / keys.length)
+
+object TeamEvaluator:
+  /** Candidates of an episode that take no longer than one, by lanes. */
+  private val SideBySide = LaneFunction.COUNT

@@ -1,0 +1,74 @@
+package skein.optimise
+
+/** What is made small or large, as users write it: `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
+  * not.
+  *
+  * @param terms
+  *   weight and what it weighs
+  * @param stated
+  *   the direction, where it stands there
+  */
+final case class WeightedSum[M](terms: Vector[(Double, M)], stated: Option[Direction])
+
+object WeightedSum:
+  private val Number   = """(?:(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*\*\s*)?"""
+  private val Plain    = term("""[A-Za-z]\w*""")
+  private val Hyphened = term("""[A-Za-z]\w*(?:-[A-Za-z]\w*)*""")
+  private val Directed = """\s*(minimi[sz]e|maximi[sz]e)\s+(.*)""".r
+
+  private def term(name: String) = s"""\\s*([+-])?\\s*$Number($name)\\s*(?:\\(([^)]*)\\))?\\s*""".r
+
+  /** @param forms
+    *   of measures, for mistakes
+    * @param hyphened
+    *   whether names may have hyphens; a minus between two of them then stands between blanks
+    * @param measureOf
+    *   a name, and what stands in brackets behind it
+    * @return
+    *   or what was expected, what came, and at which character
+    */
+  def parse[M](text: String, forms: String, hyphened: Boolean = false)(
+      measureOf: (String, Option[String]) => Either[String, M]
+  ): Either[String, WeightedSum[M]] =
+    val pattern           = if hyphened then Hyphened else Plain
+    val (stated, formula) = text match
+      case Directed(word, rest) =>
+        (Some(if word.startsWith("min") then Direction.Minimise else Direction.Maximise), rest)
+      case _ => (None, text)
+    val offset = text.length - formula.length
+
+    def terms(from: Int, read: Vector[(Double, M)]): Either[String, Vector[(Double, M)]] =
+      if from == formula.length && read.nonEmpty then Right(read)
+      else
+        pattern.findPrefixMatchOf(formula.substring(from)) match
+          case Some(term) if read.isEmpty || term.group(1) != null =>
+            val size = Option(term.group(2)).fold(1.0)(_.toDouble)
+            for
+              measure <- measureOf(term.group(3), Option(term.group(4)))
+                .left
+                .map(mistake =>
+                  s"objective '$text', at character ${offset + from + term.start(3) + 1}: $mistake"
+                )
+              all <- terms(
+                from + term.end,
+                read :+ ((if term.group(1) == "-" then -size else size) -> measure)
+              )
+            yield all
+          case _ =>
+            val expected =
+              if read.isEmpty then s"[WEIGHT*]MEASURE, where MEASURE is one of $forms" else "+ or -"
+            Left(
+              s"objective '$text', at character ${offset + from + 1}: expected $expected, came '${formula.substring(from)}'"
+            )
+
+    terms(0, Vector.empty).map(WeightedSum(_, stated))
+
+  /** As [[parse]] reads it back, without the direction. */
+  def formula[M](terms: Vector[(Double, M)])(text: M => String): String = terms.zipWithIndex
+    .map:
+      case ((1.0, measure), 0)    => text(measure)
+      case ((weight, measure), 0) => s"$weight*${text(measure)}"
+      case ((weight, measure), _) =>
+        val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
+        s"${if weight < 0 then "-" else "+"} $factor${text(measure)}"
+    .mkString(" ")
