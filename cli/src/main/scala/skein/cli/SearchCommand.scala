@@ -9,8 +9,10 @@ import skein.lanes.DuelBatch
 import skein.optimise.{CmaEs, SearchState}
 import skein.plot.{Png, Svg}
 import skein.policy.PolicyFamily
+import skein.scenario.Scenarios
 import skein.search.*
-import skein.settings.PolicyFile
+import skein.settings.{ConfigKeys, PolicyFile}
+import skein.simd.LaneFunction
 import skein.units.Span
 
 /** Options of `./skein search`. */
@@ -35,6 +37,14 @@ final case class SearchOptions(
       "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more)"
     )
     fresh: Option[Int],
+    @arg(doc =
+      "searches settings of this scenario, a team's, in the place of a duel's policy; the command scenarios lists them"
+    )
+    scenario: Option[String],
+    @arg(doc = "NAME=VALUE: a setting of the scenario, for example vehicles=8; may be given several times")
+    set: Seq[String],
+    @arg(doc = "NAME=LOW..HIGH: a setting of the scenario to search; may be given several times")
+    vary: Seq[String],
     forward: ForwardOptions,
     @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
     out: Option[String],
@@ -42,7 +52,7 @@ final case class SearchOptions(
     resume: Option[String]
 )
 
-object SearchCommand
+final class SearchCommand(using Scenarios)
     extends OptionsCommand[SearchOptions](
       "search",
       "looks for the best of many policies by forward simulation under a loop's real timing",
@@ -54,18 +64,24 @@ object SearchCommand
       threads <- options.forward.threadCount
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      setup <- question.setup
-      _     <- run(setup, folder, state.getOrElse(setup.search.start), threads)
+      _ <- question match
+        case duel: SearchQuestion =>
+          duel.setup.flatMap(setup => run(setup, folder, state.getOrElse(setup.search.start), threads))
+        case team: TeamQuestion =>
+          team.setup.flatMap(setup =>
+            TeamSearch(setup, folder, threads).run(state.getOrElse(setup.search.start))
+          )
     yield ()
 
-  private type Begun = (Path, SearchQuestion, Option[SearchState])
+  private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     import options.*
-    val others = Seq(family, role, method, link, period, candidates, episodes, population, fresh, out)
+    val others =
+      Seq(family, role, method, link, period, candidates, episodes, population, fresh, scenario, out)
     for
       _ <- Either.cond(
-        others.forall(_.isEmpty) && forward.isEmpty,
+        others.forall(_.isEmpty) && set.isEmpty && vary.isEmpty && forward.isEmpty,
         (),
         "--resume: everything but --threads is taken from the folder; expected no other option"
       )
@@ -73,11 +89,75 @@ object SearchCommand
     yield (Path.of(folder), file.question, Some(file.state))
 
   private def begin(options: SearchOptions): Either[String, Begun] =
-    import options.forward
     val folder = Path.of(options.out.getOrElse(
       s"searches/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
     ))
     for
+      question <- options.scenario.fold(duel(options))(team(options, _))
+      _        <- Either.cond(
+        !Files.exists(folder.resolve(SearchFile.Name)),
+        (),
+        s"--out: $folder holds a search already; --resume $folder goes on with it"
+      )
+      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
+    yield (folder, question, None)
+
+  private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
+    import options.forward
+    val others = Seq(
+      "--family"   -> options.family,
+      "--role"     -> options.role,
+      "--opponent" -> forward.opponent,
+      "--altitude" -> forward.altitude
+    ).collect { case (flag, Some(_)) => flag }
+    for
+      _ <- Either.cond(
+        others.isEmpty,
+        (),
+        s"--scenario: expected settings of the scenario by --set and --vary, came ${others.mkString(", ")}, which is a duel's"
+      )
+      objective <- forward.objective.toRight(
+        "--objective: expected with a scenario: a sum of its measures, for example off-ring"
+      )
+      period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
+      conditions <- forward.conditions(period)
+      set        <- each(options.set): text =>
+        text.split("=", 2) match
+          case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
+          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+      vary <- each(options.vary)(Varied.parse(_).left.map("--vary: " + _))
+      candidates = options.candidates.getOrElse(1000)
+      question   = TeamQuestion(
+        scenario,
+        set.toMap,
+        vary,
+        objective,
+        options.method.getOrElse("cma-es"),
+        // Teams fly low, where the model of three parameters does not hold.
+        conditions.copy(plant = forward.plant.getOrElse("drag")),
+        options.link.getOrElse("vpn"),
+        candidates,
+        options.episodes.getOrElse(20),
+        options.population.getOrElse(LaneFunction.COUNT.min(candidates.max(4))),
+        forward.seed.getOrElse(1),
+        options.fresh.getOrElse(TeamSearch.FreshEpisodes)
+      )
+      _ <- question.setup
+    yield question
+
+  private def each[A](texts: Seq[String])(read: String => Either[String, A]): Either[String, Vector[A]] =
+    texts.foldLeft[Either[String, Vector[A]]](Right(Vector.empty))((before, text) =>
+      before.flatMap(all => read(text).map(all :+ _))
+    )
+
+  private def duel(options: SearchOptions): Either[String, SearchQuestion] =
+    import options.forward
+    for
+      _ <- Either.cond(
+        options.set.isEmpty && options.vary.isEmpty,
+        (),
+        "--set, --vary: expected with --scenario, whose settings they are"
+      )
       family     <- PolicyFamily.parse(options.family.getOrElse("paper-pursuer")).left.map("--family: " + _)
       role       <- PolicyFile.roleOf(family, options.role).left.map("--role: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
@@ -101,13 +181,7 @@ object SearchCommand
         options.fresh
       )
       _ <- question.setup
-      _ <- Either.cond(
-        !Files.exists(folder.resolve(SearchFile.Name)),
-        (),
-        s"--out: $folder holds a search already; --resume $folder goes on with it"
-      )
-      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
-    yield (folder, question, None)
+    yield question
 
   private def run(
       setup: SearchSetup,
@@ -121,8 +195,9 @@ object SearchCommand
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
-      val searched  = SearchRun(setup, setup.evaluator(batch), folder, () => System.nanoTime())
-        .run(from, () => stopped)(state => line.show(state.flown, progress(setup, state)))
+      val searched  =
+        SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
+          .run(from, () => stopped)(state => line.show(state.flown, progress(setup, state)))
       line.end()
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9

@@ -24,7 +24,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
     SpreadCommand(),
-    SearchCommand,
+    SearchCommand(),
     BudgetCommand,
     ServeCommand,
     LinkCommand,

@@ -4,21 +4,29 @@ import java.io.IOException
 import java.nio.channels.FileChannel
 import java.nio.file.{Files, Path, StandardCopyOption, StandardOpenOption}
 import skein.optimise.{CmaEs, Course, Scored, SearchState, Tally}
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson, write as writeJson}
 
 /** A search as it stands on disk: the question, and the state it has come to. */
-final case class SearchFile(version: Int, question: SearchQuestion, state: SearchState)
+final case class SearchFile(version: Int, question: SearchQuestion | TeamQuestion, state: SearchState)
 
 object SearchFile:
   val Name    = "search.json"
   val Version = 1
 
-  private given ReadWriter[Tally]       = ReadWriter.derived
-  private given ReadWriter[Scored]      = ReadWriter.derived
-  private given ReadWriter[CmaEs.State] = ReadWriter.derived
-  private given ReadWriter[Course]      = ReadWriter.derived
-  private given ReadWriter[SearchState] = ReadWriter.derived
-  private given ReadWriter[SearchFile]  = ReadWriter.derived
+  private given ReadWriter[Tally]                         = ReadWriter.derived
+  private given ReadWriter[Scored]                        = ReadWriter.derived
+  private given ReadWriter[CmaEs.State]                   = ReadWriter.derived
+  private given ReadWriter[Course]                        = ReadWriter.derived
+  private given ReadWriter[SearchState]                   = ReadWriter.derived
+  private given ReadWriter[SearchQuestion | TeamQuestion] = readwriter[ujson.Value].bimap(
+    {
+      case duel: SearchQuestion => writeJs(duel)
+      case team: TeamQuestion   => writeJs(team)
+    },
+    json =>
+      if json.obj.contains("scenario") then readJson[TeamQuestion](json) else readJson[SearchQuestion](json)
+  )
+  private given ReadWriter[SearchFile] = ReadWriter.derived
 
   def json(file: SearchFile): String = writeJson(file)
 

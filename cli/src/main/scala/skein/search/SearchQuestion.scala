@@ -52,7 +52,7 @@ final case class SearchQuestion(
         (),
         s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
       )
-      method <- SearchQuestion.method(this, family.space.dimension)
+      method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
     yield SearchSetup(this, family, role, objective, flown, delays, opponent, method)
 
 object SearchQuestion:
@@ -65,8 +65,14 @@ object SearchQuestion:
     if role == Role.Pursuer then PolicyFile.ofDefaults(Role.Evader, PolicyFamily.paperEvader)
     else PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
-  private def method(asked: SearchQuestion, dimension: Int): Either[String, SearchMethod] =
-    import asked.{candidates, episodes, population}
+  /** @return or what was expected, what came, and in which option */
+  def method(
+      name: String,
+      candidates: Int,
+      episodes: Int,
+      population: Int,
+      dimension: Int
+  ): Either[String, SearchMethod] =
     for
       _ <- Either.cond(candidates >= 4, (), s"--candidates: expected 4 or more, came $candidates")
       _ <- Either.cond(
@@ -80,7 +86,7 @@ object SearchQuestion:
         s"--population: expected 4 to the number of candidates, $candidates, came $population"
       )
       generations = (candidates / population).max(1)
-      method <- asked.method match
+      method <- name match
         case "grid" =>
           val perAxis = math.floor(math.pow(candidates, 1.0 / dimension) + 1e-9).toInt
           Either.cond(

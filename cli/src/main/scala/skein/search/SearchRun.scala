@@ -1,10 +1,16 @@
 package skein.search
 
 import java.nio.file.Path
-import skein.optimise.{Evaluator, SearchState}
+import skein.optimise.{Evaluator, Search, SearchState}
 
 /** Steps a search to its end, or until it is stopped, and keeps its state on disk: a kill loses a few seconds. */
-final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, nanoTime: () => Long):
+final class SearchRun(
+    search: Search,
+    question: SearchQuestion | TeamQuestion,
+    evaluator: Evaluator,
+    folder: Path,
+    nanoTime: () => Long
+):
   import SearchRun.*
 
   /** @param isStopped
@@ -24,7 +30,7 @@ final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, na
     var saved: Either[String, Unit] = save(state)
     while saved.isRight && !state.isDone && !isStopped() do
       val (before, flown) = (nanoTime(), state.flown)
-      state = setup.search.step(state, evaluator, atMost, isStopped)
+      state = search.step(state, evaluator, atMost, isStopped)
       val now     = nanoTime()
       val perNano = (state.flown - flown).toDouble / (now - before).max(1)
       atMost = (perNano * StepNanos).toLong.max(1).min(MostAStep).toInt
@@ -35,7 +41,7 @@ final class SearchRun(setup: SearchSetup, evaluator: Evaluator, folder: Path, na
     saved.flatMap(_ => save(state)).map(_ => state)
 
   private def save(state: SearchState) =
-    SearchFile.write(folder, SearchFile(SearchFile.Version, setup.question, state))
+    SearchFile.write(folder, SearchFile(SearchFile.Version, question, state))
 
 object SearchRun:
   private val FirstStep = 256

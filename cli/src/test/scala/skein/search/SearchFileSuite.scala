@@ -41,8 +41,14 @@ class SearchFileSuite extends munit.FunSuite:
     val folder = Files.createTempDirectory("skein-search")
     val ready  = setup("cma-es")
     var steps  = 0
-    val run    = SearchRun(ready, ready.evaluator(ready.batch(1)), folder, () => System.nanoTime())
-    val state  = run.run(ready.search.start, () => steps == 3)(_ => steps += 1)
+    val run    = SearchRun(
+      ready.search,
+      ready.question,
+      ready.evaluator(ready.batch(1)),
+      folder,
+      () => System.nanoTime()
+    )
+    val state = run.run(ready.search.start, () => steps == 3)(_ => steps += 1)
     assertEquals(SearchFile.read(folder).map(_.state), state)
     assertEquals(Files.list(folder).iterator.asScala.map(_.getFileName.toString).toSeq, Seq(SearchFile.Name))
     Files.delete(folder.resolve(SearchFile.Name))
@@ -61,7 +67,8 @@ class SearchFileSuite extends munit.FunSuite:
         flying.tallies(candidates, episodes)
     def run(from: SearchState, isStopped: () => Boolean) =
       val states = Vector.newBuilder[SearchState]
-      val last   = SearchRun(ready, cut, folder, () => 0L).run(from, isStopped)(states += _)
+      val last   =
+        SearchRun(ready.search, ready.question, cut, folder, () => 0L).run(from, isStopped)(states += _)
       (last.fold(mistake => fail(mistake), identity), states.result())
     val (unbroken, states) = run(ready.search.start, () => false)
     calls = 0

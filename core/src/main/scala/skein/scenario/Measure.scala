@@ -8,11 +8,14 @@ package skein.scenario
   *   of events: over several flights it is added up
   * @param of
   *   absent where the flight never came to it
+  * @param reduced
+  *   of which quantity it is, if it is of one: then searches judge by it
   */
 final class Measure private (
     val name: String,
     val unit: String,
     val isCount: Boolean,
+    val reduced: Option[OverFlight],
     val of: Tracks => Option[Double]
 ):
   /** With the unit, as tables have it. */
@@ -20,11 +23,18 @@ final class Measure private (
 
 object Measure:
   def apply(name: String, unit: String)(of: Tracks => Option[Double]): Measure =
-    new Measure(name, unit, false, of)
+    new Measure(name, unit, false, None, of)
 
   /** Events, for example vehicles that arrived. */
   def count(name: String)(of: Tracks => Int): Measure =
-    new Measure(name, "", true, tracks => Some(of(tracks).toDouble))
+    new Measure(name, "", true, None, tracks => Some(of(tracks).toDouble))
+
+  /** What a quantity comes to. */
+  private[scenario] def of(name: String, unit: String, by: OverFlight)(of: Tracks => Option[Double]): Measure =
+    new Measure(name, unit, false, Some(by), of)
+
+/** What a quantity comes to over a part of a flight. */
+final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
 
 /** A quantity over the time of a flight: drawn, and reduced to measures.
   *
@@ -39,7 +49,12 @@ object Measure:
   * @param at
   *   its value by instant
   */
-final class Series(val name: String, val unit: String, val bound: Option[Bound])(at: Tracks => Int => Double):
+final class Series private (
+    val name: String,
+    val unit: String,
+    val bound: Option[Bound],
+    quantity: Option[Quantity]
+)(at: Tracks => Int => Double):
 
   def curve(tracks: Tracks): Curve = Curve(tracks, at(tracks))
 
@@ -80,17 +95,20 @@ final class Series(val name: String, val unit: String, val bound: Option[Bound])
     tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
 
   private def reduced(name: String, over: Window, reduction: Reduction): Measure =
-    Measure(name, unit): tracks =>
+    def of(tracks: Tracks) =
       val value = at(tracks)
       over.of(tracks).map(instants => reduction.of(instants.map(value)))
+    quantity.fold(Measure(name, unit)(of))(each => Measure.of(name, unit, OverFlight(each, reduction, over))(of))
 
 object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =
-    new Series(name, unit, bound)(at)
+    new Series(name, unit, bound, None)(at)
 
   /** Of a quantity that a search can judge by, too. */
   def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
-    Series(name, unit, bound)(tracks => instant => quantity.of(tracks.places(instant)))
+    new Series(name, unit, bound, Some(quantity))(tracks =>
+      instant => quantity.of(tracks.places(instant))
+    )
 
 /** What a quantity is held to.
   *

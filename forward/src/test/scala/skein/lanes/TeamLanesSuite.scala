@@ -122,7 +122,7 @@ class TeamLanesSuite extends munit.FunSuite:
   private val quantities: Seq[(String, SplitMix64 => Scenario, Int => Vector[Quantity])] =
     val circuit = Racetrack(50, 20)
     Seq(
-      ("surround", scenarios(0)._2, i => Vector(OffRing(7 + 0.01 * i), WidestGap, Separation)),
+      ("surround", scenarios(0)._2, i => Vector(OffRing(7 + 0.01 * i), WidestGap, Separation, Spread)),
       (
         "formation",
         scenarios(1)._2,
@@ -179,3 +179,17 @@ class TeamLanesSuite extends munit.FunSuite:
     )
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
+
+// As docs/guides/search.md has it.
+/** How far the vehicles are from their middle, on average, m. */
+case object Spread extends Quantity:
+  def of(places: Places): Double =
+    val (north, east) = (mean(places.northM), mean(places.eastM))
+    var sum           = 0.0
+    for vehicle <- 0 until places.count do sum += places.distanceM(vehicle, north, east)
+    sum / places.count
+
+  private def mean(numbers: IArray[Double]): Double =
+    var sum = 0.0
+    for i <- numbers.indices do sum += numbers(i)
+    sum / numbers.length

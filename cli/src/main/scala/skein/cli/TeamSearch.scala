@@ -1,0 +1,103 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import skein.lanes.TeamBatch
+import skein.optimise.SearchState
+import skein.plot.{Png, Svg}
+import skein.search.*
+import skein.settings.PolicyFile.brief
+
+/** `./skein search --scenario`: a search over a scenario's settings, to its end or until it is stopped. */
+private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int):
+  import TeamSearch.*
+
+  def run(from: SearchState): Either[String, Unit] =
+    val batch = setup.batch(threads)
+    say(introduction(batch))
+    @volatile var stopped = false
+    Edge.untilInterrupted(() => stopped = true):
+      val startedAt = System.nanoTime()
+      val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
+      val searched  =
+        SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
+          .run(from, () => stopped)(state => line.show(state.flown, progress(state)))
+      line.end()
+      searched.flatMap: state =>
+        val seconds = (System.nanoTime() - startedAt) * 1e-9
+        val flown   = state.flown - from.flown
+        say(
+          f"$flown%,d episodes of ${setup.conditions.duel.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
+        )
+        if state.best.isEmpty then Right(goOn())
+        else conclude(batch, state).map(_ => if !state.isDone then goOn())
+
+  private def goOn(): Unit = say(s"stopped; ./skein search --resume $folder goes on")
+
+  private def introduction(batch: TeamBatch): String =
+    import setup.question
+    val axes =
+      setup.space.axes.map(axis => s"${axis.name} ${brief(axis.least)} … ${brief(axis.most)}").mkString(", ")
+    val team = setup.scenario(setup.space.defaults)
+    s"""${setup.text}: ${setup.kind.name} of ${team.agents.size} ($axes)
+       |loop ${question.conditions.loop} every ${brief(
+        question.conditions.periodMs
+      )} ms over ${question.link}; ${setup.conditions.vehicle.description}
+       |${question.method}, about ${setup.search.expected} episodes; engine: ${setup.engine(
+        batch
+      )}""".stripMargin
+
+  private def progress(state: SearchState): String =
+    state.best.fold("no candidate measured yet"): best =>
+      val settings =
+        setup.space.axes.zip(best.candidate).map((axis, value) => s"${axis.name} ${brief(value)}")
+      s"best ${brief(best.tally.mean)} ${setup.unit} with ${settings.mkString(", ")}"
+
+  /** Measures the winner on fresh episodes and writes settings and pictures. */
+  private def conclude(batch: TeamBatch, state: SearchState): Either[String, Unit] =
+    val fresh  = if state.isDone then setup.question.fresh else setup.question.fresh.min(FreshEpisodes)
+    val result = TeamSearchResult.measured(setup, batch, state, fresh)
+    for
+      _ <- write("scenario.conf", result.file.getBytes("UTF-8"))
+      _ = say(result.summary)
+      pictures <- if state.isDone then landscape(batch, result) else Right(Vector.empty)
+    yield say(s"written: ${(folder.resolve("scenario.conf") +: pictures).mkString(", ")}")
+
+  private def landscape(batch: TeamBatch, result: TeamSearchResult): Either[String, Vector[Path]] =
+    say("drawing the landscape")
+    val byLanes = setup.fliesByLanes(batch)
+    val land    = Landscape.of(
+      setup.space,
+      result.best,
+      setup.evaluator(batch),
+      SearchResult.FreshFrom until SearchResult.FreshFrom + (if byLanes then LandscapeEpisodes else 2),
+      onMap = if byLanes then OnMap else ScalarOnMap
+    )
+    val title =
+      s"${setup.kind.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
+    val drawing =
+      LandscapeFigure(land, title, setup.formula + (if setup.unit.isEmpty then "" else s", ${setup.unit}"))
+    for
+      svg <- write("landscape.svg", Svg.file(drawing, title).getBytes("UTF-8"))
+      csv <- write("landscape.csv", land.csv.getBytes("UTF-8"))
+      painted = Png.bytes(drawing)
+      png <- painted.fold(
+        reason => Right { say(s"no PNG: $reason"); None },
+        bytes => write("landscape.png", bytes).map(Some(_))
+      )
+    yield Vector(svg, csv) ++ png
+
+  private def write(name: String, bytes: Array[Byte]): Either[String, Path] =
+    val file = folder.resolve(name)
+    try Right(Files.write(file, bytes))
+    catch case failed: IOException => Left(s"cannot write $file: $failed")
+
+  private def say(text: String): Unit =
+    Console.out.println(text.linesIterator.map(_.stripTrailing).mkString("\n"))
+
+private[cli] object TeamSearch:
+  /** Each needs a timetable of its own, which is made by the scalar engine. */
+  val FreshEpisodes             = 256
+  private val LandscapeEpisodes = 16
+  private val OnMap             = 21
+  private val ScalarOnMap       = 7

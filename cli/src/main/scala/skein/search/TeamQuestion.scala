@@ -1,0 +1,162 @@
+package skein.search
+
+import skein.optimise.{Direction, WeightedSum}
+import skein.policy.{Axis, SearchSpace}
+import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios}
+import skein.settings.ConfigKeys
+import upickle.default.ReadWriter
+
+/** A setting that is searched between two bounds, by its key. */
+final case class Varied(key: String, least: Double, most: Double) derives ReadWriter
+
+object Varied:
+  private val Form = """([a-z][a-z0-9-]*)=(-?[\d.]+)\.\.(-?[\d.]+)""".r
+
+  /** Reads `ring-m=4..12`.
+    *
+    * @return
+    *   or what was expected, and what came
+    */
+  def parse(text: String): Either[String, Varied] = text match
+    case Form(key, NumberOf(least), NumberOf(most)) if least < most => Right(Varied(key, least, most))
+    case _                                                          =>
+      Left(s"expected a setting and its bounds, the lower one first, for example ring-m=4..12, came '$text'")
+
+  private object NumberOf:
+    def unapply(text: String): Option[Double] = text.toDoubleOption.filter(_.isFinite)
+
+/** What a search over a scenario's settings is asked, in the words of the user; enough to go on with it, or to ask again.
+  *
+  * @param set
+  *   settings that have one value, by their keys
+  * @param objective
+  *   a sum of the scenario's measures
+  * @param candidates
+  *   to be tried in all, about
+  * @param episodes
+  *   that each flies; when racing, in the first round
+  * @param population
+  *   of a generation, for the methods that have them
+  * @param fresh
+  *   episodes on which the winner is measured
+  */
+final case class TeamQuestion(
+    scenario: String,
+    set: Map[String, String],
+    vary: Vector[Varied],
+    objective: String,
+    method: String,
+    conditions: Conditions,
+    link: String,
+    candidates: Int,
+    episodes: Int,
+    population: Int,
+    seed: Long,
+    fresh: Int
+) derives ReadWriter:
+  import TeamQuestion.*
+
+  /** @return or what was expected, what came, and in which option */
+  def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
+    for
+      kind <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      _    <- Either.cond(vary.nonEmpty, (), "--vary: expected a setting to search, for example ring-m=4..12")
+      plain <- read(kind, set).left.map("--set: " + _)
+      axes  <- all(vary)(axis(kind, plain, _))
+      _     <- Either.cond(
+        axes.map(_.name).distinct.size == axes.size,
+        (),
+        s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
+      )
+      space = SearchSpace(axes)
+      // A setting's bounds may be wrong together with another's.
+      corners <-
+        all(space.grid(2))(corner => read(kind, settings(set, space, corner))).left.map("--vary: " + _)
+      _ <- Either.cond(
+        corners.forall(corner => altitudesM(corner) == altitudesM(plain)),
+        (),
+        "--vary: expected settings at which all fly as high, since a model of a vehicle holds at its altitude"
+      )
+      _ <- Either.cond(
+        fresh >= 2 && fresh <= MostFresh,
+        (),
+        s"--fresh: expected 2 to $MostFresh, came $fresh"
+      )
+      flown <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
+      sum   <- WeightedSum
+        .parse(objective, measures(plain).keys.mkString(", "), hyphened = true)(measureOf(plain, _, _))
+        .left
+        .map("--objective: " + _)
+      delays <- Conditions.delays(link).left.map("--link: " + _)
+      method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
+    yield TeamSetup(
+      this,
+      kind,
+      space,
+      sum.terms,
+      sum.stated.getOrElse(Direction.Minimise),
+      flown,
+      delays,
+      method
+    )
+
+object TeamQuestion:
+  private def altitudesM(scenario: Scenario) = scenario.agents.map(-_.startPositionNed.z)
+
+  private val MostFresh = 1_000_000
+
+  /** A scenario's measures that a search can judge by, by their keys: those of a quantity, in their order. */
+  def measures(scenario: Scenario): scala.collection.immutable.ListMap[String, Measure] =
+    scenario.measures.filter(_.reduced.nonEmpty).map(measure => keyOf(measure) -> measure).to(
+      scala.collection.immutable.ListMap
+    )
+
+  /** `off ring` as `off-ring`. */
+  private def keyOf(measure: Measure) = measure.name.replace(' ', '-')
+
+  /** Settings by key, with those of a candidate. */
+  def settings(set: Map[String, String], space: SearchSpace, candidate: Vector[Double]): Map[String, String] =
+    set ++ space.axes.zip(candidate).map((axis, value) => axis.name -> value.toString)
+
+  /** A scenario of these settings, by their keys.
+    *
+    * @return
+    *   or every mistake
+    */
+  def read(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
+    val names = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
+    kind
+      .read(settings.map((key, value) => names.getOrElse(key, key) -> value))
+      .left
+      .map(_.map(ConfigKeys.ofMistake).mkString("; "))
+
+  private def axis(kind: ScenarioKind[?], plain: Scenario, varied: Varied): Either[String, Axis] =
+    val defaults = plain.productElementNames.map(ConfigKeys.ofField).zip(plain.productIterator).toMap
+    val numbers  = defaults.collect { case (key, value: Double) => key -> value }
+    numbers.get(varied.key) match
+      case Some(default) =>
+        Right(Axis(varied.key, varied.least, varied.most, default.max(varied.least).min(varied.most)))
+      case None if defaults.contains(varied.key) =>
+        Left(
+          s"--vary: expected a setting that measures something, came '${varied.key}', which counts or chooses"
+        )
+      case None =>
+        Left(
+          s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
+        )
+
+  private def measureOf(plain: Scenario, name: String, arguments: Option[String]): Either[String, Measure] =
+    val known = measures(plain)
+    (known.get(name), arguments) match
+      case (Some(measure), None) => Right(measure)
+      case _                     =>
+        val others = plain.measures.filter(_.reduced.isEmpty).map(keyOf)
+        val note   = if others.contains(name) then s": ${name} is told of recorded flights alone" else ""
+        Left(
+          s"expected one of ${known.keys.mkString(", ")}, came '$name${arguments.fold("")(a => s"($a)")}'$note"
+        )
+
+  private def all[A, B](of: Vector[A])(each: A => Either[String, B]): Either[String, Vector[B]] =
+    of.foldLeft[Either[String, Vector[B]]](Right(Vector.empty))((before, one) =>
+      before.flatMap(read => each(one).map(read :+ _))
+    )

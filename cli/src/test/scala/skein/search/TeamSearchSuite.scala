@@ -1,0 +1,114 @@
+package skein.search
+
+import com.typesafe.config.ConfigFactory
+import skein.optimise.{Evaluator, Search, SearchState}
+import skein.scenario.*
+import skein.settings.ScenarioSettings
+
+class TeamSearchSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
+  private val question = TeamQuestion(
+    scenario = "surround",
+    set = Map("vehicles" -> "5"),
+    vary = Vector(Varied("ring-m", 4, 12), Varied("pursuer-mps", 5, 12)),
+    objective = "off-ring + 0.05*gap",
+    method = "random",
+    conditions = Conditions("stream", "drag", 100, 20),
+    link = "vpn",
+    candidates = 12,
+    episodes = 2,
+    population = 4,
+    seed = 3,
+    fresh = 4
+  )
+
+  private def setup(of: TeamQuestion = question) = of.setup.fold(fail(_), identity)
+
+  private def ended(search: Search, evaluator: Evaluator): SearchState =
+    Iterator.iterate(search.start)(search.step(_, evaluator, Int.MaxValue)).find(_.isDone).get
+
+  test("the best settings of a scenario are found by lanes, and flown as they are written down"):
+    val ready = setup()
+    val batch = ready.batch(2)
+    assert(ready.engine(batch).startsWith("SIMD"), ready.engine(batch))
+    val state  = ended(ready.search, ready.evaluator(batch))
+    val result = TeamSearchResult.measured(ready, batch, state, 4)
+    assert(result.fresh.mean < result.plain.mean, result.summary)
+    val written = ConfigFactory.parseString(result.file).withFallback(ConfigFactory.load()).resolve()
+    val flown   = ScenarioSettings.read(written).fold(fail(_), identity)
+    assertEquals(flown, ready.scenario(result.best))
+
+  test("a candidate comes to what its measures say of the same flight by the scalar engine"):
+    val ready    = setup()
+    val lanes    = ready.evaluator(ready.batch(1)).tallies(Vector(Vector(8.0, 8.0)), 0 until 3).head
+    val surround = ready.scenario(Vector(8.0, 8.0))
+    val measures = surround.measures.filter(measure => Set("off ring", "gap")(measure.name))
+    assertEquals(measures.map(_.reduced.nonEmpty), Vector(true, true))
+    val paths = (0 until 3).map(episode => TeamSearchSuite.flown(surround, ready, episode))
+    val means = measures.map(measure =>
+      paths.map(places =>
+        val OverFlight(quantity, reduction, _) = measure.reduced.get
+        reduction.of(places.map(quantity.of))
+      ).sum / 3
+    )
+    assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
+
+  test("a search over settings is written down, read back and gone on with to the same end"):
+    val ready     = setup(question.copy(method = "cma-es"))
+    val evaluator = ready.evaluator(ready.batch(2))
+    val broken    = Iterator
+      .iterate(ready.search.start): state =>
+        val text = SearchFile.json(SearchFile(SearchFile.Version, ready.question, state))
+        val read = SearchFile.parse(text).fold(fail(_), identity)
+        assertEquals(read.question, ready.question)
+        ready.search.step(read.state, evaluator, 3)
+      .find(_.isDone)
+      .get
+    assertEquals(broken, ended(ready.search, evaluator))
+
+  test("what cannot be searched is told in a line, with the option"):
+    def mistake(of: TeamQuestion) = of.setup.fold(identity, _ => fail("it was taken"))
+    assertEquals(
+      mistake(question.copy(vary = Vector(Varied("ring", 4, 12)))),
+      "--vary: the scenario surround has no setting 'ring'; the nearest is 'ring-m'"
+    )
+    assertEquals(
+      mistake(question.copy(vary = Vector(Varied("vehicles", 4, 12)))),
+      "--vary: expected a setting that measures something, came 'vehicles', which counts or chooses"
+    )
+    assertEquals(
+      mistake(question.copy(vary = Vector(Varied("ring-m", -1, 12)))),
+      "--vary: ring-m: expected more than 0, came -1.0"
+    )
+    assertEquals(
+      mistake(question.copy(objective = "surrounded-after")),
+      "--objective: objective 'surrounded-after', at character 1: expected one of off-ring, gap, came 'surrounded-after': surrounded-after is told of recorded flights alone"
+    )
+    assertEquals(
+      Varied.parse("ring-m=12..4"),
+      Left(
+        "expected a setting and its bounds, the lower one first, for example ring-m=4..12, came 'ring-m=12..4'"
+      )
+    )
+
+object TeamSearchSuite:
+  import skein.forward.{Engagement, LoopObserver, Rollout}
+  import skein.simd.WorldRandom
+
+  /** Where all were in the last 10 s of an episode, flown by the scalar engine. */
+  private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Places] =
+    val engagement = Engagement.of(scenario.fleet, setup.conditions.duel.durationS)
+    val count      = engagement.agents.size
+    val seen       = Vector.newBuilder[(Double, Double, Double)]
+    Rollout(engagement, setup.conditions.timing, setup.delays, setup.conditions.vehicle.response).fly(
+      WorldRandom.key(setup.question.seed, 0, episode),
+      observer = new LoopObserver:
+        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = seen += ((timeS, x, y))
+    ): Unit
+    seen
+      .result()
+      .grouped(count)
+      .toVector
+      .takeRight(101)
+      .map(all => Places(IArray.from(all.map(_._2)), IArray.from(all.map(_._3)), IArray.fill(count)(-5.0)))
