@@ -1,20 +1,23 @@
 package skein.search
 
 import com.typesafe.config.ConfigFactory
+import scala.concurrent.duration.*
 import skein.optimise.{Evaluator, Search, SearchState}
 import skein.scenario.*
 import skein.settings.ScenarioSettings
 
 class TeamSearchSuite extends munit.FunSuite:
+  override def munitTimeout: Duration = 2.minutes
+
   private given Scenarios = Scenarios.ours
 
   private val question = TeamQuestion(
     scenario = "surround",
-    set = Map("vehicles" -> "5"),
+    set = Map("vehicles" -> "4"),
     vary = Vector(Varied("ring-m", 4, 12), Varied("pursuer-mps", 5, 12)),
     objective = "off-ring + 0.05*gap",
     method = "random",
-    conditions = Conditions("stream", "drag", 100, 20),
+    conditions = Conditions("stream", "drag", 100, 12),
     link = "vpn",
     candidates = 12,
     episodes = 2,

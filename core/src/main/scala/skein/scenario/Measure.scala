@@ -30,7 +30,11 @@ object Measure:
     new Measure(name, "", true, None, tracks => Some(of(tracks).toDouble))
 
   /** What a quantity comes to. */
-  private[scenario] def of(name: String, unit: String, by: OverFlight)(of: Tracks => Option[Double]): Measure =
+  private[scenario] def of(
+      name: String,
+      unit: String,
+      by: OverFlight
+  )(of: Tracks => Option[Double]): Measure =
     new Measure(name, unit, false, Some(by), of)
 
 /** What a quantity comes to over a part of a flight. */
@@ -98,7 +102,9 @@ final class Series private (
     def of(tracks: Tracks) =
       val value = at(tracks)
       over.of(tracks).map(instants => reduction.of(instants.map(value)))
-    quantity.fold(Measure(name, unit)(of))(each => Measure.of(name, unit, OverFlight(each, reduction, over))(of))
+    quantity.fold(Measure(name, unit)(of))(each =>
+      Measure.of(name, unit, OverFlight(each, reduction, over))(of)
+    )
 
 object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =

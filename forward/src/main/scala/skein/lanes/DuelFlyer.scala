@@ -137,7 +137,8 @@ private final class TimetableFlyer(
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then
         val (link, key) = (worlds.link(world), worlds.key(world))
-        timetable = timetables.getOrMake((link, key))(Timetable.of(2, duel.durationS, timing, link, key, model))
+        timetable =
+          timetables.getOrMake((link, key))(Timetable.of(2, duel.durationS, timing, link, key, model))
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 

@@ -69,8 +69,7 @@ private[lanes] object QuantityLanes:
               val made = QuantityLanes(formulas.flatMap(_.toOption), vehicles)
               known.add(made): Unit
               Right(made)
-            catch case refused: Untraceable => Left(refused)
-    )
+            catch case refused: Untraceable => Left(refused))
 
   private def find(quantities: Vector[Quantity], vehicles: Int): Option[QuantityLanes] =
     var i = 0

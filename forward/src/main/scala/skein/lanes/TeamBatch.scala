@@ -34,7 +34,7 @@ final class TeamBatch(
     val engagement = candidate.engagement
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
-      _ <- LaneSupport.present
+      _        <- LaneSupport.present
       vehicles <- TimetableModel.under(timing, model, engagement.agents)
       _        <- Either.cond(
         policies.size == engagement.agents.size,
@@ -74,11 +74,13 @@ final class TeamBatch(
 
   /** A candidate with the numbers that it differs by from others of its form. */
   private final class Prepared(val candidate: TeamCandidate):
-    private val agents                               = candidate.engagement.agents
-    val form: Option[Form]                           = lanesOf(candidate).toOption
-    val ofPolicies: Vector[Array[Double]]            = form.toVector.flatMap: form =>
-      agents.zipWithIndex.map((agent, self) => form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy]))
-    val ofQuantities: Vector[Array[Double]]          = form.toVector.flatMap: form =>
+    private val agents                    = candidate.engagement.agents
+    val form: Option[Form]                = lanesOf(candidate).toOption
+    val ofPolicies: Vector[Array[Double]] = form.toVector.flatMap: form =>
+      agents.zipWithIndex.map((agent, self) =>
+        form.team.parametersOf(self, agent.policy.asInstanceOf[TeamPolicy])
+      )
+    val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
       candidate.judged.zipWithIndex.map((each, number) => form.quantities.parametersOf(number, each.quantity))
 
   /** One per thread. Mutable. */
@@ -151,14 +153,15 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityRespons
 
   /** What one episode comes to, by what is judged. */
   def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
-    if (candidate, link) != last then
-      last = (candidate, link)
+    val asked = (candidate, link)
+    if asked != last then
+      last = asked
       rollout = Rollout(candidate.engagement, timing, link, model)
     val downM    = IArray.from(candidate.engagement.agents.map(_.altitudeDownM))
     val count    = downM.length
     val values   = candidate.judged.map(_ => ArrayBuffer.empty[Double])
     val observer = new LoopObserver:
-      private val northM, eastM                                                         = Array.ofDim[Double](count)
+      private val northM, eastM = Array.ofDim[Double](count)
       override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
         northM(vehicle) = x; eastM(vehicle) = y
         if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
@@ -166,4 +169,6 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityRespons
           for (each, found) <- candidate.judged.zip(values) if each.counts(timeS) do
             found += each.quantity.of(places)
     rollout.fly(key, observer = observer): Unit
-    candidate.judged.zip(values).map((each, found) => if found.isEmpty then Double.NaN else each.reduction.of(found.toVector))
+    candidate.judged.zip(values).map((each, found) =>
+      if found.isEmpty then Double.NaN else each.reduction.of(found.toVector)
+    )

@@ -13,7 +13,8 @@ private[lanes] final class TeamScores(lanes: QuantityLanes, judged: Vector[Judge
   private val shown      = PictureCall(bound, lanes.reading)
   private val values     = Array.ofDim[Float](judged.size * worlds)
   private val altitudes  = Array.ofDim[Float](lanes.count * worlds)
-  private val parameters = Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
+  private val parameters =
+    Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
   private val reductions = judged.map(each => LaneReduction(each.reduction)).toArray
 
   for number <- judged.indices do shown.call.output(number, values, number * worlds)

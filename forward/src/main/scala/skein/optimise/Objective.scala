@@ -99,6 +99,7 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
 object Objective:
   private val Forms =
     "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
+
   /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise` before it or
     * not. Without, a sum is minimised, and a single measure goes where the role wants it.
     *
