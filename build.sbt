@@ -47,7 +47,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
-    .aggregate(ownGraph, ownVehicle, virtualTime)
+    .aggregate(mcap, ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -112,6 +112,11 @@ lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
   .dependsOn(airsim % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
+
+/** The container format of the field's viewers, read and written. Depends on nothing of ours. */
+lazy val mcap = project
+  .settings(artifact("mcap", "MCAP files, read and written"))
+  .settings(libraryDependencies ++= zstd +: munit ++: Seq(lz4Oracle, upickle % Test))
 
 /** Recordings. */
 lazy val record = project

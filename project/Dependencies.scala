@@ -14,6 +14,8 @@ object Dependencies {
   val upickle       = "com.lihaoyi"           %% "upickle"              % "4.4.3"
   val msgpackOracle = "org.msgpack"            % "msgpack-core"         % "0.9.11"     % Test
   val duckdb        = "org.duckdb"             % "duckdb_jdbc"          % "2.0.0.1"
+  val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
+  val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
   val mainargs      = "com.lihaoyi"           %% "mainargs"             % "0.7.8"
   val pureconfig    = "com.github.pureconfig" %% "pureconfig-core"      % "0.17.8"
   val logback       = "ch.qos.logback"         % "logback-classic"      % "1.5.18"

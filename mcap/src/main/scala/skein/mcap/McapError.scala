@@ -1,0 +1,74 @@
+package skein.mcap
+
+import scala.util.control.NoStackTrace
+
+/** Where in a file something lies.
+  *
+  * @param offset
+  *   bytes from the start of the file
+  * @param inChunk
+  *   in a chunk that starts at `offset`: bytes from the start of its records, uncompressed; -1 outside of chunks
+  */
+final case class Place(offset: Long, inChunk: Int = -1):
+  override def toString: String =
+    if inChunk < 0 then s"byte $offset" else s"byte $inChunk of the records of the chunk at byte $offset"
+
+/** Why a file, or its end, cannot be read: where, what was expected there, and what came. */
+enum McapError:
+
+  /** It begins with other bytes than MCAP's, or with those of a version that is not known. */
+  case NotMcap(came: Bytes)
+
+  /** It ends too early: as a file does whose writer was killed. All that lies before has been read. */
+  case CutOff(at: Place, expected: String, came: Long)
+
+  /** It claims a size that is beyond what the reader allows. */
+  case TooLarge(at: Place, what: String, claimed: Long, limit: Long)
+
+  /** It does not have the structure of an MCAP file. */
+  case Malformed(at: Place, expected: String, came: String)
+
+  /** Bytes have changed since they were written. */
+  case WrongCrc(at: Place, what: String, expected: Int, came: Int)
+
+  /** The bytes of a chunk are not what its compression makes. */
+  case NotDecompressed(at: Place, compression: String, why: String)
+
+  /** Neither `zstd` nor `lz4` nor none. */
+  case UnknownCompression(at: Place, name: String)
+
+  def message: String = this match
+    case NotMcap(came) =>
+      s"byte 0: expected an MCAP file of version 0, which begins with ${McapError.hex(Magic.bytes)}, came " +
+        (if came.size == 0 then "no byte" else McapError.hex(came))
+    case CutOff(at, expected, came) => s"$at: the file is cut off: expected $expected, came $came bytes"
+    case TooLarge(at, what, claimed, limit) =>
+      s"$at: $what claims ${java.lang.Long.toUnsignedString(claimed)} bytes, expected at most $limit"
+    case Malformed(at, expected, came)      => s"$at: expected $expected, came $came"
+    case WrongCrc(at, what, expected, came) =>
+      f"$at: the CRC of $what is written as 0x$expected%08x, its bytes give 0x$came%08x"
+    case NotDecompressed(at, compression, why) =>
+      s"$at: expected a chunk compressed by $compression, came $why"
+    case UnknownCompression(at, name) =>
+      s"$at: expected a chunk compressed by zstd, by lz4 or not at all, came \"$name\""
+
+  override def toString: String = message
+
+object McapError:
+  private def hex(bytes: Bytes) = bytes.toArray.map(byte => f"$byte%02x").mkString(" ")
+
+/** The bytes at both ends of a file. */
+private[mcap] object Magic:
+  val bytes: Bytes = Bytes.of(Array[Byte](0x89.toByte, 'M', 'C', 'A', 'P', '0', '\r', '\n'))
+
+/** Leaves the decoder, whose public ways all give an `Either`. */
+private[mcap] final class Refused(val error: McapError) extends RuntimeException(error.message)
+    with NoStackTrace
+
+private[mcap] object Refused:
+  def malformed(at: Place, expected: String, came: String): Nothing =
+    throw Refused(McapError.Malformed(at, expected, came))
+
+  def either[A](body: => A): Either[McapError, A] =
+    try Right(body)
+    catch case refused: Refused => Left(refused.error)

@@ -1,0 +1,57 @@
+package skein.mcap
+
+import java.nio.{ByteBuffer, ByteOrder}
+
+/** Steps over records that lie one behind another.
+  *
+  * @param offset
+  *   where they start in the file
+  * @param inChunk
+  *   whether that is the chunk whose records they are
+  * @param cut
+  *   whether they may end within a record, which then does not count
+  */
+private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Boolean, cut: Boolean = false):
+  private val array = records.array
+  private val end   = records.from + records.size
+  private val view  = ByteBuffer.wrap(array).order(ByteOrder.LITTLE_ENDIAN)
+  private var at    = records.from
+  private var next  = records.from
+
+  /** Goes to the next record, if there is one. */
+  def step(): Boolean =
+    at = next
+    if at == end then false
+    else if end - at < 9 then missing("9 bytes of a record's kind and length")
+    else
+      val length = view.getLong(at + 1)
+      if java.lang.Long.compareUnsigned(length, end - at - 9L) > 0 then
+        missing(s"${java.lang.Long.toUnsignedString(length)} bytes of ${Opcode.name(opcode)}")
+      else
+        next = at + 9 + length.toInt
+        true
+
+  private def missing(expected: String): Boolean =
+    if cut then false else Refused.malformed(place, expected, s"${(end - at - 9).max(0)} bytes to the end")
+
+  /** Goes back to a record that has been stepped over. */
+  def goTo(start: Int): Unit =
+    at = records.from + start
+    next = at + 9 + view.getLong(at + 1).toInt
+
+  def size: Int      = records.size
+  def opcode: Int    = array(at) & 0xff
+  def start: Int     = at - records.from
+  def length: Int    = next - at
+  def place: Place   = if inChunk then Place(offset, start) else Place(offset + start)
+  def record: Record = RecordDecoder.decode(opcode, array, at + 9, next, place)
+
+  /** Of a message, without decoding it. */
+  def channelId: Int = view.getShort(at + 9) & 0xffff
+  def logTime: Long  = view.getLong(at + 9 + 6)
+
+  /** Refuses a message that is shorter than its fixed fields. */
+  def isMessage: Boolean =
+    val is = opcode == Opcode.Message
+    if is && length < 9 + 22 then Refused.malformed(place, "22 bytes of Message", s"${length - 9} bytes")
+    is

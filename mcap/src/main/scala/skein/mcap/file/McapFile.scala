@@ -1,0 +1,29 @@
+package skein.mcap.file
+
+import java.nio.channels.FileChannel
+import java.nio.file.StandardOpenOption.{CREATE, READ, TRUNCATE_EXISTING, WRITE}
+import java.nio.file.Path
+import scala.util.Using
+import skein.mcap.*
+
+/** MCAP files on a disk. Errors of the disk itself are thrown as `IOException`. */
+object McapFile:
+
+  /** A new file, or one in the place of an older one, with what `body` writes; finished if it returns. If it throws, the
+    * file can be read up to the last chunk.
+    */
+  def write[A](path: Path, options: WriterOptions = WriterOptions())(body: McapWriter => A): A =
+    Using.resource(FileChannel.open(path, CREATE, TRUNCATE_EXISTING, WRITE)): channel =>
+      val writer = McapWriter(ChannelSink(channel), options)
+      val result = body(writer)
+      writer.finish()
+      result
+
+  /** Reads by index; the reader must not be used after `body` returns. */
+  def read[A](path: Path, limits: Limits = Limits())(body: IndexedReader => A): Either[McapError, A] =
+    Using.resource(FileChannel.open(path, READ)): channel =>
+      IndexedReader.open(FileSource(channel), limits).map(body)
+
+  /** Reads all records in the file's order and holds every CRC; the stream must not be used after `body` returns. */
+  def stream[A](path: Path, limits: Limits = Limits())(body: RecordStream => A): A =
+    Using.resource(FileChannel.open(path, READ))(channel => body(RecordStream(channel, limits)))

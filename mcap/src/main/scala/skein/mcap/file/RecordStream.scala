@@ -1,0 +1,46 @@
+package skein.mcap.file
+
+import java.nio.ByteBuffer
+import java.nio.channels.ReadableByteChannel
+import skein.mcap.{Limits, McapError, Parsed, Record, StreamParser}
+
+/** The records of a file that can be read once, from its start on, such as a pipe or a socket. After an error it ends.
+  * Reading blocks while the channel does, and throws its `IOException`.
+  */
+final class RecordStream(channel: ReadableByteChannel, limits: Limits = Limits())
+    extends Iterator[Either[McapError, Parsed.Found]]:
+  private val parser = StreamParser(limits)
+  private val piece  = ByteBuffer.allocate(RecordStream.Piece)
+  private var ahead  = Option.empty[Either[McapError, Parsed.Found]]
+  private var ended  = false
+
+  /** Of the schemas that have come so far. */
+  def schema(id: Int): Option[Record.Schema] = parser.schema(id)
+
+  /** Of the channels that have come so far. */
+  def channel(id: Int): Option[Record.Channel] = parser.channel(id)
+
+  def hasNext: Boolean =
+    while ahead.isEmpty && !ended do
+      parser.next() match
+        case found: Parsed.Found  => ahead = Some(Right(found))
+        case Parsed.NeedsBytes    => refill()
+        case Parsed.Ended         => ended = true
+        case Parsed.Failed(error) =>
+          ahead = Some(Left(error))
+          ended = true
+    ahead.isDefined
+
+  def next(): Either[McapError, Parsed.Found] =
+    if !hasNext then throw java.util.NoSuchElementException("no more records")
+    val found = ahead.get
+    ahead = None
+    found
+
+  private def refill(): Unit =
+    piece.clear()
+    val count = channel.read(piece)
+    if count < 0 then parser.end() else parser.offer(piece.array, 0, count)
+
+object RecordStream:
+  private val Piece = 1 << 20

@@ -1,0 +1,137 @@
+package skein.mcap
+
+import java.util.SplittableRandom
+
+/** Files that are cut off, changed, or made to hurt. */
+class DamageLaws extends munit.FunSuite:
+
+  test("a file cut off at any byte gives all that lies before the cut"):
+    for seed <- 1L to 8 do
+      val file  = RandomFile.draw(seed, most = 40)
+      val whole = Parsing.all(file.bytes)
+      for length <- 0 until file.bytes.size do
+        val cut  = file.bytes.slice(0, length)
+        val read = Parsing.all(cut, piece = 1 + length % 97)
+        val what = s"${file.show}, cut at $length"
+        read.end match
+          case Parsed.Failed(McapError.CutOff(at, _, _)) => assert(at.offset <= length, what)
+          case Parsed.Failed(McapError.NotMcap(_))       => assert(length == 0, what)
+          case other                                     => fail(s"$what: $other")
+        // All records that end before the cut; of chunks that are cut through, what can be had of them.
+        val before = whole.found.filter(found => endOf(found, whole) <= length).map(_.record)
+        val came   = read.records
+        assertEquals(came.take(before.size), before, what)
+        assertEquals(came.drop(before.size), rest(whole, before.size, came.size - before.size), what)
+
+  test("of an uncompressed chunk that is cut through, every whole message is read"):
+    for seed <- 1L to 15 do
+      val file =
+        RandomFile.draw(
+          seed,
+          options = _ => WriterOptions(chunkBytes = 4000, compression = Compression.Uncompressed)
+        )
+      val whole = Parsing.all(file.bytes)
+      val heads = whole.found.collect { case Parsed.Found(chunk: Record.Chunk, at, length) =>
+        at.offset -> (at.offset + length - chunk.records.size)
+      }.toMap
+      for length <- 0 until file.bytes.size do
+        val expected = whole.found.collect:
+          case Parsed.Found(message: Record.Message, at, size)
+              if heads(at.offset) + at.inChunk + size <= length =>
+            message
+        assertEquals(
+          Parsing.all(file.bytes.slice(0, length)).messages,
+          expected,
+          s"${file.show}, cut at $length"
+        )
+
+  test("by index, a file cut off anywhere gives what its stream gives"):
+    for seed <- 1L to 5 do
+      val file = RandomFile.draw(seed, most = 40)
+      for length <- 0 until file.bytes.size do
+        val cut    = file.bytes.slice(0, length)
+        val what   = s"${file.show}, cut at $length"
+        val stream = Parsing.all(cut)
+        IndexedReader.open(ByteSource.of(cut)) match
+          case Left(error)   => assert(stream.messages.isEmpty, s"$what: $error")
+          case Right(reader) =>
+            assert(reader.summary.cut.isDefined, what)
+            val found =
+              reader.messages(Query(order = Query.Order.File)).map(_.fold(e => fail(s"$what: $e"), _.message))
+            assertEquals(found.toVector, stream.messages, what)
+
+  test("a byte that has changed anywhere is found, and the error says where"):
+    for seed <- 1L to 10 do
+      val file   = RandomFile.draw(seed, most = 40)
+      val random = SplittableRandom(seed)
+      for at <- 0 until file.bytes.size do
+        val changed = file.bytes.toArray
+        changed(at) = (changed(at) ^ (1 << random.nextInt(8))).toByte
+        val what = s"${file.show}, changed at $at"
+        Parsing.all(Bytes.of(changed)).end match
+          case Parsed.Failed(error) => assert(error.message.startsWith("byte "), s"$what: $error")
+          case other                => fail(s"$what: $other")
+
+  test("by index, a changed byte gives no message of a chunk that was not written"):
+    for seed <- 1L to 6 do
+      val file    = RandomFile.draw(seed, options = RandomFile.indexed)
+      val written = file.messages.toSet
+      val random  = SplittableRandom(seed)
+      for at <- 0 until file.bytes.size do
+        val changed = file.bytes.toArray
+        changed(at) = (changed(at) ^ (1 << random.nextInt(8))).toByte
+        IndexedReader
+          .open(ByteSource.of(Bytes.of(changed)))
+          .foreach(_.messages().foreach(_.foreach(one =>
+            assert(written(one.message), s"${file.show}, at $at")
+          )))
+
+  test("whatever comes, a reader gives records or says why not"):
+    for seed <- 1L to 1000 do
+      val random  = SplittableRandom(seed)
+      val file    = RandomFile.draw(seed % 50, most = 30)
+      val changed = file.bytes.toArray
+      for _ <- 0 to random.nextInt(6) do
+        val at = random.nextInt(changed.length)
+        // Lengths are what hurts: bytes of all ones are frequent.
+        changed(at) = (if random.nextInt(3) == 0 then 0xff else random.nextInt(256)).toByte
+      val bytes  = Bytes.of(changed)
+      val limits = Limits(recordBytes = 1 << 16, chunkBytes = 1 << 16, summaryBytes = 1 << 16)
+      try
+        Parsing.all(bytes, limits = limits).end: Unit
+        IndexedReader.open(ByteSource.of(bytes), limits).foreach: reader =>
+          reader.messages().foreach(_ => ())
+          reader.summary.attachments.foreach(reader.attachment(_))
+          reader.summary.metadata.foreach(reader.metadata(_))
+      catch case error: Throwable => throw AssertionError(s"seed $seed: $error", error)
+
+  test(
+    "what lz4 or zstd is damaged to is refused, never more than it claims, and never an error of the machine's"
+  ):
+    for seed <- 1L to 2000 do
+      val random = SplittableRandom(seed)
+      val source = new Array[Byte](random.nextInt(400))
+      if random.nextInt(2) == 0 then random.nextBytes(source)
+      val kind   = if random.nextInt(2) == 0 then Compression.Lz4 else Compression.Zstd()
+      val packed = kind.compress(source, 0, source.length).toArray
+      for _ <- 0 to random.nextInt(3) do packed(random.nextInt(packed.length)) = random.nextInt(256).toByte
+      val claimed = random.nextInt(500)
+      val chunk   = Record.Chunk(0, 0, claimed, 0, kind.name, Bytes.of(packed))
+      for cut <- Vector(false, true) do
+        try
+          Refused
+            .either(Compression.decompress(chunk, Limits(), Place(0), cut))
+            .foreach(held => assert(held.size <= claimed, s"seed $seed"))
+        catch case error: Throwable => throw AssertionError(s"seed $seed, cut $cut: $error", error)
+
+  /** Where a record ends in the file; of one in a chunk, where the chunk does. */
+  private def endOf(found: Parsed.Found, whole: Parsing): Long =
+    if found.at.inChunk < 0 then found.at.offset + found.length
+    else
+      whole.found.collectFirst {
+        case Parsed.Found(_: Record.Chunk, at, length) if at.offset == found.at.offset => at.offset + length
+      }.get
+
+  /** So many records from there on, as a chunk that is cut through gives them: without the chunk. */
+  private def rest(whole: Parsing, from: Int, count: Int): Vector[Record] =
+    whole.records.drop(from).dropWhile(_.opcode == Opcode.Chunk).take(count)

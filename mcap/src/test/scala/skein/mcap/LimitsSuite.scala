@@ -1,0 +1,104 @@
+package skein.mcap
+
+class LimitsSuite extends munit.FunSuite:
+  private val begin =
+    val out = ByteBuilder(64)
+    out.raw(Magic.bytes)
+    RecordEncoder.append(Record.Header("", ""), out)
+    Bytes.of(out.array.take(out.size))
+
+  private def after(records: ByteBuilder => Unit): Bytes =
+    val out = ByteBuilder(64)
+    out.raw(begin)
+    records(out)
+    Bytes.of(out.array.take(out.size))
+
+  private def errorOf(file: Bytes, limits: Limits = Limits()) = Parsing.all(file, limits = limits).end match
+    case Parsed.Failed(error) => error.message
+    case other                => s"$other"
+
+  test("a record that claims more than the limit is refused before room is made for it"):
+    val file = after: out =>
+      out.u8(Opcode.Attachment)
+      out.u64(-2L)
+    assertEquals(
+      errorOf(file),
+      "byte 25: a Attachment record claims 18446744073709551614 bytes, expected at most 268435456"
+    )
+
+  test("a claim within the limit gets no room that its bytes do not fill"):
+    val runtime = Runtime.getRuntime
+    val file    = after: out =>
+      out.u8(Opcode.Attachment)
+      out.u64(Int.MaxValue - 100)
+    val limits = Limits(recordBytes = Int.MaxValue - 100)
+    // More such parsers than the heap could hold if each made room for what is claimed.
+    val parsers = Vector.fill((runtime.maxMemory >> 31).toInt + 8): () =>
+      val parser = StreamParser(limits)
+      parser.offer(file.toArray)
+      while parser.next() != Parsed.NeedsBytes do ()
+      parser
+    assertEquals(parsers.map(_()).map(_.next()).toSet, Set(Parsed.NeedsBytes))
+
+  test("a chunk that claims to grow beyond the limit is refused"):
+    val file = after(RecordEncoder.append(Record.Chunk(0, 0, 1L << 40, 0, "zstd", Bytes.empty), _))
+    assertEquals(
+      errorOf(file),
+      "byte 25: a chunk, uncompressed, claims 1099511627776 bytes, expected at most 268435456"
+    )
+
+  test("chunks that overlap are held open up to the limit"):
+    val sink   = MemorySink()
+    val writer = McapWriter(sink, WriterOptions(chunkBytes = 1000))
+    val one    = writer.channel("/a", "")
+    for at <- 0 until 100 do
+      writer.message(one, at, at, at, Bytes.of(new Array[Byte](500)))
+      writer.message(one, at, 1000, 0, Bytes.of(new Array[Byte](500)))
+    writer.finish()
+    def read(limits: Limits) =
+      IndexedReader.open(ByteSource.of(sink.bytes), limits).toOption.get.messages().toVector
+    assertEquals(read(Limits()).count(_.isRight), 200)
+    read(Limits(openBytes = 20000)).last match
+      case Left(McapError.TooLarge(_, what, _, limit)) =>
+        assertEquals((what, limit), ("what overlaps in time", 20000L))
+      case other => fail(s"$other")
+
+  test("errors say what was expected, what came, and where"):
+    assertEquals(
+      errorOf(Bytes.utf8("SQLite format 3")),
+      "byte 0: expected an MCAP file of version 0, which begins with 89 4d 43 41 50 30 0d 0a, " +
+        "came 53 51 4c 69 74 65 20 66"
+    )
+    assertEquals(
+      errorOf(after(RecordEncoder.append(Record.Message(7, 0, 0, 0, Bytes.empty), _))),
+      "byte 25: expected a message of a channel named before, came one of channel 7"
+    )
+    assertEquals(
+      errorOf(after(RecordEncoder.append(Record.Chunk(0, 0, 0, 0, "bz2", Bytes.empty), _))),
+      "byte 25: expected a chunk compressed by zstd, by lz4 or not at all, came \"bz2\""
+    )
+    assertEquals(
+      errorOf(after(RecordEncoder.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
+      "byte 25: the CRC of the chunk's records, uncompressed, is written as 0x00000005, its bytes give 0x352441c2"
+    )
+    assertEquals(
+      errorOf(after(RecordEncoder.append(Record.SummaryOffset(3, 0, 0), _))),
+      "byte 25: expected a record of the data section, came a Summary Offset record"
+    )
+    assertEquals(
+      errorOf(begin.slice(0, 20)),
+      "byte 8: the file is cut off: expected 8 bytes of Header, came 3 bytes"
+    )
+
+  test("a record of a kind that is not known yet is given as it is"):
+    val file = after(RecordEncoder.append(Record.Other(0x91, Bytes.utf8("later")), _))
+    assertEquals(Parsing.all(file).records.last, Record.Other(0x91, Bytes.utf8("later")))
+
+  test("a channel that is named again otherwise is refused, one named again is not"):
+    def channel(topic: String) =
+      Record.Channel(1, 0, topic, "", scala.collection.immutable.VectorMap.empty)
+    def file(second: String) = after: out =>
+      RecordEncoder.append(channel("/a"), out)
+      RecordEncoder.append(channel(second), out)
+    assertEquals(Parsing.all(file("/a")).records.size, 3)
+    assertEquals(errorOf(file("/b")), "byte 52: expected channel 1 as it was named before, /a, came /b")

@@ -1,0 +1,35 @@
+package skein.mcap
+
+import java.io.ByteArrayOutputStream
+
+/** What a whole file gives to a parser. */
+final case class Parsing(found: Vector[Parsed.Found], end: Parsed):
+  def records: Vector[Record]          = found.map(_.record)
+  def messages: Vector[Record.Message] = records.collect { case message: Record.Message => message }
+
+object Parsing:
+  /** @param piece
+    *   so many bytes are offered at a time
+    */
+  def all(file: Bytes, piece: Int = 1 << 20, limits: Limits = Limits()): Parsing =
+    val parser = StreamParser(limits)
+    val array  = file.toArray
+    val found  = Vector.newBuilder[Parsed.Found]
+    var at     = 0
+    var end    = Option.empty[Parsed]
+    while end.isEmpty do
+      parser.next() match
+        case record: Parsed.Found                    => found += record
+        case Parsed.NeedsBytes if at == array.length => parser.end()
+        case Parsed.NeedsBytes                       =>
+          val until = (at + piece).min(array.length)
+          parser.offer(array, at, until)
+          at = until
+        case other => end = Some(other)
+    Parsing(found.result(), end.get)
+
+final class MemorySink extends ByteSink:
+  private val gathered = ByteArrayOutputStream()
+
+  def write(array: Array[Byte], from: Int, until: Int): Unit = gathered.write(array, from, until - from)
+  def bytes: Bytes                                           = Bytes.of(gathered.toByteArray)
