@@ -181,7 +181,7 @@ lazy val cli = project
 /** Measurements: plain programs that print a witness of what they did. */
 lazy val bench =
   project
-    .dependsOn(cli)
+    .dependsOn(cli, mcap)
     .settings(Jvm.vectorModule, underAgent, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
 
