@@ -53,6 +53,15 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     assertEquals(states.last.restarts, 1)
     assertEquals(states.last.offset, trueOffset + Span.ofMillis(300))
 
+  test("the same sample told twice within a tick of the simulator's clock is no standing still"):
+    val before = reading(0, (10, 10))
+    val first  = ClockAlignment.of(before)
+    def told(after: Span) =
+      val sent = before.receivedAt + after
+      first.updated(before.copy(sentAt = sent, receivedAt = sent + Span.ofMillis(1)))
+    assert(!told(ClockAlignment.Tick).standsStill)
+    assert(told(ClockAlignment.Tick + Span.ofNanos(1)).standsStill)
+
   for (link, boundMs) <- Seq(LatencyProfile.direct -> 2.0, LatencyProfile.vpn -> 5.0) do
     test(
       s"over ${link.name} the estimate is within $boundMs ms after 5 s at 20 readings a second, and stays so"

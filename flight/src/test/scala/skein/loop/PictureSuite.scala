@@ -54,6 +54,29 @@ class PictureSuite extends munit.FunSuite:
     assert(picture.isNews(reading(0, 3, 111, 90, 160)))
     assert(picture.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
+  test("a vehicle is taken to be where it was read, or estimated, and to head where it was last told"):
+    val fleet   = PaperDuel().fleet
+    val picture = Picture.empty(2).withReading(first).withReading(other)
+    assertEquals(picture.kinematics(0), first.state.value)
+    assert(picture.isComplete && !Picture.empty(2).withReading(first).isComplete)
+    assertEquals(picture.headingRad(1, fleet), fleet.agents(1).startHeading.value)
+    val estimate = skein.forecast.Estimate(later.state.value, millis(0), millis(1))
+    assertEquals(picture.copy(estimates = Some(Vector(estimate, estimate))).kinematics(0), later.state.value)
+
+  test("a sensor's late answer never overrides a newer one of the same sensor"):
+    def sensed(sensor: String, sequence: Long, validMs: Double) = SensorReading(
+      0,
+      sensor,
+      sequence,
+      Vector("x"),
+      Stamped(Vector(sequence.toDouble), millis(validMs), millis(validMs - 10), millis(validMs + 10))
+    )
+    val picture = Picture.empty(2).withSensorReading(sensed("gps", 2, 100))
+    val held    = picture.withSensorReading(sensed("gps", 1, 50)).withSensorReading(sensed("imu", 3, 20))
+    assertEquals(held.sensed(0).map((name, reading) => name -> reading.sequence), Map("gps" -> 2L, "imu" -> 3L))
+    assertEquals(held.withSensorReading(sensed("gps", 4, 101)).sensed(0)("gps").sequence, 4L)
+    assertEquals(held.sensed(1), Map.empty)
+
   test("a late reading is dropped and noted, and decided is upon the newer one"):
     val (sights, stale) = seen(
       Percept.Read(first),

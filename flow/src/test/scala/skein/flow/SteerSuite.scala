@@ -100,6 +100,24 @@ class SteerSuite extends munit.FunSuite:
     val last           = events.collect { case (at, Ended(9, _, result)) => (at, result) }
     assertEquals(last, Seq(972L -> Success("9 superseded")))
 
+  test("where the last command has ended, the next is sent as soon as it comes"):
+    val sent = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem = system
+        val clock         = Clock.ofNanos(VirtualTime.clock(system))
+        val start         = clock.now()
+        def call(answer: String) = after(10.millis)(Future.successful(answer))
+        Source
+          .tick(0.millis, 10_200.micros, ())
+          .zipWithIndex
+          .map(_._2.toInt)
+          .take(4)
+          .via(Steer(Span.Zero, clock)(_ => call("done"), () => call("hovering"), _ => true, (_: Int) => ()))
+          .collect { case Sent(command, at) => (command, at.since(start).toNanos / 1000) }
+          .runWith(Sink.seq)
+      .value
+    assertEquals(sent, Seq(0 -> 0L, 1 -> 10_200L, 2 -> 20_400L, 3 -> 30_600L))
+
   /** What reached a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail `failures` times. */
   private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
     afterLossUs(failures, every).map((us, what) => (us / 1000, what))

@@ -13,7 +13,14 @@ private object Modules:
     Module(
       "loop",
       "flight/src/main/scala/skein/loop",
-      Vector("skein.loop.*Suite", "skein.flight.ReplaySimulation", "skein.loop.PredictiveLoopSimulation")
+      Vector(
+        "skein.loop.*Suite",
+        "skein.loop.planning.*",
+        "skein.flight.ReplaySimulation",
+        "skein.loop.PlanLoopSimulation",
+        "skein.loop.SensorSimulation",
+        "skein.loop.PredictiveLoopSimulation"
+      )
     ),
     Module("record", "record/src/main/scala/skein/record", Vector("skein.record.*")),
     Module("report", "cli/src/main/scala/skein/report", Vector("skein.report.*")),
