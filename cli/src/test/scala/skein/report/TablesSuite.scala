@@ -1,6 +1,14 @@
 package skein.report
 
-import skein.measure.{Deviation, Distribution, FlightSet, Numbers, Observation, PredictionErrors, PredictionGroup}
+import skein.measure.{
+  Deviation,
+  Distribution,
+  FlightSet,
+  Numbers,
+  Observation,
+  PredictionErrors,
+  PredictionGroup
+}
 import skein.record.{Event, EventKind, Planned, Recording}
 import skein.scenario.Scenarios
 import skein.units.*
@@ -96,7 +104,9 @@ class TablesSuite extends munit.FunSuite:
 
   private val steady = duel("paused", 1)(_ => 4.02)
 
-  test("distances: what was flown, where it was closest and when, its last 10 s, the truth's and the paper's"):
+  test(
+    "distances: what was flown, where it was closest and when, its last 10 s, the truth's and the paper's"
+  ):
     val table = SummaryTables.distances(Report.of(Seq(steady, duel("stream", 2)(pass(0)))))
     assertEquals(
       table.rows,
@@ -115,7 +125,9 @@ class TablesSuite extends munit.FunSuite:
       Vector("stream", "direct", "2", "2.51", "0.50", "2.01", "3.01", "0.58", "1.51", "1", "-37.6 %")
     )
 
-  test("plans: how many candidates in what time, what was missed and broken, and when the evader was captured"):
+  test(
+    "plans: how many candidates in what time, what was missed and broken, and when the evader was captured"
+  ):
     def planned(candidates: Long, slices: Vector[Long], tookMs: Double, breaches: Long) =
       Planned("Pursuer", 1, candidates, slices, Some(1), Span.ofMillis(tookMs), breaches)
     val plans = Vector(
@@ -136,6 +148,21 @@ class TablesSuite extends munit.FunSuite:
     )
     assertEquals(table.header.size, table.rows.head.size)
     assert(PlanTable.note(Report.of(Seq(catches))).contains("captured where"))
+
+  test("a distance of just 1.5 m is no capture"):
+    val plan = Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)
+    val row  = PlanTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5).copy(planned = Vector(plan))))).rows.head
+    assertEquals(row.takeRight(2), Vector("never", "0.0 %"))
+    assertEquals(SpreadTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5))).flights).rows.head(9), "0")
+
+  test("a live flight stands beside its twin with both distances and the difference"):
+    val flown = duel("stream", 2)(pass(0))
+    val live  = flown.copy(heading = flown.heading.copy(flight = flown.heading.flight.copy(clock = "real")))
+    val table = SummaryTables.twins(Report.of(Seq(live, duel("stream", 3)(pass(1)))))
+    val shown = table.header.map(_.stripPrefix("<")).zip(table.rows.head).toMap
+    assertEquals(table.rows.head.take(4), Vector("stream", "direct", "2", "seed 3"))
+    assertEquals((shown("live m"), shown("virtual m"), shown("difference")), ("2.01", "3.01", "-33.2 %"))
+    assertEquals(shown("flown otherwise"), "")
 
   test("what teams planned has no captures"):
     val unseen = duel("plan", 2)(pass(0)).copy(
@@ -172,14 +199,15 @@ class TablesSuite extends munit.FunSuite:
       Vector(Vector("evader", "26", "25", "79", "81"), Vector("pursuer", "25", "26", "79", "73"))
     )
     for (role, row) <- Seq("Evader", "Pursuer").zip(table.rows) do
-      val ages = recording.decisions.filter(_.vehicle == role).flatMap(_.trueAge)
+      val ages                   = recording.decisions.filter(_.vehicle == role).flatMap(_.trueAge)
       def mean(of: Vector[Span]) = Numbers.brief(of.map(_.toMillis).sum / of.size)
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(Observation.values.size, paper.size)
 
   test("the page tells what was flown: parameters in their units, and when it began"):
-    val page = HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
-    val row  = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")
+    val page =
+      HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
+    val row = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")
     assertEquals(
       row.split("[|]+").filter(_.nonEmpty).toSeq.take(11),
       Seq("stream-direct", "stream", "direct", "7", "100", "12", "virtual", "synthetic", "duel", "0.1.0") :+
@@ -194,8 +222,8 @@ class TablesSuite extends munit.FunSuite:
     assert(HtmlReport.render(Report.of(Seq(team, other)), Nil).contains("<h1>Skein: 2 flights</h1>"))
 
   test("flights that are shown are in the paper's order: by link, then by loop"):
-    val links = Seq("vpn", "zebra", "none", "direct")
-    val loops = Seq("stream", "paused", "sequential")
+    val links     = Seq("vpn", "zebra", "none", "direct")
+    val loops     = Seq("stream", "paused", "sequential")
     val summaries =
       for
         link <- links

@@ -135,8 +135,8 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assert(page.contains("Results: surround") && page.contains("Surround: trajectories"))
 
   test("tables of teams: a row per flight, and one per loop and link with the spread of its flights"):
-    val scenario                                  = Crossing(vehicles = 3, streams = 2, minimumM = 2)
-    val goals                                     = scenario.goals
+    val scenario                                = Crossing(vehicles = 3, streams = 2, minimumM = 2)
+    val goals                                   = scenario.goals
     def pass(besideM: Double, arrives: Boolean) = (vehicle: Int, second: Double) =>
       vehicle match
         case 0 => ((second - 5) * 4, 200.0)
@@ -170,9 +170,52 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(each.rows.map(_.last).take(2), Vector("", "1.15")) // one of three is 2 m off
 
     val spread = ScenarioTables.spread(set.scenarios.head)
-    assertEquals(spread.rows.map(_.take(3)), Vector(Vector("paused", "none", "1"), Vector("stream", "none", "3")))
+    assertEquals(
+      spread.rows.map(_.take(3)),
+      Vector(Vector("paused", "none", "1"), Vector("stream", "none", "3"))
+    )
     val streams = spread.rows.last
     assertEquals(streams(column(spread, "closest m")), "2.17 ± 1.31, 1.00 … 4.00")
     assertEquals(streams(column(spread, "violations")), "2 in 2 flights")
     assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
     assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))
+
+  test("broken limits are listed with their vehicles and times; of a flight's many, the first five"):
+    val scenario            = Crossing(vehicles = 3, streams = 2, minimumM = 2)
+    val names               = scenario.agents.map(_.name)
+    def beside(m: Double)   = (0.0, 200 + m)
+    def far(second: Double) = (500.0 + second, 500.0)
+    val once                = flown(scenario, 12): (vehicle, second) =>
+      vehicle match
+        case 0 => ((second - 5) * 4, 200.0)
+        case 1 => beside(1)
+        case _ => far(second)
+    val often = flown(scenario, 12, "futures"): (vehicle, second) =>
+      vehicle match
+        case 0 => (10 * math.sin(math.Pi * (second + 0.5)), 200.0)
+        case 1 => beside(1)
+        case _ => far(second)
+    val clean = flown(scenario, 12, "paused")((vehicle, second) => (100.0 * vehicle, second))
+    val rows  = ScenarioTables.violations(Report.of(Seq(clean, once, often)).scenarios.head).rows
+    val limit = scenario.limits.head.text
+    assert(limit.contains("2 m"), limit)
+    assertEquals(rows.filter(_.head == "paused"), Vector.empty)
+    val of = rows.filter(_.head == "stream")
+    assertEquals(
+      of,
+      Vector(Vector(
+        "stream",
+        "none",
+        limit,
+        "1",
+        s"${names(0)}, ${names(1)}",
+        "4.58",
+        "5.42",
+        "1.00",
+        "5.00"
+      ))
+    )
+    val (first, more) = rows.filterNot(_.head == "stream").splitAt(1)
+    assertEquals(first.map(_.take(4)), Vector(Vector("futures", "none", limit, "12")))
+    assertEquals(more.map(_.take(4)), Vector.fill(4)(Vector("", "", "", "")))
+    assertEquals((first ++ more).map(_.last), Vector("0.50", "1.50", "2.50", "3.50", "4.50"))

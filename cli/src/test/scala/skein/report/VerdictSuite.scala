@@ -22,7 +22,9 @@ class VerdictSuite extends munit.FunSuite:
       )
     )
 
-  test("the worst link is the one with the loop that is farthest off, and live flights come after virtual ones"):
+  test(
+    "the worst link is the one with the loop that is farthest off, and live flights come after virtual ones"
+  ):
     val said = Verdict.sentences(Seq(
       deviation("stream", "far", 0.3),
       deviation("predictive", "far", 0.01),

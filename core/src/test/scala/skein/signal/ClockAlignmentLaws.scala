@@ -54,8 +54,8 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     assertEquals(states.last.offset, trueOffset + Span.ofMillis(300))
 
   test("the same sample told twice within a tick of the simulator's clock is no standing still"):
-    val before = reading(0, (10, 10))
-    val first  = ClockAlignment.of(before)
+    val before            = reading(0, (10, 10))
+    val first             = ClockAlignment.of(before)
     def told(after: Span) =
       val sent = before.receivedAt + after
       first.updated(before.copy(sentAt = sent, receivedAt = sent + Span.ofMillis(1)))

@@ -73,7 +73,10 @@ class PictureSuite extends munit.FunSuite:
     )
     val picture = Picture.empty(2).withSensorReading(sensed("gps", 2, 100))
     val held    = picture.withSensorReading(sensed("gps", 1, 50)).withSensorReading(sensed("imu", 3, 20))
-    assertEquals(held.sensed(0).map((name, reading) => name -> reading.sequence), Map("gps" -> 2L, "imu" -> 3L))
+    assertEquals(
+      held.sensed(0).map((name, reading) => name -> reading.sequence),
+      Map("gps" -> 2L, "imu" -> 3L)
+    )
     assertEquals(held.withSensorReading(sensed("gps", 4, 101)).sensed(0)("gps").sequence, 4L)
     assertEquals(held.sensed(1), Map.empty)
 

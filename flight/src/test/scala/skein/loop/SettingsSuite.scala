@@ -20,7 +20,9 @@ class SettingsSuite extends munit.FunSuite:
       )
     do assert(intercept[IllegalArgumentException](make()).getMessage.contains(expected))
 
-  test("as published: asked in turn over the period, answers waited for in order, decided at each, paced by the period"):
+  test(
+    "as published: asked in turn over the period, answers waited for in order, decided at each, paced by the period"
+  ):
     val published = LoopSettings(period = ms(80)).asPublished
     assertEquals((published.paceInterval, published.spread, published.patience), (ms(80), ms(80), Span.Zero))
     assertEquals((published.early, published.decideThenPace), (Sense.Early.Waits, true))
@@ -48,7 +50,13 @@ class SettingsSuite extends munit.FunSuite:
     for
       settings <- Seq(
         PlanSettings(),
-        PlanSettings(deadline = Span.ofNanos(1), horizonSteps = 1, step = ms(10), behaviours = 1, searches = 1),
+        PlanSettings(
+          deadline = Span.ofNanos(1),
+          horizonSteps = 1,
+          step = ms(10),
+          behaviours = 1,
+          searches = 1
+        ),
         PlanSettings(horizonSteps = 200, step = ms(500), behaviours = 32, searches = 64),
         PlanSettings(slices = 1, blocksPerSlice = 1, turningRadiusM = 0.001, slowestShare = 0),
         PlanSettings(slowestShare = 1, separationM = 0, geofenceM = 0, method = PlanSettings.PathIntegral)
@@ -58,24 +66,27 @@ class SettingsSuite extends munit.FunSuite:
   test("plans: what is beyond is named, with what was expected"):
     for
       (settings, told) <- Seq(
-        PlanSettings(deadline = Span.Zero)       -> "deadline: expected more than 0, came 0.0 ms",
-        PlanSettings(horizonSteps = 0)           -> "horizonSteps: expected 1 to 200, came 0",
-        PlanSettings(horizonSteps = 201)         -> "horizonSteps: expected 1 to 200, came 201",
-        PlanSettings(step = ms(9.5))             -> "step: expected 10 to 500 ms, came 9.5 ms",
-        PlanSettings(step = ms(500.5))           -> "step: expected 10 to 500 ms, came 500.5 ms",
-        PlanSettings(method = "luck")            -> "method: expected cross-entropy or path-integral, came luck",
-        PlanSettings(behaviours = 0)             -> "behaviours: expected 1 to 32, came 0",
-        PlanSettings(behaviours = 33)            -> "behaviours: expected 1 to 32, came 33",
-        PlanSettings(searches = 0)               -> "searches: expected 1 to 64, came 0",
-        PlanSettings(searches = 65)              -> "searches: expected 1 to 64, came 65",
-        PlanSettings(slices = 0)                 -> "slices: expected 1 or more, came 0",
-        PlanSettings(blocksPerSlice = 0)         -> "blocksPerSlice: expected 1 or more, came 0",
-        PlanSettings(turningRadiusM = 0)         -> "turningRadiusM: expected more than 0, came 0.0",
-        PlanSettings(slowestShare = -0.01)       -> "slowestShare: expected 0 to 1, came -0.01",
-        PlanSettings(slowestShare = 1.01)        -> "slowestShare: expected 0 to 1, came 1.01",
-        PlanSettings(separationM = -1)           -> "separationM: expected 0 or more, came -1.0",
-        PlanSettings(geofenceM = -1)             -> "geofenceM: expected 0 or more, came -1.0",
-        PlanSettings(slices = 0, geofenceM = -1) -> "slices: expected 1 or more, came 0; geofenceM: expected 0 or more, came -1.0"
+        PlanSettings(deadline = Span.Zero) -> "deadline: expected more than 0, came 0.0 ms",
+        PlanSettings(horizonSteps = 0)     -> "horizonSteps: expected 1 to 200, came 0",
+        PlanSettings(horizonSteps = 201)   -> "horizonSteps: expected 1 to 200, came 201",
+        PlanSettings(step = ms(9.5))       -> "step: expected 10 to 500 ms, came 9.5 ms",
+        PlanSettings(step = ms(500.5))     -> "step: expected 10 to 500 ms, came 500.5 ms",
+        PlanSettings(method = "luck")      -> "method: expected cross-entropy or path-integral, came luck",
+        PlanSettings(behaviours = 0)       -> "behaviours: expected 1 to 32, came 0",
+        PlanSettings(behaviours = 33)      -> "behaviours: expected 1 to 32, came 33",
+        PlanSettings(searches = 0)         -> "searches: expected 1 to 64, came 0",
+        PlanSettings(searches = 65)        -> "searches: expected 1 to 64, came 65",
+        PlanSettings(slices = 0)           -> "slices: expected 1 or more, came 0",
+        PlanSettings(blocksPerSlice = 0)   -> "blocksPerSlice: expected 1 or more, came 0",
+        PlanSettings(turningRadiusM = 0)   -> "turningRadiusM: expected more than 0, came 0.0",
+        PlanSettings(slowestShare = -0.01) -> "slowestShare: expected 0 to 1, came -0.01",
+        PlanSettings(slowestShare = 1.01)  -> "slowestShare: expected 0 to 1, came 1.01",
+        PlanSettings(separationM = -1)     -> "separationM: expected 0 or more, came -1.0",
+        PlanSettings(geofenceM = -1)       -> "geofenceM: expected 0 or more, came -1.0",
+        PlanSettings(
+          slices = 0,
+          geofenceM = -1
+        ) -> "slices: expected 1 or more, came 0; geofenceM: expected 0 or more, came -1.0"
       )
     do
       assertEquals(mistake(settings), told)

@@ -22,9 +22,14 @@ class PublishedSuite extends munit.FunSuite:
       val kind   = LoopKind.parse(loop).toOption.getOrElse(fail(s"no loop $loop"))
       val flight = Published.flight(kind, link).getOrElse(fail(s"no $loop over $link"))
       val Seq(mean, least, most, closest, at, observed*) = figures.map(_.toDoubleOption): @unchecked
-      val distance = flight.distance.getOrElse(fail("no distance"))
+      val distance                                       = flight.distance.getOrElse(fail("no distance"))
       assertEquals(
-        Seq(distance.mean, distance.least, distance.most, distance.closest).map(Some(_)) :+ distance.closestAtS,
+        Seq(
+          distance.mean,
+          distance.least,
+          distance.most,
+          distance.closest
+        ).map(Some(_)) :+ distance.closestAtS,
         Seq(mean, least, most, closest, at),
         s"$loop over $link"
       )

@@ -83,5 +83,7 @@ class MischiefSuite extends munit.FunSuite:
 
   test("all seeds asked for are flown, each once, with several at once"):
     var told = Vector.empty[Long]
-    Torture.all(Iterator(1L, 2L, 3L, 4L), Ordeal.Shortest, threads = 2)(verdict => told :+= verdict.ordeal.seed)
+    Torture.all(Iterator(1L, 2L, 3L, 4L), Ordeal.Shortest, threads = 2)(verdict =>
+      told :+= verdict.ordeal.seed
+    )
     assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L))

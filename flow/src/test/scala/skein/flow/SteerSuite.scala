@@ -103,9 +103,9 @@ class SteerSuite extends munit.FunSuite:
   test("where the last command has ended, the next is sent as soon as it comes"):
     val sent = VirtualTime
       .run(seed = 1): system =>
-        given ActorSystem = system
-        val clock         = Clock.ofNanos(VirtualTime.clock(system))
-        val start         = clock.now()
+        given ActorSystem        = system
+        val clock                = Clock.ofNanos(VirtualTime.clock(system))
+        val start                = clock.now()
         def call(answer: String) = after(10.millis)(Future.successful(answer))
         Source
           .tick(0.millis, 10_200.micros, ())
@@ -133,8 +133,8 @@ class SteerSuite extends munit.FunSuite:
         var heard                                = Vector.empty[(Long, String)]
         var flying: Option[Promise[Try[String]]] = None
         var hovers                               = 0
-        def hear(what: String) = heard :+= (clock.now().since(start).toNanos / 1000, what)
-        def send(command: Int) =
+        def hear(what: String)                   = heard :+= (clock.now().since(start).toNanos / 1000, what)
+        def send(command: Int)                   =
           hear(s"move $command")
           flying.foreach(_.trySuccess(Success("superseded")))
           val ended = Promise[Try[String]]()

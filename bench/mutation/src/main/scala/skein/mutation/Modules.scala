@@ -22,7 +22,11 @@ private object Modules:
         "skein.loop.PredictiveLoopSimulation"
       )
     ),
-    Module("record", "record/src/main/scala/skein/record", Vector("skein.record.*")),
+    Module(
+      "record",
+      "record/src/main/scala/skein/record",
+      Vector("skein.record.*", "skein.record.DuckDbRecorderLiveSuite")
+    ),
     Module("report", "cli/src/main/scala/skein/report", Vector("skein.report.*")),
     Module("measure", "flight/src/main/scala/skein/measure", Vector("skein.measure.*", "skein.report.*")),
     Module("torture", "flight/src/main/scala/skein/torture", Vector("skein.torture.*Suite"))
@@ -45,7 +49,7 @@ private object Modules:
     yield mutant
 
   /** The classes that a pattern such as `skein.flow.*` names: suites and laws, without those that need sockets or the
-    * real clock.
+    * real clock unless they are named.
     */
   def suites(folders: Vector[String], pattern: String): Vector[String] =
     val prefix = pattern.takeWhile(_ != '*')
@@ -55,7 +59,7 @@ private object Modules:
       file   <- classesIn(folder.resolve(prefix.take(prefix.lastIndexOf('.')).replace('.', '/')))
       name = folder.relativize(file).toString.stripSuffix(".class").replace('/', '.')
       if name.startsWith(prefix) && name.endsWith(ending) && (pattern.contains('*') || name == pattern)
-      if Ending.exists(name.endsWith) && !name.endsWith("LiveSuite")
+      if Ending.exists(name.endsWith) && (name == pattern || !name.endsWith("LiveSuite"))
       if ending.nonEmpty || !pattern.contains('*') || !name.endsWith("Simulation")
     yield name
 

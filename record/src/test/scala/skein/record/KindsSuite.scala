@@ -1,0 +1,26 @@
+package skein.record
+
+/** Loops and clocks by the names that commands and recordings have for them. */
+class KindsSuite extends munit.FunSuite:
+
+  test("every clock and every loop is found by its own name"):
+    for kind <- ClockKind.values do assertEquals(ClockKind.parse(kind.label), Right(kind))
+    for kind <- LoopKind.values do assertEquals(LoopKind.parse(kind.label), Right(kind))
+
+  test("a name that is none is refused with those that are"):
+    assertEquals(ClockKind.parse("Real"), Left("expected real or virtual, came 'Real'"))
+    assertEquals(
+      LoopKind.parse("streams"),
+      Left("no loop 'streams': expected one of paused, sequential, futures, stream, predictive, plan")
+    )
+
+  test("parameters belong to the word before their first full stop"):
+    val heading = Samples.heading.copy(parameters =
+      Seq(
+        Parameter("ring.m", "8"),
+        Parameter("ring.at.s", "2"),
+        Parameter("other.m", "1"),
+        Parameter("ring", "0")
+      )
+    )
+    assertEquals(heading.parametersOf("ring"), Map("m" -> "8", "at.s" -> "2"))
