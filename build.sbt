@@ -121,7 +121,7 @@ lazy val mcap = project
 /** Recordings. */
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
-  .dependsOn(core)
+  .dependsOn(core, mcap)
   .settings(libraryDependencies ++= duckdb +: (pekkoStream ++ munit))
 
 /** The loops; flights put together, live and in virtual time, and through faults. */

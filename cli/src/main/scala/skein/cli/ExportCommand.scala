@@ -2,28 +2,53 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
-import skein.record.Export
+import skein.record.{Export, McapRecording}
 
 /** Options of `./skein export`. */
 final case class ExportOptions(
     @arg(doc = "one recording")
     file: Leftover[String],
     @arg(doc = "folder for one Parquet file per table")
-    parquet: String
+    parquet: Option[String],
+    @arg(doc = "MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun; it is replaced")
+    mcap: Option[String]
 )
 
 object ExportCommand
     extends OptionsCommand[ExportOptions](
       "export",
-      "writes a recording's tables for other programs",
+      "writes a recording for other programs",
       ParserForClass[ExportOptions]
     ):
+  private val usage = "./skein export FILE --parquet DIR, or --mcap FILE"
 
   protected def execute(options: ExportOptions): Either[String, Unit] =
     for
       file <- options.file.value match
         case Seq(one) => Right(Path.of(one))
-        case others => Left(s"expected one recording, came ${others.size}: ./skein export FILE --parquet DIR")
-      folder <- OutFolder.made("--parquet", options.parquet)
+        case others   => Left(s"expected one recording, came ${others.size}: $usage")
+      _ <- Either.cond(
+        options.parquet.nonEmpty || options.mcap.nonEmpty,
+        (),
+        s"expected what to write, came nothing: $usage"
+      )
+      _ <- options.parquet.fold(Right(()))(parquet(file, _))
+      _ <- options.mcap.fold(Right(()))(mcap(file, _))
+    yield ()
+
+  private def parquet(file: Path, text: String): Either[String, Unit] =
+    for
+      folder <- OutFolder.made("--parquet", text)
       files  <- Export.parquet(file, folder).left.map(_.message)
-    yield Console.out.println(s"${files.size} tables in ${options.parquet}")
+    yield Console.out.println(s"${files.size} tables in $text")
+
+  private def mcap(file: Path, text: String): Either[String, Unit] =
+    for
+      _ <- Either.cond(text.nonEmpty, (), "--mcap: expected a file, came ''")
+      _ <- Either.cond(
+        text != file.toString,
+        (),
+        s"--mcap: expected another file than the recording, came $text"
+      )
+      _ <- McapRecording.write(file, Path.of(text)).left.map(_.message)
+    yield Console.out.println(s"recording in $text")

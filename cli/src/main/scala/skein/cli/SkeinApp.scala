@@ -31,6 +31,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     LatencyCommand,
     ReportCommand(),
     ExportCommand,
+    ImportCommand,
     IdentifyCommand,
     ReplayCommand(),
     DigestCommand,

@@ -5,10 +5,12 @@ import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
+import skein.docs.Documentation
 import skein.flight.VirtualFlights
 import skein.forward.Reduced
 import skein.identify.Structure
 import skein.loop.LoopKind
+import skein.mcap.file.McapFile
 import skein.record.{MemoryRecorder, Recording}
 import skein.report.DuelReport
 import skein.report.SyntheticFlight
@@ -140,6 +142,51 @@ class RecordingCommandsSuite extends munit.FunSuite:
       0
     )
     assert(Files.size(parquet.resolve("decision.parquet")) > 1000)
+
+  recordings.test("export --mcap writes a file of which import makes the same recording"): folder =>
+    val recording     = folder.resolve("stream-vpn.duckdb").toString
+    val mcap          = folder.resolve("flight.mcap").toString
+    val again         = folder.resolve("again.duckdb").toString
+    val (wrote, _, _) = run(ExportCommand, recording, "--mcap", mcap)
+    assertEquals(wrote, 0)
+    val (status, text, err) = run(ImportCommand, mcap, "--recording", again)
+    assertEquals((status, err), (0, ""))
+    val (_, digest, _) = run(DigestCommand, recording)
+    assertEquals(text.takeWhile(_ != ' '), digest.takeWhile(_ != ' '))
+    assertEquals(run(ImportCommand, mcap, "--recording", again)._1, 1)
+
+  recordings.test("every path of the layout for Foxglove is in the files that export writes"): folder =>
+    val mcap = folder.resolve("flight.mcap")
+    assertEquals(
+      run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString, "--mcap", mcap.toString)._1,
+      0
+    )
+    val schemas = McapFile
+      .read(mcap): reader =>
+        reader.summary.channels.values
+          .map(channel =>
+            channel.topic -> ujson.read(reader.summary.schemas(channel.schemaId).data.utf8)
+          ).toMap
+      .toOption
+      .get
+    val layout = ujson.read(Files.readString(Documentation.root.resolve("docs/guides/foxglove-layout.json")))
+    val panels = layout("configById").obj
+    val plots  = panels.values.flatMap(_.obj.get("paths").toSeq.flatMap(_.arr)).map(_("value").str).toSeq
+    val path   = """(/[\w/]+)(?:\{vehicle=="\w+"\})?\.(\w+)""".r
+    assertEquals(plots.size, 11)
+    plots.foreach:
+      case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
+      case other              => fail(other)
+    val shown = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str
+    assertEquals(shown.diff(schemas.keySet), Set.empty[String])
+
+  recordings.test("export says what it can write when nothing was asked for"): folder =>
+    val (status, _, err) = run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString)
+    assertEquals(status, 1)
+    assert(
+      err.contains("expected what to write, came nothing: ./skein export FILE --parquet DIR, or --mcap FILE"),
+      err
+    )
 
   recordings.test("export takes exactly one recording"): folder =>
     val (status, _, err) = run(ExportCommand, "--parquet", folder.toString)

@@ -50,15 +50,26 @@ private[record] object RecordingFile:
     else
       attempt(RecordError.CannotCreate(file, _)):
         val connection = connect(file, readOnly = false)
-        execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
-        execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
-        Table.all.foreach(table => execute(connection, table.create))
+        createTables(connection)
         RecordingFile(file, connection)
       .flatMap: opened =>
         val begun = opened.write(heading.records)
         if begun.isLeft then
           val _ = opened.close()
         begun.map(_ => opened)
+
+  /** Makes the file and its tables, with rows that somebody else puts in. Blocks. */
+  def filled(file: Path)(rows: DuckDBConnection => Unit): Either[RecordError, Unit] =
+    attempt(RecordError.CannotCreate(file, _)):
+      Using.resource(connect(file, readOnly = false)): connection =>
+        createTables(connection)
+        rows(connection)
+        execute(connection, "CHECKPOINT")
+
+  private def createTables(connection: DuckDBConnection): Unit =
+    execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
+    execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
+    Table.all.foreach(table => execute(connection, table.create))
 
   /** A connection to the file alone: one thread of its own, no extensions from the network. */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =

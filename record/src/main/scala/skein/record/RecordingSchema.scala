@@ -14,7 +14,7 @@ object RecordingSchema:
   private val introduction =
     """# What a recording contains
       |
-      |A recording is one DuckDB file. Open it with any DuckDB client, or turn it into Parquet: `./skein export FILE --parquet DIR`.
+      |A recording is one DuckDB file. Open it with any DuckDB client, or turn it into Parquet: `./skein export FILE --parquet DIR`, or look at it in [Foxglove](guides/foxglove.md): `./skein export FILE --mcap FILE`.
       |
       |Units are the ends of the names: `Ns` whole nanoseconds, `Ms` milliseconds, `M` metres, `Mps` metres per second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are the world frame; `Front`, `Right`, `Down` the body's. Columns that begin with `validAt` are on the simulator's clock, all other instants on the controller's. Every table begins with `row`, the order in which all rows of the flight were accepted.
       |

@@ -1,0 +1,32 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{Leftover, ParserForClass, arg}
+import skein.record.{Digest, McapRecording}
+
+/** Options of `./skein import`. */
+final case class ImportOptions(
+    @arg(doc = "one MCAP file that ./skein export wrote")
+    file: Leftover[String],
+    @arg(doc = "the recording to make; it is not overwritten")
+    recording: String
+)
+
+object ImportCommand
+    extends OptionsCommand[ImportOptions](
+      "import",
+      "makes a recording of an exported MCAP file again, with the same digest",
+      ParserForClass[ImportOptions]
+    ):
+
+  protected def execute(options: ImportOptions): Either[String, Unit] =
+    for
+      file <- options.file.value match
+        case Seq(one) => Right(Path.of(one))
+        case others   =>
+          Left(s"expected one MCAP file, came ${others.size}: ./skein import FILE --recording FILE")
+      _ <- Either.cond(options.recording.nonEmpty, (), "--recording: expected a file, came ''")
+      recording = Path.of(options.recording)
+      _      <- McapRecording.read(file, recording).left.map(_.message)
+      digest <- Digest.ofFile(recording).left.map(_.message)
+    yield Console.out.println(s"$digest  ${options.recording}")

@@ -1,0 +1,90 @@
+package skein.record
+
+/** The schemas of Foxglove's that a flight is shown by, as JSON Schema, with the fields that are written
+  * (https://docs.foxglove.dev/docs/sdk/schemas).
+  */
+private[record] object FoxgloveSchemas:
+  private def typed(kind: String)            = Json.obj("type" -> Json.string(kind))
+  private val number                         = typed("number")
+  private val integer                        = typed("integer")
+  private val text                           = typed("string")
+  private def many(items: String)            = Json.obj("type" -> "\"array\"", "items" -> items)
+  private def fields(all: (String, String)*) =
+    Json.obj("type" -> "\"object\"", "properties" -> Json.obj(all*))
+  private def titled(name: String, all: (String, String)*) =
+    Json.obj("title" -> Json.string(name), "type" -> "\"object\"", "properties" -> Json.obj(all*))
+
+  private val time       = fields("sec" -> integer, "nsec" -> integer)
+  private val vector     = fields("x" -> number, "y" -> number, "z" -> number)
+  private val quaternion = fields("x" -> number, "y" -> number, "z" -> number, "w" -> number)
+  private val pose       = fields("position" -> vector, "orientation" -> quaternion)
+  private val colour     = fields("r" -> number, "g" -> number, "b" -> number, "a" -> number)
+
+  /** By name. */
+  val all: Map[String, String] = Map(
+    "foxglove.PoseInFrame" ->
+      titled("foxglove.PoseInFrame", "timestamp" -> time, "frame_id" -> text, "pose" -> pose),
+    "foxglove.FrameTransforms" -> titled(
+      "foxglove.FrameTransforms",
+      "transforms" -> many(
+        fields(
+          "timestamp"       -> time,
+          "parent_frame_id" -> text,
+          "child_frame_id"  -> text,
+          "translation"     -> vector,
+          "rotation"        -> quaternion
+        )
+      )
+    ),
+    "foxglove.Log" -> titled(
+      "foxglove.Log",
+      "timestamp" -> time,
+      "level"     -> integer,
+      "message"   -> text,
+      "name"      -> text,
+      "file"      -> text,
+      "line"      -> integer
+    ),
+    "foxglove.SceneUpdate" -> titled(
+      "foxglove.SceneUpdate",
+      "deletions" -> many(typed("object")),
+      "entities"  -> many(
+        fields(
+          "timestamp"    -> time,
+          "frame_id"     -> text,
+          "id"           -> text,
+          "lifetime"     -> time,
+          "frame_locked" -> typed("boolean"),
+          "metadata"     -> many(typed("object")),
+          "arrows"       -> many(typed("object")),
+          "cubes"        -> many(fields("pose" -> pose, "size" -> vector, "color" -> colour)),
+          "spheres"      -> many(typed("object")),
+          "cylinders"    -> many(typed("object")),
+          "lines"        -> many(
+            fields(
+              "type"            -> integer,
+              "pose"            -> pose,
+              "thickness"       -> number,
+              "scale_invariant" -> typed("boolean"),
+              "points"          -> many(vector),
+              "color"           -> colour,
+              "colors"          -> many(colour),
+              "indices"         -> many(integer)
+            )
+          ),
+          "triangles" -> many(typed("object")),
+          "texts"     -> many(
+            fields(
+              "pose"            -> pose,
+              "billboard"       -> typed("boolean"),
+              "font_size"       -> number,
+              "scale_invariant" -> typed("boolean"),
+              "color"           -> colour,
+              "text"            -> text
+            )
+          ),
+          "models" -> many(typed("object"))
+        )
+      )
+    )
+  )

@@ -1,0 +1,184 @@
+package skein.record
+
+import java.io.IOException
+import java.nio.file.{Files, Path}
+import org.duckdb.DuckDBConnection
+import scala.collection.immutable.VectorMap
+import scala.collection.mutable
+import scala.util.Using
+import skein.mcap.{Bytes, McapWriter, Parsed, Record as McapRecord, WriterOptions}
+import skein.mcap.file.McapFile
+import skein.units.*
+
+/** A recording as an MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun, and back.
+  *
+  * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are the recording
+  * in full, and what `read` reads. Beside them stand views of the same rows by Foxglove's schemas ([[FoxgloveViews]]).
+  *
+  * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there: a reading
+  * was received, a decision made, a command sent or answered; of a row that says no such time, that of the row before. The
+  * publish time is the same, but for a prediction when it was made, and for a round trip when it began. When physics was
+  * sampled is in the message.
+  */
+object McapRecording:
+  private val Topic = "/skein/"
+  private val About = "skein"
+
+  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory. */
+  def write(recording: Path, file: Path): Either[RecordError, Unit] =
+    for
+      rows <- RecordingReader.records(recording)
+      _    <- attempt(RecordError.ExportFailed(file, _))(McapFile.write(file, options)(write(rows, _)))
+    yield ()
+
+  private val options = WriterOptions(library = "skein")
+
+  private def write(rows: Vector[(Long, Record)], mcap: McapWriter): Unit =
+    val channels = Channels(mcap)
+    val views = FoxgloveViews(rows.collect { case (_, vehicle: Vehicle) => vehicle.name }, firstOffset(rows))
+    var known =
+      rows.iterator.flatMap((_, record) => knownAt(record)).nextOption().getOrElse(Instant.ofNanos(0))
+    mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
+    // Also what has no rows has a topic, so that a layout finds all of them in every flight.
+    Table.all.foreach(table => channels.named(table): Unit)
+    channels.named("/log", "foxglove.Log"): Unit
+    views.opening(known).foreach(channels.put(_, known, known))
+    rows.foreach: (number, record) =>
+      known = knownAt(record).getOrElse(known)
+      val published = publishedAt(record).getOrElse(known)
+      channels.put(Table.of(record), JsonRow.of(number, record), known, published)
+      views.of(record).foreach(channels.put(_, known, published))
+
+  /** When it was known to the controller, if it says so. */
+  private def knownAt(record: Record): Option[Instant] = record match
+    case reading: Reading        => Some(reading.state.receivedAt)
+    case measured: Measurement   => Some(measured.receivedAt)
+    case decision: Decision      => Some(decision.decidedAt)
+    case command: Command        => Some(command.sentAt)
+    case answer: Acknowledgement => Some(answer.endedAt)
+    case latency: Latency        => Some(latency.sentAt + latency.roundTrip)
+    case event: Event            => Some(event.at)
+    case ending: Ending          => Some(ending.at)
+    case _                       => None
+
+  private def publishedAt(record: Record): Option[Instant] = record match
+    case prediction: Prediction => Some(prediction.madeAt)
+    case latency: Latency       => Some(latency.sentAt)
+    case _                      => None
+
+  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
+  private def firstOffset(rows: Vector[(Long, Record)]): Span =
+    val estimated =
+      rows.iterator.collect { case (_, decision: Decision) => decision.trueAge.map(_.clockOffset) }.flatten
+    val assumed = rows.iterator.collect { case (_, first: Reading) =>
+      first.state.receivedAt.since(first.state.validAt)
+    }
+    (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
+
+  /** Names schemas and channels as they come. */
+  private final class Channels(mcap: McapWriter):
+    private val schemas  = mutable.Map.empty[String, Int]
+    private val channels = mutable.Map.empty[String, Int]
+    private val counts   = mutable.Map.empty[Int, Int].withDefaultValue(0)
+
+    def named(table: Table[?]): Int = named(Topic + table.name, s"skein.${table.name}", JsonRow.schema(table))
+
+    def named(topic: String, foxglove: String): Int = named(topic, foxglove, FoxgloveSchemas.all(foxglove))
+
+    def put(table: Table[?], json: String, known: Instant, published: Instant): Unit =
+      put(named(table), json, known, published)
+
+    def put(view: FoxgloveViews.View, known: Instant, published: Instant): Unit =
+      put(named(view.topic, view.schema), view.json, known, published)
+
+    private def named(topic: String, name: String, schema: => String): Int =
+      channels.getOrElseUpdate(
+        topic,
+        mcap.channel(
+          topic,
+          "json",
+          schemas.getOrElseUpdate(name, mcap.schema(name, "jsonschema", Bytes.utf8(schema)))
+        )
+      )
+
+    private def put(channel: Int, json: String, known: Instant, published: Instant): Unit =
+      mcap.message(channel, counts(channel), known.toNanos.max(0), published.toNanos.max(0), Bytes.utf8(json))
+      counts(channel) += 1
+
+  /** Makes a recording of what `write` wrote; equal contents, so an equal [[Digest]]. Blocks; needs room for the rows as
+    * text beside the recording meanwhile.
+    */
+  def read(file: Path, recording: Path): Either[RecordError, Unit] =
+    if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
+    else if Files.exists(recording) then Left(RecordError.AlreadyExists(recording))
+    else
+      attempt(RecordError.CannotCreate(recording, _)):
+        val folder = Files.createTempDirectory(recording.toAbsolutePath.getParent, ".skein")
+        try
+          val made = folder.resolve("recording.duckdb")
+          for
+            tables <- gather(file, folder)
+            _ <- RecordingFile.filled(made)(connection => tables.foreach(insert(_, connection))).left.map:
+              case RecordError.CannotCreate(_, reason) => RecordError.NotARecording(file, reason)
+              case other                               => other
+            _ <- RecordingReader.read(made).left.map:
+              case RecordError.NotARecording(_, reason) => RecordError.NotARecording(file, reason)
+              case other                                => other
+          yield
+            val _ = Files.move(made, recording)
+        finally
+          Using.resource(
+            Files.walk(folder)
+          )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+      .flatten
+
+  /** The rows of each table that has any, as a file of JSON, a row a line. */
+  private def gather(file: Path, folder: Path): Either[RecordError, Vector[(Table[?], Path)]] =
+    McapFile.stream(file): records =>
+      val outs = mutable.LinkedHashMap.empty[String, java.io.BufferedWriter]
+      try
+        val failed = records
+          .flatMap:
+            case Left(error) => Some(RecordError.NotARecording(file, error.message))
+            case Right(Parsed.Found(metadata: McapRecord.Metadata, _, _)) => otherFormat(file, metadata)
+            case Right(Parsed.Found(message: McapRecord.Message, _, _))   =>
+              val topic = records.channel(message.channelId).fold("")(_.topic)
+              if topic.startsWith(Topic) then
+                val name = topic.drop(Topic.length)
+                if tables.contains(name) then
+                  val out = outs.getOrElseUpdate(name, Files.newBufferedWriter(folder.resolve(s"$name.json")))
+                  out.write(message.data.utf8)
+                  out.newLine()
+                  None
+                else
+                  Some(RecordError.NotARecording(file, s"its topic $topic is none of a recording's tables"))
+              else None
+            case Right(_) => None
+          .nextOption()
+        failed.toLeft(outs.keys.map(name => tables(name) -> folder.resolve(s"$name.json")).toVector)
+      finally outs.values.foreach(_.close())
+
+  private val tables: Map[String, Table[?]] = Table.all.map(table => table.name -> table).toMap
+
+  private def otherFormat(file: Path, metadata: McapRecord.Metadata): Option[RecordError] =
+    metadata.metadata
+      .get("format")
+      .filter(_ => metadata.name == About)
+      .flatMap(_.toIntOption)
+      .filter(found => found < RecordingFormat.oldest || found > RecordingFormat.version)
+      .map(RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, _))
+
+  private def insert(rows: (Table[?], Path), connection: DuckDBConnection): Unit =
+    val (table, file) = rows
+    val columns       = JsonRow.numbered(table)
+    val types         = columns.map(column => s"${column.name}: '${column.sqlType}'").mkString("{", ", ", "}")
+    val quoted        = "'" + file.toString.replace("'", "''") + "'"
+    Using.resource(connection.createStatement()): statement =>
+      val _ = statement.execute(
+        s"INSERT INTO ${table.name} SELECT ${columns.map(_.name).mkString(", ")} FROM " +
+          s"read_json($quoted, format = 'newline_delimited', columns = $types)"
+      )
+
+  private def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =
+    try Right(action)
+    catch case failed: IOException => Left(error(failed.toString))

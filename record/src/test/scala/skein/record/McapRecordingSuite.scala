@@ -1,0 +1,107 @@
+package skein.record
+
+import java.nio.file.{Files, Path}
+import scala.util.Using
+import skein.mcap.{Bytes, McapWriter, Query, TopicMessage}
+import skein.mcap.file.McapFile
+
+class McapRecordingSuite extends munit.FunSuite:
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("recording"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def recorded(folder: Path): Path =
+    val file     = folder.resolve("flight.duckdb")
+    val recorder = MemoryRecorder(Samples.heading)
+    Samples.oneOfEach.foreach(recorder.offer)
+    assert(recorder.writeTo(file).isRight)
+    file
+
+  private def exported(folder: Path): Path =
+    val mcap = folder.resolve("flight.mcap")
+    assertEquals(McapRecording.write(recorded(folder), mcap), Right(()))
+    mcap
+
+  private def messages(mcap: Path, topic: String): Vector[TopicMessage] =
+    McapFile
+      .read(mcap)(_.messages(Query(topics =
+        Some(Set(topic))
+      )).map(_.fold(e => fail(e.message), identity)).toVector)
+      .fold(e => fail(e.message), identity)
+
+  folder.test("what is exported and imported is the same recording, with the same digest"): folder =>
+    val again = folder.resolve("again.duckdb")
+    assertEquals(McapRecording.read(exported(folder), again), Right(()))
+    assertEquals(RecordingReader.read(again), Right(Recording(Samples.heading, Samples.oneOfEach)))
+    assertEquals(Digest.ofFile(again), Digest.ofFile(folder.resolve("flight.duckdb")))
+    assertEquals(Files.list(folder).count(), 3L)
+
+  folder.test("every table is a topic, with a schema that names its columns"): folder =>
+    val mcap   = exported(folder)
+    val topics = McapFile.read(mcap)(_.summary.topics).toOption.get
+    assertEquals(Table.all.map(table => s"/skein/${table.name}").toSet.diff(topics), Set.empty[String])
+    val decision = messages(mcap, "/skein/decision").head
+    val schema   = decision.schema.get.data.utf8
+    assert(schema.contains(""""ownTrueAgeMs":{"type":["number","null"]}"""), schema)
+    assert(decision.message.data.utf8.startsWith("""{"row":"""), decision.message.data.utf8)
+
+  folder.test("log times are when the controller knew, publish times when it was made or sent"): folder =>
+    val mcap                 = exported(folder)
+    def times(table: String) =
+      messages(mcap, s"/skein/$table").map(found => (found.message.logTime, found.message.publishTime)).head
+    val reading  = Samples.oneOfEach.collectFirst { case one: Reading => one }.get
+    val latency  = Samples.oneOfEach.collectFirst { case one: Latency => one }.get
+    val guess    = Samples.oneOfEach.collectFirst { case one: Prediction => one }.get
+    val received = reading.state.receivedAt.toNanos
+    assertEquals(times("reading"), (received, received))
+    assertEquals(times("latency"), ((latency.sentAt + latency.roundTrip).toNanos, latency.sentAt.toNanos))
+    assertEquals(times("prediction")._2, guess.madeAt.toNanos)
+
+  folder.test("viewers get poses, frames, events and a scene by Foxglove's schemas"): folder =>
+    val mcap = exported(folder)
+    val pose = messages(mcap, "/vehicles/Pursuer/pose").head
+    assertEquals(pose.schema.map(_.name), Some("foxglove.PoseInFrame"))
+    val reading = Samples.oneOfEach.collectFirst { case one: Reading => one }.get
+    val at      = reading.state.value.positionNed
+    assert(
+      pose.message.data.utf8.contains(s""""position":{"x":${at.x},"y":${at.y},"z":${at.z}}"""),
+      pose.message.data.utf8
+    )
+    val frames = messages(mcap, "/tf").map(_.message.data.utf8)
+    assert(frames.head.contains(""""parent_frame_id":"world","child_frame_id":"world_ned""""), frames.head)
+    assert(frames.exists(_.contains(""""child_frame_id":"Pursuer"""")))
+    assertEquals(messages(mcap, "/scene").size, 2)
+    assert(messages(mcap, "/log").head.message.data.utf8.contains(""""level":3"""))
+
+  folder.test("what is no exported recording is refused, and nothing is left behind"): folder =>
+    val mcap                                        = exported(folder)
+    val again                                       = folder.resolve("again.duckdb")
+    def refused(change: McapWriter => Unit): String =
+      McapFile.write(mcap)(change)
+      val error = McapRecording.read(mcap, again).left.map(_.message).swap.getOrElse("it was read")
+      assertEquals(Files.list(folder).count(), 2L, error)
+      error
+    assert(refused(_ => ()).endsWith("is not a recording: its table 'flight' is empty"))
+    assert(
+      refused(out => out.message(out.channel("/skein/x", "json"), 0, 0, 0, Bytes.empty))
+        .endsWith("its topic /skein/x is none of a recording's tables")
+    )
+    val half =
+      refused(out => out.message(out.channel("/skein/event", "json"), 0, 0, 0, Bytes.utf8("""{"row": 1}""")))
+    assert(half.contains("is not a recording: "), half)
+
+  folder.test("an export that is cut off says so"): folder =>
+    val mcap = exported(folder)
+    Files.write(mcap, Files.readAllBytes(mcap).dropRight(100))
+    val error = McapRecording.read(mcap, folder.resolve("again.duckdb")).left.map(_.message)
+    assert(error.left.exists(_.contains("the file is cut off")), error)
+
+  folder.test("a recording is never overwritten"): folder =>
+    val mcap  = exported(folder)
+    val there = folder.resolve("flight.duckdb")
+    assertEquals(McapRecording.read(mcap, there), Left(RecordError.AlreadyExists(there)))
+
+  test("texts are written as JSON has them"):
+    assertEquals(Json.string("a\"b\\c\n\u0001é🛸"), "\"a\\\"b\\\\c\\u000a\\u0001é\\ud83d\\udef8\"")
