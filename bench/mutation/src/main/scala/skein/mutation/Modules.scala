@@ -17,7 +17,6 @@ private object Modules:
         "skein.loop.*Suite",
         "skein.loop.planning.*",
         "skein.flight.ReplaySimulation",
-        "skein.loop.PlanLoopSimulation",
         "skein.loop.SensorSimulation",
         "skein.loop.PredictiveLoopSimulation"
       )

@@ -13,8 +13,8 @@ import scala.util.Using
   * end. Reads from its standard input a line of the file with the changed source, or `-` for none, and the suites, with
   * blanks between; answers each by a line: `invalid`, `killed` and by which suite, or `survived`.
   *
-  * The first question is for no change. From it on it knows which classes each suite loads, and runs only those upon a
-  * change that load a class of the changed file: the one that noticed the last change first.
+  * The first question is for no change. From it on it knows which classes each suite loads and how long it takes, and
+  * runs only those upon a change that load a class of the changed file, the quickest first.
   */
 object Worker:
 
@@ -24,10 +24,12 @@ object Worker:
 
   private val answers = System.out
 
-  /** By suite, the names of the project's own classes that it loads. */
-  private val loadedBy = mutable.Map.empty[String, Set[String]]
+  private val known = mutable.Map.empty[String, Known]
 
-  private var lastToNotice = ""
+  /** @param classes
+    *   of the project's own, that a suite loads
+    */
+  private final case class Known(classes: Set[String], tookNanos: Long)
 
   def main(arguments: Array[String]): Unit =
     System.setOut(PrintStream(java.io.OutputStream.nullOutputStream))
@@ -48,12 +50,12 @@ object Worker:
       val overlay = Files.createTempDirectory("mutant")
       try
         error(file, overlay).map(text => s"invalid $text").getOrElse:
-          val changed         = classesIn(overlay)
-          val able            = suites.filter(suite => loadedBy.get(suite).forall(_.exists(changed)))
-          val (first, others) = able.partition(_ == lastToNotice)
-          val noticedBy       = Using.resource(Loader(overlay +: folders)): loader =>
-            (first ++ others).find(!passes(_, loader))
-          noticedBy.foreach(lastToNotice = _)
+          val changed   = classesIn(overlay)
+          val able      = suites
+            .filter(suite => known.get(suite).forall(_.classes.exists(changed)))
+            .sortBy(known.get(_).fold(0L)(_.tookNanos))
+          val noticedBy = Using.resource(Loader(overlay +: folders)): loader =>
+            able.find(!passes(_, loader))
           told(noticedBy)
       finally
         Using.resource(Files.walk(overlay))(
@@ -65,8 +67,9 @@ object Worker:
   /** Another suite's classes are not loaded for this one. */
   private def passesAlone(suite: String): Boolean =
     Using.resource(Loader(folders)): loader =>
+      val from   = System.nanoTime()
       val passed = passes(suite, loader)
-      loadedBy(suite) = loader.loaded
+      known(suite) = Known(loader.loaded, System.nanoTime() - from)
       passed
 
   private final class Loader(folders: Vector[Path])
