@@ -121,7 +121,7 @@ lazy val mcap = project
 /** Recordings. */
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
-  .dependsOn(core, mcap)
+  .dependsOn(core, mcap % "compile->compile;test->test")
   .settings(libraryDependencies ++= duckdb +: (pekkoStream ++ munit))
 
 /** The loops; flights put together, live and in virtual time, and through faults. */

@@ -1,10 +1,8 @@
 package skein.mcap
 
-import java.io.{File, IOException}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
-import scala.sys.process.{Process, ProcessLogger}
 import skein.mcap.file.McapFile
 
 /** The proof that others read what is written here, and the reverse: the official library of PyPI, unmodified, reads our
@@ -91,67 +89,3 @@ class OfficialPythonLibraryLiveSuite extends munit.FunSuite:
     case attachment: Record.Attachment => Told.attachment(attachment)
     case metadata: Record.Metadata     => Told.metadata(metadata)
     case _                             => "other"
-
-/** What a file holds, a line for each thing, as `telling.py` tells it too. */
-private object Told:
-  private def hex(bytes: Bytes)   = if bytes.size == 0 then "-" else ConformanceGolden.hex(bytes)
-  private def text(value: String) = hex(Bytes.utf8(value))
-  private def time(value: Long)   = java.lang.Long.toUnsignedString(value)
-  private def map(entries: Iterable[(String, String)]) =
-    if entries.isEmpty then "-"
-    else entries.map((key, value) => s"${text(key)}=${text(value)}").mkString(",")
-
-  def message(found: TopicMessage): String =
-    import found.channel
-    val one    = found.message
-    val schema =
-      found.schema.fold("none")(named => s"${text(named.name)} ${text(named.encoding)} ${hex(named.data)}")
-    s"message ${text(channel.topic)} ${text(channel.messageEncoding)} ${map(channel.metadata)} $schema " +
-      s"${one.sequence} ${time(one.logTime)} ${time(one.publishTime)} ${hex(one.data)}"
-
-  def attachment(one: Record.Attachment): String =
-    s"attachment ${time(one.logTime)} ${time(one.createTime)} ${text(one.name)} ${text(one.mediaType)} ${hex(one.data)}"
-
-  def metadata(one: Record.Metadata): String = s"metadata ${text(one.name)} ${map(one.metadata)}"
-
-/** The official library in a virtual environment of its own, kept in the user's cache under the versions' names. */
-private object OfficialPythonLibrary:
-  private val packages  = Seq("mcap==1.6.0", "zstandard==0.25.0", "lz4==4.4.5")
-  private val resources = Path.of(getClass.getResource("/mcap-python/read.py").toURI).getParent
-
-  /** The environment's Python, or why there is none. */
-  def install(): Either[String, Path] =
-    val cache =
-      Option(System.getenv("XDG_CACHE_HOME")).fold(Path.of(sys.props("user.home"), ".cache"))(Path.of(_))
-    val home = cache.resolve("skein").resolve(packages.mkString("python-", "-", "").replace("==", "-"))
-    val bin  = home.resolve("bin").resolve("python")
-    if imports(bin) then Right(bin)
-    else
-      for
-        _ <- ran("python3", "-m", "venv", "--clear", home.toString)
-        _ <- ran(
-          Seq(bin.toString, "-m", "pip", "install", "--quiet", "--disable-pip-version-check") ++ packages*
-        )
-        _ <- Either.cond(imports(bin), (), "it is installed but cannot be imported")
-      yield bin
-
-  /** What a script says last; of one that fails, everything. */
-  def run(python: Path, script: String, folder: Path): String =
-    ran(python.toString, "-u", resources.resolve(script).toString, folder.toString)
-      .fold(identity, _.linesIterator.toSeq.lastOption.getOrElse(""))
-
-  private def imports(python: Path): Boolean =
-    Files.exists(python) && ran(python.toString, "-c", "import mcap.reader, zstandard, lz4.frame").isRight
-
-  private def ran(command: String*): Either[String, String] =
-    val output = StringBuilder()
-    try
-      val status = Process(command, Option.empty[File]).!(
-        ProcessLogger(line => output.append(line).append('\n'): Unit)
-      )
-      Either.cond(
-        status == 0,
-        output.toString,
-        s"${command.mkString(" ")}: ${output.toString.takeRight(2000)}"
-      )
-    catch case e: IOException => Left(e.getMessage)

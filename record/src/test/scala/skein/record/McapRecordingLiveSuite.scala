@@ -1,0 +1,40 @@
+package skein.record
+
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+import skein.mcap.{OfficialPythonLibrary, Told}
+import skein.mcap.file.McapFile
+
+/** The proof that others read what is exported: the official library of PyPI, unmodified. Runs where Python can install
+  * it.
+  */
+class McapRecordingLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 5.minutes
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("recording"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  folder.test("the official library opens what is exported, and finds the same messages at the same times"):
+    folder =>
+      val python = OfficialPythonLibrary.install()
+      assume(python.isRight, s"the official library cannot be installed here: ${python.swap.getOrElse("")}")
+      val recording = folder.resolve("flight.duckdb")
+      val mcap      = folder.resolve("indexed.mcap")
+      val recorder  = MemoryRecorder(Samples.heading)
+      (1L to 1500).foreach: sequence =>
+        recorder.offer(Samples.reading(sequence))
+        recorder.offer(Samples.decision(sequence))
+      Samples.oneOfEach.foreach(recorder.offer)
+      assert(recorder.writeTo(recording).isRight)
+      assertEquals(McapRecording.write(recording, mcap), Right(()))
+      assertEquals(OfficialPythonLibrary.run(python.toOption.get, "read.py", folder), "READ 1 files")
+      val ours =
+        McapFile.read(mcap)(_.messages().map(_.fold(error => fail(error.message), Told.message)).toVector)
+      val found = Files.readAllLines(folder.resolve("indexed.index.txt")).asScala.toVector
+      assertEquals(Right(found.filter(_.startsWith("message "))), ours)
+      assert(found.size > 3000 + Samples.oneOfEach.size, s"${found.size}")
