@@ -56,7 +56,7 @@ object ErrorBound:
       def ea      = errors(node.args(0).id)
       def eb      = errors(node.args(1).id)
       val v       = values(node.id)
-      val rounded = U * math.abs(v)
+      val rounded = if v.isInfinite then 0.0 else U * math.abs(v)
 
       /** Of what jumps at a threshold. */
       def jump(margin: Double, within: Double, by: Double, beside: Double) =
@@ -111,7 +111,7 @@ object ErrorBound:
           else if a != 0 then eb
           else errors(node.args(2).id)
         case Lt | Le | Eq =>
-          if ea + eb == 0 then 0 else jump(math.abs(a - b), ea + eb, 1, 0)
+          if ea + eb == 0 || node.args(0) == node.args(1) then 0 else jump(math.abs(a - b), ea + eb, 1, 0)
         case Not      => ea
         case And | Or => math.max(ea, eb)
     ErrorBound(values, errors, margins)

@@ -76,6 +76,7 @@ final class Trace(most: Int = 200_000):
 
   private def comparison(op: Op, a: Node, b: Node): Node =
     if a.isConst && b.isConst then if Op.holds(op, a.value, b.value) then always else never
+    else if op == Lt && a == b then never
     // What a condition has chosen between known numbers is compared: it is the condition again.
     else if b.isConst && ofConsts(a) then chosen(a)(comparison(op, _, b))
     else if a.isConst && ofConsts(b) then chosen(b)(comparison(op, a, _))

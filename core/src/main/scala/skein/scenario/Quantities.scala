@@ -55,16 +55,6 @@ case object Separation extends Quantity:
       one += 1
     least
 
-/** How far the vehicles are from goals of their own: mean, m. */
-final case class FromGoals(northM: IArray[Double], eastM: IArray[Double]) extends Quantity:
-  def of(places: Places): Double =
-    var sum     = 0.0
-    var vehicle = 0
-    while vehicle < places.count do
-      sum += places.distanceM(vehicle, northM(vehicle), eastM(vehicle))
-      vehicle += 1
-    sum / places.count
-
 /** From each follower to its slot in the frame along the circuit where the leader, the first vehicle, is: root of the mean
   * square, m.
   *

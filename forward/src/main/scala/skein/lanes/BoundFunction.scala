@@ -10,15 +10,16 @@ import skein.simd.{LaneCompiler, LaneFunction}
   *
   * @param inputs
   *   numbers in the expressions, in the order of the function's inputs
-  * @param outputs
-  *   how many there are
+  * @param nodes
+  *   the expressions with the numbers of the function's inputs
   */
 private[lanes] final class BoundFunction private (
     val inputs: Array[Int],
-    val outputs: Int,
-    val function: LaneFunction,
-    val operations: Int
-)
+    val nodes: Vector[Node],
+    val function: LaneFunction
+):
+  /** How many there are. */
+  def outputs: Int = nodes.size
 
 private[lanes] object BoundFunction:
   private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int])
@@ -40,7 +41,7 @@ private[lanes] object BoundFunction:
     val needed   = Trace.needed(own)
     val key: Key = (needed.map(node => (node.op, node.args.map(_.id), leafOf(node))), own.map(_.id))
     val function = compiled.computeIfAbsent(key, _ => LaneCompiler.compile(number.size, own))
-    BoundFunction(number.keys.toArray, outputs.size, function, needed.count(_.args.nonEmpty))
+    BoundFunction(number.keys.toArray, own, function)
 
   private def leafOf(node: Node): Long =
     if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong

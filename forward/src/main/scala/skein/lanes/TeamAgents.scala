@@ -25,7 +25,7 @@ private object TeamPictures:
   private val Nothing = -1
 
 /** One vehicle of a team in many worlds, each with a start and a policy of its own. */
-private[lanes] final class TeamAgents(self: Int, duelist: Duelist, model: TimetableModel, team: TeamPictures)
+private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: TimetableModel, team: TeamPictures)
     extends TimetableAgents(model.vehicles(duelist.copy(speed = 1))):
   import TeamLanes.Source
   import TimetableAgents.WORLDS
@@ -61,6 +61,9 @@ private[lanes] final class TeamAgents(self: Int, duelist: Duelist, model: Timeta
     team.start()
     System.arraycopy(startCos, 0, cos, 0, WORLDS)
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
+
+  /** Cosine and sine of the heading decided last, by world. */
+  private[lanes] def direction: (Array[Float], Array[Float]) = (cos, sin)
 
   override def needsVelocity: Boolean = lanes.needsVelocity
 

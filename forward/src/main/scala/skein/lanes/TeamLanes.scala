@@ -34,7 +34,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
     )
 
   /** By vehicle: the velocity commanded, north and east, and the cosine and sine of its heading. */
-  private val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
+  val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
     val Vector((_, headingRad), (_, speedMps)) = formulas(self).outputs: @unchecked
     val (cos, sin)                             = angles(self).cosSin(angles(self).factored(headingRad))
     val speed                                  = angles(self).convert(speedMps)

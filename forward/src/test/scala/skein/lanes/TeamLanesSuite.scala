@@ -129,7 +129,6 @@ class TeamLanesSuite extends munit.FunSuite:
         i =>
           Vector(
             OffSlots(circuit, IArray(-4, -4, -8, -8), IArray(4, -4, 8, -8 + 0.01 * i)),
-            FromGoals(IArray.tabulate(5)(_.toDouble), IArray.fill(5)(0.1 * i)),
             Separation
           )
       )

@@ -1,0 +1,185 @@
+package skein.lanes
+
+import scala.collection.mutable.ArrayBuffer
+import skein.formula.{ErrorBound, Node}
+import skein.forward.{DelayTable, Duelist, Engagement, LoopTiming, Reduced, Rollout}
+import skein.policy.{Course, TeamPolicy, TeamSight}
+import skein.scenario.{Formation, Scenario, Surround}
+import skein.signal.SplitMix64
+import skein.simd.WorldRandom
+
+/** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a policy compares
+  * lies so near to another that rounding decides: that is told, with how near it was, by [[ErrorBound]].
+  */
+class TeamAgreementSuite extends munit.FunSuite:
+  import TeamAgreementSuite.*
+
+  private val plant  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val worlds = TimetableKernel.WORLDS
+
+  private def within(random: SplitMix64, least: Double, most: Double) =
+    least + (most - least) * random.nextDouble()
+
+  private val scenarios: Seq[(String, SplitMix64 => Scenario)] = Seq(
+    "surround"  -> (random => Surround(6, ringM = within(random, 5, 12), pursuerMps = within(random, 6, 12))),
+    "formation" -> (random => Formation(5, spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6)))
+  )
+
+  for
+    (name, draw) <- scenarios
+    timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
+  do
+    test(s"$name, ${timing.productPrefix}: the same decisions in every world, 10 s"):
+      val seed    = 23L
+      val random  = SplitMix64(seed)
+      val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 10))
+      val key     = WorldRandom.key(2, 0, 0)
+      val model   = TimetableModel.of(plant, drawn.head.agents).fold(fail(_), identity)
+      val lanes   = TeamLanes.of(policies(drawn.head)).fold(throw _, identity)
+      val team    = TeamPictures(lanes)
+      val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))
+      val numbers =
+        drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.parametersOf(self, policy)))
+      for world <- 0 until worlds; self <- 0 until lanes.count do
+        agents(self).take(world, drawn(world).agents(self), numbers(world)(self))
+      TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
+        .fly(Timetable.of(lanes.count, 10, timing, DelayTable.vpn, key, model), worlds)
+      val forms        = Vector.tabulate(lanes.count)(self => Form(lanes, self))
+      var same, parted = 0
+      for world <- 0 until worlds by 3 do
+        val logs  = policies(drawn(world)).map(Log(_))
+        val all   = drawn(world)
+        val flown = all.copy(agents = all.agents.zip(logs).map((agent, log) => agent.copy(policy = log)))
+        Rollout(flown, timing, DelayTable.vpn, plant).fly(key): Unit
+        val order =
+          for self <- 0 until lanes.count; k <- 0 until logs(self).seen.size.min(agents(self).made.size)
+          yield (self, k)
+        val differs = order
+          .sortBy((self, k) => k.toDouble / logs(self).seen.size)
+          .iterator
+          .flatMap: (self, k) =>
+            forms(self).difference(k, logs(self).seen(k), agents(self).made(k), world, numbers(world)(self))
+          .nextOption()
+        differs match
+          case None                                       => same += 1
+          case Some(difference) if difference.isUndecided => parted += 1
+          case Some(difference)                           => fail(s"seed $seed, world $world: $difference")
+      assert(same > 0, s"in all $parted worlds rounding decided sooner or later")
+
+  private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
+
+object TeamAgreementSuite:
+  /** Of what floats add up to in the vehicles' flight. */
+  private val MostOffM = 5e-3
+
+  final case class Difference(
+      agent: Int,
+      decision: Int,
+      apart: Vector[(Double, Double)],
+      near: Vector[(Node, Double)]
+  ):
+    /** A threshold is so near that rounding may decide, and the decision is off by no more than both ways allow. */
+    def isUndecided: Boolean = near.nonEmpty && apart.forall((by, most) => by <= most)
+
+  /** What one decision was made from in all worlds, and the velocity that it came to. */
+  final case class Made(
+      readings: Vector[Array[Float]],
+      cos: Array[Float],
+      sin: Array[Float],
+      elapsedS: Float,
+      velocity: Vector[Array[Float]]
+  )
+
+  /** How a vehicle's decision is computed, and what its inputs are. */
+  final class Form(lanes: TeamLanes, self: Int):
+    import TeamLanes.Source
+    private val bound = BoundFunction.of(lanes.outputs(self))
+    private val north = bound.nodes.take(2)
+
+    private def inputs(
+        readings: Vector[Double],
+        cos: Double,
+        sin: Double,
+        elapsed: Double,
+        own: Array[Double]
+    ) =
+      bound.inputs.map: input =>
+        lanes.reading(input) match
+          case Some((vehicle, field)) => readings(field * lanes.count + vehicle)
+          case None                   => lanes.source(input) match
+              case Source.Cos               => cos
+              case Source.Sin               => sin
+              case Source.Elapsed           => elapsed
+              case Source.Parameter(number) => own(number)
+              case Source.Shared(_)         => throw IllegalStateException("nothing is shared here")
+
+    /** Where a decision differs by more than the bound of the way that doubles take. */
+    def difference(k: Int, seen: TeamSight, made: Made, world: Int, own: Array[Double]): Option[Difference] =
+      val readings = Vector(seen.northM, seen.eastM, seen.northMps, seen.eastMps).flatMap(_.toSeq)
+      val ours     = made.readings.map(_(world).toDouble)
+      val doubles  = inputs(
+        readings,
+        StrictMath.cos(seen.headingRad),
+        StrictMath.sin(seen.headingRad),
+        seen.elapsedS,
+        own
+      )
+      val floats = inputs(ours, made.cos(world), made.sin(world), made.elapsedS, own)
+      val away   = (0 until 2 * lanes.count).map(i => math.abs(readings(i) - ours(i))).max
+      // Until decisions part, the vehicles are where they are in doubles.
+      if away >= MostOffM then throw AssertionError(s"world $world, vehicle $self, decision $k: $away m off")
+      val off                     = doubles.zip(floats).map((x, y) => math.abs(x - y))
+      def of(isSame: Boolean)     = ErrorBound.of(north, doubles, off, Array.emptyDoubleArray, isSame)
+      def apart(most: ErrorBound) = north.zip(made.velocity).map: (node, lane) =>
+        (math.abs(lane(world) - most.value(node)), most.error(node))
+      Option.when(apart(of(true)).exists((by, most) => !(by <= most))):
+        val either = of(false)
+        Difference(self, k, apart(either), either.undecided(north))
+
+  final class Logged(self: Int, duelist: Duelist, model: TimetableModel, team: TeamPictures)
+      extends TeamAgents(self, duelist, model, team):
+    val made: ArrayBuffer[Made] = ArrayBuffer.empty
+
+    override def decide(
+        all: Array[TimetableAgents],
+        pictures: Array[Int],
+        picture: Int,
+        known: Int,
+        before: Int,
+        after: Int,
+        times: Array[Float],
+        number: Int
+    ): Unit =
+      def copied(from: Array[Float], at: Int) =
+        java.util.Arrays.copyOfRange(from, at, at + TimetableKernel.WORLDS)
+      val fields   = Vector[TimetableVehicles => Array[Float]](_.seenX, _.seenY, _.seenVx, _.seenVy)
+      val readings =
+        for field <- fields; vehicle <- all.indices
+        yield copied(field(all(vehicle).vehicles), pictures(picture + vehicle) * TimetableKernel.WORLDS)
+      val (cos, sin) = (direction._1.clone, direction._2.clone)
+      super.decide(all, pictures, picture, known, before, after, times, number)
+      made += Made(
+        readings,
+        cos,
+        sin,
+        times(number),
+        Vector(copied(headings.cos, after), copied(headings.sin, after))
+      )
+
+  /** Notes what a policy sees, and answers as it does. */
+  final class Log(policy: TeamPolicy) extends TeamPolicy:
+    val seen: ArrayBuffer[TeamSight]        = ArrayBuffer.empty
+    def course(observed: TeamSight): Course =
+      seen += observed
+      policy.course(observed)
+
+  object NoScores extends TimetableScores:
+    def start(): Unit  = ()
+    def finish(): Unit = ()
+    def score(
+        agents: Array[TimetableAgents],
+        pictures: Array[Int],
+        picture: Int,
+        isLast: Boolean,
+        timeS: Float
+    ): Unit = ()
