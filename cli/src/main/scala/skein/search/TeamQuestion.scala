@@ -1,8 +1,10 @@
 package skein.search
 
-import skein.optimise.{Direction, WeightedSum}
+import skein.forward.{Delays, Engagement}
+import skein.lanes.{Judged, TeamBatch, TeamCandidate}
+import skein.optimise.{Direction, Evaluator, Search, SearchMethod, TeamEvaluator, WeightedSum}
 import skein.policy.{Axis, SearchSpace}
-import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios}
+import skein.scenario.{Measure, Nearest, OverFlight, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
 import upickle.default.ReadWriter
 
@@ -160,3 +162,64 @@ object TeamQuestion:
     of.foldLeft[Either[String, Vector[B]]](Right(Vector.empty))((before, one) =>
       before.flatMap(read => each(one).map(read :+ _))
     )
+
+/** A search over a scenario's settings, ready to run.
+  *
+  * @param terms
+  *   weights and measures of the objective
+  */
+final case class TeamSetup(
+    question: TeamQuestion,
+    kind: ScenarioKind[?],
+    space: SearchSpace,
+    terms: Vector[(Double, Measure)],
+    direction: Direction,
+    conditions: Conditions.Resolved,
+    delays: Delays,
+    method: SearchMethod
+):
+  val search: Search = Search(space, method, direction, question.seed)
+
+  private val durationS = conditions.duel.durationS
+  private val periodS   = conditions.timing.periodS
+
+  def batch(threads: Int): TeamBatch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
+
+  def evaluator(batch: TeamBatch): Evaluator =
+    TeamEvaluator(batch, candidate, delays, terms.map(_._1), question.seed)
+
+  /** The scenario as a candidate has it; its settings were seen to be right. */
+  def scenario(candidate: Vector[Double]): Scenario =
+    TeamQuestion
+      .read(kind, TeamQuestion.settings(question.set, space, candidate))
+      .fold(mistake => throw IllegalArgumentException(mistake), identity)
+
+  /** A line that says what flies the candidates. */
+  def engine(batch: TeamBatch): String = batch.engine(candidate(space.defaults))
+
+  def fliesByLanes(batch: TeamBatch): Boolean = batch.fliesByLanes(candidate(space.defaults))
+
+  private def candidate(values: Vector[Double]): TeamCandidate =
+    val own      = scenario(values)
+    val measures = TeamQuestion.measures(own).values.map(measure => measure.name -> measure).toMap
+    TeamCandidate(
+      Engagement.of(own.fleet, durationS),
+      terms.map((_, measure) => judged(measures(measure.name).reduced.get))
+    )
+
+  private def judged(by: OverFlight): Judged = Judged(
+    by.quantity,
+    by.reduction,
+    by.over match
+      case Window.Whole          => 0
+      case Window.After(seconds) => seconds
+      case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
+  )
+
+  /** As users write it, without the direction. */
+  def formula: String = WeightedSum.formula(terms)((measure: Measure) => measure.name.replace(' ', '-'))
+
+  def text: String = s"${direction.text} $formula"
+
+  /** Of the value, where all terms agree. */
+  def unit: String = if terms.map(_._2.unit).distinct.size == 1 then terms.head._2.unit else ""

@@ -45,12 +45,6 @@ enum Measure:
     case CaptureTime(radiusM) => Some(radiusM)
     case _                    => None
 
-enum Direction(val sign: Double):
-  case Minimise extends Direction(1)
-  case Maximise extends Direction(-1)
-
-  def text: String = productPrefix.toLowerCase(java.util.Locale.ROOT)
-
 /** What a search makes small or large: a weighted sum of measures, averaged over episodes.
   *
   * @param terms
