@@ -4,10 +4,12 @@ package skein.record
   * (https://docs.foxglove.dev/docs/sdk/schemas).
   */
 private[record] object FoxgloveSchemas:
-  private def typed(kind: String)            = Json.obj("type" -> Json.string(kind))
-  private val number                         = typed("number")
-  private val integer                        = typed("integer")
-  private val text                           = typed("string")
+  private def typed(kind: String) = Json.obj("type" -> Json.string(kind))
+  private val number              = typed("number")
+  private val integer             = typed("integer")
+  private val text                = typed("string")
+  // Viewers look into every object's properties, also where there never is one.
+  private val nobody                         = Json.obj("type" -> "\"object\"", "properties" -> "{}")
   private def many(items: String)            = Json.obj("type" -> "\"array\"", "items" -> items)
   private def fields(all: (String, String)*) =
     Json.obj("type" -> "\"object\"", "properties" -> Json.obj(all*))
@@ -47,7 +49,7 @@ private[record] object FoxgloveSchemas:
     ),
     "foxglove.SceneUpdate" -> titled(
       "foxglove.SceneUpdate",
-      "deletions" -> many(typed("object")),
+      "deletions" -> many(nobody),
       "entities"  -> many(
         fields(
           "timestamp"    -> time,
@@ -55,11 +57,11 @@ private[record] object FoxgloveSchemas:
           "id"           -> text,
           "lifetime"     -> time,
           "frame_locked" -> typed("boolean"),
-          "metadata"     -> many(typed("object")),
-          "arrows"       -> many(typed("object")),
+          "metadata"     -> many(nobody),
+          "arrows"       -> many(nobody),
           "cubes"        -> many(fields("pose" -> pose, "size" -> vector, "color" -> colour)),
-          "spheres"      -> many(typed("object")),
-          "cylinders"    -> many(typed("object")),
+          "spheres"      -> many(nobody),
+          "cylinders"    -> many(nobody),
           "lines"        -> many(
             fields(
               "type"            -> integer,
@@ -72,7 +74,7 @@ private[record] object FoxgloveSchemas:
               "indices"         -> many(integer)
             )
           ),
-          "triangles" -> many(typed("object")),
+          "triangles" -> many(nobody),
           "texts"     -> many(
             fields(
               "pose"            -> pose,
@@ -83,7 +85,7 @@ private[record] object FoxgloveSchemas:
               "text"            -> text
             )
           ),
-          "models" -> many(typed("object"))
+          "models" -> many(nobody)
         )
       )
     )

@@ -22,7 +22,7 @@ private[record] object Json:
   def obj(fields: (String, String)*): String =
     fields.map((name, value) => s"${string(name)}:$value").mkString("{", ",", "}")
 
-/** Gathers a row as a JSON object, by the names of its columns. */
+/** Gathers a row as a JSON object, by the names of its columns; an absent value is left out. */
 private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
   private val fields = Vector.newBuilder[(String, String)]
   private val names  = columns.iterator.map(_.name)
@@ -35,12 +35,12 @@ private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
   def longs(values: Vector[Long]): Unit     = put(Json.array(values.map(_.toString)))
   def doubles(values: Vector[Double]): Unit = put(Json.array(values.map(Json.number)))
   def texts(values: Vector[String]): Unit   = put(Json.array(values.map(Json.string)))
-  def nothing(): Unit                       = put("null")
+  def nothing(): Unit                       = names.next(): Unit
 
   def json: String = Json.obj(fields.result()*)
 
 private[record] object JsonRow:
-  /** A table as a schema: what a row of it looks like. */
+  /** A table as a schema: what a row of it looks like. One type a field: viewers refuse a list of types. */
   def schema(table: Table[?]): String =
     val fields = numbered(table).map: column =>
       val one = column.sqlType.stripSuffix("[]") match
@@ -49,10 +49,8 @@ private[record] object JsonRow:
         case _        => "string"
       val kind =
         if column.sqlType.endsWith("[]") then
-          Json.obj("type" -> "\"array\"", "items" -> Json.obj("type" -> Json.string(one)))
-        else
-          Json.obj("type" -> (if column.nullable then Json.array(Vector(Json.string(one), "\"null\""))
-                              else Json.string(one)))
+          Json.obj("type"    -> "\"array\"", "items" -> Json.obj("type" -> Json.string(one)))
+        else Json.obj("type" -> Json.string(one))
       column.name -> kind
     Json.obj(
       "title"      -> Json.string(s"skein.${table.name}"),

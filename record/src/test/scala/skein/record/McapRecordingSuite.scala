@@ -44,8 +44,23 @@ class McapRecordingSuite extends munit.FunSuite:
     assertEquals(Table.all.map(table => s"/skein/${table.name}").toSet.diff(topics), Set.empty[String])
     val decision = messages(mcap, "/skein/decision").head
     val schema   = decision.schema.get.data.utf8
-    assert(schema.contains(""""ownTrueAgeMs":{"type":["number","null"]}"""), schema)
+    assert(schema.contains(""""ownTrueAgeMs":{"type":"number"}"""), schema)
     assert(decision.message.data.utf8.startsWith("""{"row":"""), decision.message.data.utf8)
+
+  folder.test(
+    "every schema is one that viewers can read: one known type a field, and properties of every object"
+  ): folder =>
+    def refused(at: String, schema: ujson.Value): Vector[String] = schema("type") match
+      case ujson.Str("object") =>
+        schema.obj.get("properties").fold(Vector(s"$at has no properties"))(
+          _.obj.toVector.flatMap((name, field) => refused(s"$at.$name", field))
+        )
+      case ujson.Str("array")                                     => refused(s"$at[]", schema("items"))
+      case ujson.Str("number" | "integer" | "string" | "boolean") => Vector.empty
+      case other                                                  => Vector(s"$at is of type $other")
+    val schemas = McapFile.read(exported(folder))(_.summary.schemas.values.toVector).toOption.get
+    assertEquals(schemas.size, Table.all.size + FoxgloveSchemas.all.size)
+    assertEquals(schemas.flatMap(one => refused(one.name, ujson.read(one.data.utf8))), Vector.empty)
 
   folder.test("log times are when the controller knew, publish times when it was made or sent"): folder =>
     val mcap                 = exported(folder)
