@@ -1,6 +1,8 @@
 package skein.cli
 
 import mainargs.{ParserForClass, Result, Util}
+import skein.policy.PolicyFamily
+import skein.record.{ClockKind, LoopKind}
 
 /** A command of `./skein`: one file each.
   *
@@ -20,6 +22,16 @@ trait Command(val name: String, val summary: String):
 
   /** What `--help` prints. */
   def help: String
+
+  private[cli] def options: Seq[CommandOption]
+
+/** What some options take, whatever command they belong to. */
+private object OptionValues:
+  val known: Map[String, Seq[String]] = Map(
+    "loop"   -> LoopKind.values.map(_.label).toSeq,
+    "clock"  -> ClockKind.values.map(_.label).toSeq,
+    "family" -> PolicyFamily.all.map(_.name)
+  )
 
 /** A command whose options are the fields of a case class.
   *
@@ -84,6 +96,17 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   private def names: Seq[String] =
     parser.main.flattenedArgSigs.flatMap((argument, _) => argument.longName(Util.kebabCaseNameMapper)).map(
       "--" + _
+    )
+
+  private[cli] final def options: Seq[CommandOption] =
+    for
+      (argument, reader) <- parser.main.flattenedArgSigs
+      name               <- argument.longName(Util.kebabCaseNameMapper) if !reader.isLeftover
+    yield CommandOption(
+      s"--$name",
+      argument.doc.getOrElse(""),
+      !reader.isFlag,
+      OptionValues.known.getOrElse(name, Nil)
     )
 
   private def takesValue(word: String): Boolean = parser.main.flattenedArgSigs.exists: (argument, reader) =>

@@ -4,7 +4,7 @@ import java.io.IOException
 import java.nio.file.{Files, Path}
 import java.time.LocalDateTime
 import java.time.format.DateTimeFormatter
-import mainargs.{ParserForClass, arg}
+import mainargs.{Flag, ParserForClass, arg}
 import skein.lanes.DuelBatch
 import skein.optimise.{CmaEs, SearchState}
 import skein.plot.{Png, Svg}
@@ -34,7 +34,7 @@ final case class SearchOptions(
     @arg(doc = "of a generation of cma-es and cross-entropy (default: 40, or more for many parameters)")
     population: Option[Int],
     @arg(doc =
-      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more)"
+      "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more); no point of the landscape takes more"
     )
     fresh: Option[Int],
     @arg(doc =
@@ -49,7 +49,9 @@ final case class SearchOptions(
     @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
     out: Option[String],
     @arg(doc = "a folder whose search was stopped: goes on with it, and ends as if it had not been stopped")
-    resume: Option[String]
+    resume: Option[String],
+    @arg(doc = Shown.Doc)
+    json: Flag
 )
 
 final class SearchCommand(using Scenarios)
@@ -60,16 +62,17 @@ final class SearchCommand(using Scenarios)
     ):
 
   protected def execute(options: SearchOptions): Either[String, Unit] =
+    val shown = Shown(options.json.value)
     for
       threads <- options.forward.threadCount
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       _ <- question match
         case duel: SearchQuestion =>
-          duel.setup.flatMap(setup => run(setup, folder, state.getOrElse(setup.search.start), threads))
+          duel.setup.flatMap(setup => run(setup, folder, state.getOrElse(setup.search.start), threads, shown))
         case team: TeamQuestion =>
           team.setup.flatMap(setup =>
-            TeamSearch(setup, folder, threads).run(state.getOrElse(setup.search.start))
+            TeamSearch(setup, folder, threads, shown).run(state.getOrElse(setup.search.start))
           )
     yield ()
 
@@ -187,10 +190,11 @@ final class SearchCommand(using Scenarios)
       setup: SearchSetup,
       folder: Path,
       from: SearchState,
-      threads: Int
+      threads: Int,
+      shown: Shown
   ): Either[String, Unit] =
     val batch = setup.batch(threads)
-    say(introduction(setup, batch))
+    say(shown, introduction(setup, batch))
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
@@ -203,13 +207,12 @@ final class SearchCommand(using Scenarios)
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
         say(
+          shown,
           f"$flown%,d episodes of ${setup.conditions.duration}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
-        if state.best.isEmpty then Right(goOn(folder))
-        else conclude(setup, batch, folder, state).map(_ => if !state.isDone then goOn(folder))
-
-  private def goOn(folder: Path): Unit =
-    say(s"stopped; ./skein search --resume $folder goes on")
+        val goOn = s"stopped; ./skein search --resume $folder goes on"
+        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
+        else conclude(setup, batch, folder, state, shown).map(_ => if !state.isDone then say(shown, goOn))
 
   private def introduction(setup: SearchSetup, batch: DuelBatch): String =
     import setup.{family, objective, opponent, question}
@@ -233,7 +236,8 @@ final class SearchCommand(using Scenarios)
       setup: SearchSetup,
       batch: DuelBatch,
       folder: Path,
-      state: SearchState
+      state: SearchState,
+      shown: Shown
   ): Either[String, Unit] =
     val effort = Effort.of(setup, batch)
     // Somebody who stops a search does not wait for long.
@@ -242,19 +246,21 @@ final class SearchCommand(using Scenarios)
     val result = SearchResult.measured(setup, batch, state, fresh)
     for
       _ <- write(folder.resolve("policy.conf"), result.file.getBytes("UTF-8"))
-      _ = say(result.summary)
+      _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <-
-        if state.isDone then landscape(setup, batch, folder, result, effort) else Right(Vector.empty)
-    yield say(s"written: ${(folder.resolve("policy.conf") +: pictures).mkString(", ")}")
+        if state.isDone then landscape(setup, batch, folder, result, effort.within(fresh), shown)
+        else Right(Vector.empty)
+    yield say(shown, s"written: ${(folder.resolve("policy.conf") +: pictures).mkString(", ")}")
 
   private def landscape(
       setup: SearchSetup,
       batch: DuelBatch,
       folder: Path,
       result: SearchResult,
-      effort: Effort
+      effort: Effort,
+      shown: Shown
   ): Either[String, Vector[Path]] =
-    say("drawing the landscape")
+    say(shown, "drawing the landscape")
     val land = Landscape.of(
       setup.family.space,
       result.policy.parameters,
@@ -274,7 +280,7 @@ final class SearchCommand(using Scenarios)
       _ <- write(svg, Svg.file(drawing, title).getBytes("UTF-8"))
       _ <- write(csv, land.csv.getBytes("UTF-8"))
       painted = Png.bytes(drawing)
-      _ <- painted.fold(reason => Right(say(s"no PNG: $reason")), bytes => write(png, bytes))
+      _ <- painted.fold(reason => Right(say(shown, s"no PNG: $reason")), bytes => write(png, bytes))
     yield Vector(svg, csv) ++ painted.toOption.map(_ => png)
 
   private def write(file: Path, bytes: Array[Byte]): Either[String, Unit] =
@@ -285,7 +291,8 @@ final class SearchCommand(using Scenarios)
 
   private def brief(value: Double): String = PolicyFile.brief(value)
 
-  private def say(text: String): Unit =
-    Console.out.println(text.linesIterator.map(_.stripTrailing).mkString("\n"))
+  private def say(shown: Shown, text: String): Unit = shown.say(lines(text))
+
+  private def lines(text: String): String = text.linesIterator.map(_.stripTrailing).mkString("\n")
 
   extension (conditions: Conditions.Resolved) private def duration: Double = conditions.duel.durationS

@@ -36,7 +36,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     ReplayCommand(),
     DigestCommand,
     TortureCommand,
-    ScenariosCommand()
+    ScenariosCommand(),
+    CompletionCommand(commands)
   )
 
   final def main(arguments: Array[String]): Unit =

@@ -9,7 +9,7 @@ import skein.search.*
 import skein.settings.PolicyFile.brief
 
 /** `./skein search --scenario`: a search over a scenario's settings, to its end or until it is stopped. */
-private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int):
+private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int, shown: Shown):
   import TeamSearch.*
 
   def run(from: SearchState): Either[String, Unit] =
@@ -29,10 +29,9 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
         say(
           f"$flown%,d episodes of ${setup.conditions.duel.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
-        if state.best.isEmpty then Right(goOn())
-        else conclude(batch, state).map(_ => if !state.isDone then goOn())
-
-  private def goOn(): Unit = say(s"stopped; ./skein search --resume $folder goes on")
+        val goOn = s"stopped; ./skein search --resume $folder goes on"
+        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
+        else conclude(batch, state).map(_ => if !state.isDone then say(goOn))
 
   private def introduction(batch: TeamBatch): String =
     import setup.question
@@ -59,7 +58,7 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
     val result = TeamSearchResult.measured(setup, batch, state, fresh)
     for
       _ <- write("scenario.conf", result.file.getBytes("UTF-8"))
-      _ = say(result.summary)
+      _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <- if state.isDone then landscape(batch, result) else Right(Vector.empty)
     yield say(s"written: ${(folder.resolve("scenario.conf") +: pictures).mkString(", ")}")
 
@@ -92,8 +91,9 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
     try Right(Files.write(file, bytes))
     catch case failed: IOException => Left(s"cannot write $file: $failed")
 
-  private def say(text: String): Unit =
-    Console.out.println(text.linesIterator.map(_.stripTrailing).mkString("\n"))
+  private def say(text: String): Unit = shown.say(lines(text))
+
+  private def lines(text: String): String = text.linesIterator.map(_.stripTrailing).mkString("\n")
 
 private[cli] object TeamSearch:
   /** Each needs a timetable of its own, which is made by the scalar engine. */

@@ -3,6 +3,8 @@ package skein.search
 import java.util.Locale
 import skein.lanes.DuelBatch
 import skein.optimise.{SearchState, Tally}
+import skein.policy.PolicyFamily
+import skein.report.Section
 import skein.settings.{PolicyFile, VehicleChoice}
 
 /** What a search came to, measured on episodes that the search never met.
@@ -34,6 +36,14 @@ final case class SearchResult(
        |        ${setup.objective.formula} = ${interval(fresh)} (95 %, ${fresh.count} fresh episodes)
        |paper:  ${PolicyFile.ofDefaults(setup.role, setup.paper).label}
        |        ${setup.objective.formula} = ${interval(paper)}""".stripMargin
+
+  /** As a table: what was found, and the paper's policy beside it. */
+  def section: Section =
+    def named(family: PolicyFamily, values: Seq[Double]) = family.space.axes.map(_.name).zip(values)
+    SearchTable.of(setup.objective.formula, unit)(
+      (setup.family.name, named(setup.family, policy.parameters), fresh),
+      (setup.paper.name, named(setup.paper, setup.paper.space.defaults), paper)
+    )
 
   /** As a policy file. */
   def file: String =
@@ -96,7 +106,9 @@ object SearchResult:
   private def number(value: Double): String = String.format(Locale.ROOT, "%.4g", value)
 
 /** How much is flown beside the search itself: less where an episode costs more. */
-final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, cellEpisodes: Int)
+final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, cellEpisodes: Int):
+  /** With no more episodes for a point of the landscape than the winner is measured on. */
+  def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
 object Effort:
   private val Cheap  = Effort(4096, 256, Landscape.OnMap, 1000)

@@ -3,6 +3,7 @@ package skein.search
 import java.util.Locale
 import skein.lanes.TeamBatch
 import skein.optimise.{SearchState, Tally}
+import skein.report.Section
 
 /** What a search over a scenario's settings came to, measured on episodes that the search never met.
   *
@@ -32,6 +33,14 @@ final case class TeamSearchResult(
        |        ${setup.formula} = ${interval(fresh)} (95 %, ${fresh.count} fresh episodes)
        |plain:  ${told(setup.space.defaults)}
        |        ${setup.formula} = ${interval(plain)}""".stripMargin
+
+  /** As a table: what was found, and the plain scenario beside it. */
+  def section: Section =
+    def named(values: Seq[Double]) = setup.space.axes.map(_.name).zip(values)
+    SearchTable.of(setup.formula, setup.unit)(
+      (setup.kind.name, named(best), fresh),
+      (s"plain ${setup.kind.name}", named(setup.space.defaults), plain)
+    )
 
   /** As a configuration that `./skein fly --config` flies. */
   def file: String =

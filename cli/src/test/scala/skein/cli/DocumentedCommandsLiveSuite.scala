@@ -28,6 +28,10 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
     "12s"
   ).resolve("stream-vpn.duckdb")
   private lazy val policy: Path = files(made("search")(forward*)).find(_.toString.endsWith("policy.conf")).get
+  private lazy val scenario: Path =
+    files(made("search --scenario surround --vary ring-m=4..12 --objective off-ring".split(' ')*)(team*))
+      .find(_.toString.endsWith("scenario.conf"))
+      .get
 
   override def afterAll(): Unit =
     val _ = Edge.await(system.terminate())
@@ -38,18 +42,22 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
     try found.iterator.asScala.toVector
     finally found.close()
 
-  private val forward = Seq("--candidates", "48", "--episodes", "2", "--fresh", "64")
+  private val forward = Seq("--candidates", "48", "--episodes", "2", "--fresh", "64", "--duration", "12s")
+
+  private val team =
+    Seq("--set", "vehicles=4", "--candidates", "4", "--episodes", "1", "--fresh", "2", "--duration", "12s")
 
   /** What makes a command short, and where its results go. */
   private def shortened(words: Seq[String], out: Path): Seq[String] =
     val more = words.head match
-      case "fly" if words.contains("virtual") => Seq("--duration", "4s")
-      case "fly"                              => Seq("--duration", "2s", "--twins", "0")
-      case "spread"                           => Seq("--seeds", "2", "--duration", "4s")
-      case "search"                           => forward
-      case "budget"                           => Seq("--means", "3", "--jitters", "2", "--episodes", "20")
-      case "latency"                          => Seq("--period", "5ms")
-      case _                                  => Seq.empty
+      case "fly" if words.contains("virtual")       => Seq("--duration", "4s")
+      case "fly"                                    => Seq("--duration", "2s", "--twins", "0")
+      case "spread"                                 => Seq("--seeds", "2", "--duration", "4s")
+      case "search" if words.contains("--scenario") => team
+      case "search"                                 => forward
+      case "budget"  => Seq("--means", "3", "--jitters", "2", "--episodes", "20", "--duration", "12s")
+      case "latency" => Seq("--period", "5ms")
+      case _         => Seq.empty
     words ++ more ++
       Option.when(Set("fly", "search", "budget", "latency")(words.head))(Seq(
         "--out",
@@ -108,11 +116,14 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         folder.resolve("settings.json"),
         """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {"Evader": {"VehicleType": "SimpleFlight"}}}"""
       )
-      val words = command.split(" +").toVector.map:
-        case "HOST:PORT"              => server.address.toString
-        case "FILE" | "FILE…"         => recording.toString
-        case "settings.json"          => settings.toString
-        case "searches/…/policy.conf" => policy.toString
+      val words = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(found =>
+        Option(found.group(1)).getOrElse(found.group(2))
+      ).map:
+        case "HOST:PORT"                => server.address.toString
+        case "FILE" | "FILE…"           => recording.toString
+        case "settings.json"            => settings.toString
+        case "searches/…/policy.conf"   => policy.toString
+        case "searches/…/scenario.conf" => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb")(name) => folder.resolve(name).toString
         case word                                             => word

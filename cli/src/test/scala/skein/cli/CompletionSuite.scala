@@ -1,0 +1,59 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.sys.process.{Process, ProcessLogger}
+
+/** What shells are told; bash is asked itself. */
+class CompletionSuite extends munit.FunSuite:
+
+  private def printed(words: String*): (Int, String) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
+    (status, said.toString(UTF_8))
+
+  /** What bash offers for a line whose last word is being typed. */
+  private def offered(line: String*): Set[String] =
+    val script  = printed("completion", "bash")._2
+    val words   = line.map(word => s"'$word'").mkString(" ")
+    val program =
+      s"$script\nCOMP_WORDS=($words); COMP_CWORD=${line.size - 1}; _skein; printf '%s\\n' \"$${COMPREPLY[@]}\""
+    val out    = StringBuilder()
+    val status =
+      Process(Seq("bash", "-c", program)).!(ProcessLogger(text => out.append(text).append('\n'): Unit))
+    assertEquals(status, 0, out.toString)
+    out.toString.linesIterator.filter(_.nonEmpty).toSet
+
+  test("bash completes commands"):
+    assertEquals(offered("./skein", "re"), Set("report", "replay"))
+    assertEquals(offered("./skein", ""), Main.commands.map(_.name).toSet + "--help")
+
+  test("bash completes every option of every command, as its own help tells them"):
+    for command <- Main.commands do
+      val flags = offered("skein", command.name, "--")
+      assertEquals(flags, command.options.map(_.flag).toSet + "--help", command.name)
+      for flag <- flags if flag != "--help" do
+        assert(command.help.contains(s"$flag"), s"${command.name} $flag")
+
+  test("bash completes the values that are known, and files where any may stand"):
+    assertEquals(offered("skein", "fly", "--clock", ""), Set("real", "virtual"))
+    assertEquals(offered("skein", "fly", "--loop", "p"), Set("paused", "predictive", "plan"))
+    assertEquals(offered("skein", "report", "build.s"), offered("skein", "fly", "--out", "build.s"))
+
+  test("zsh is told every command and option, with what it does"):
+    val (status, script) = printed("completion", "zsh")
+    assertEquals(status, 0)
+    assert(script.startsWith("#compdef skein"))
+    for command <- Main.commands do
+      assert(script.contains(s"'${command.name}:"), command.name)
+      for option <- command.options do assert(script.contains(s"'*${option.flag}["), option.flag)
+    // Quotes are closed in every line.
+    for line <- script.linesIterator do
+      assertEquals(line.replace("'\\''", "").count(_ == '\'') % 2, 0, line)
+
+  test("another shell is refused with those that there are"):
+    assertEquals(
+      printed("completion", "fish"),
+      (1, "skein completion: expected one of bash, zsh, came fish\n")
+    )
+    assertEquals(printed("completion"), (1, "skein completion: expected one of bash, zsh, came nothing\n"))
