@@ -33,4 +33,6 @@ final case class Decision(
     heading: Radians,
     speed: Option[MetresPerSecond],
     action: Option[Action] = None
-)
+):
+  /** As the other vehicles' policies see it, once it was sent. */
+  def move(sentAt: Instant): Move = Move(vehicle, sequence, heading.value, sentAt, speed, action)

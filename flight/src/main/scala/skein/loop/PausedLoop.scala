@@ -90,7 +90,7 @@ private final class PausedFlight(
       _ <- orFail(stepper.continueFor(team.settings.period))
     yield
       val moved = decided.foldLeft(picture):
-        case (seen, (_, decision)) => seen.withMove(Move.of(decision, now))
+        case (seen, (_, decision)) => seen.withMove(decision.move(now))
       Some((Step(step.number + 1, decided.map(_._1), moved), Done))
 
   private def send(decisions: Vector[Decision]): Unit =

@@ -1,8 +1,8 @@
 package skein.loop
 
-import skein.policy.{Action, AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Seen, Sensed, TeamSight}
+import skein.policy.{Action, Fleet}
 import skein.forecast.{Estimate, Evidence, Forecast}
-import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.signal.{ClockAlignment, Kinematics}
 import skein.units.*
 
 /** A command that was sent to a vehicle, as the other vehicles' policies see it.
@@ -20,10 +20,6 @@ final case class Move(
     speed: Option[MetresPerSecond] = None,
     action: Option[Action] = None
 )
-
-object Move:
-  def of(decision: Decision, sentAt: Instant): Move =
-    Move(decision.vehicle, decision.sequence, decision.heading.value, sentAt, decision.speed, decision.action)
 
 /** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and how the
   * two clocks relate.
@@ -77,110 +73,3 @@ final case class Picture(
 object Picture:
   def empty(vehicles: Int): Picture =
     Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None, Vector.fill(vehicles)(Map.empty))
-
-/** What one vehicle's decisions depend on apart from the picture.
-  *
-  * @param held
-  *   what the policy remembers; of its own type
-  */
-final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
-
-/** Decisions for one vehicle of a scenario: the pure core of every loop.
-  *
-  * @param policy
-  *   the agent's own, or one in its place
-  */
-final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
-  private val agent = scenario.agents(self)
-
-  def this(scenario: Fleet, self: Int) = this(scenario, self, scenario.agents(self).policy)
-
-  val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
-
-  /** Decides from a complete picture.
-    *
-    * @param now
-    *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
-    */
-  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
-    val seen = observation(memory, picture, now)
-    // A memory comes from this policy alone: from its start, or from its last decision.
-    policy match
-      case planar: PlanarPolicy =>
-        val (chosen, held)   = planar.planar(seen, memory.held.asInstanceOf[planar.Memory])
-        val (next, decision) = decided(memory, picture, now, chosen.heading.value, chosen.speed)
-        (next.copy(held = held), decision)
-      case _ =>
-        val (action, held)   = policy.choose(seen, memory.held.asInstanceOf[policy.Memory])
-        val (next, decision) =
-          decided(
-            memory,
-            picture,
-            now,
-            Acting.headingRad(action, memory.headingRad),
-            Some(Acting.speed(action))
-          )
-        (next.copy(held = held), decision.copy(action = Some(action)))
-
-  def regardsTeam: Boolean = policy match
-    case _: Policy => false
-    case _         => true
-
-  /** What the vehicle's policy decides upon. */
-  def observation(memory: Memory, picture: Picture, now: Instant): Observation =
-    val places = scenario.agents.indices.toVector
-    Observation(
-      self,
-      places.map(seen(picture, now, _)),
-      opponentIn(picture),
-      places.map(place =>
-        Radians(if place == self then memory.headingRad else picture.headingRad(place, scenario))
-      ),
-      elapsed(memory, now),
-      memory.decisions,
-      agent.speed,
-      Metres(agent.startPositionNed.z),
-      picture.sensed(self).map: (sensor, reading) =>
-        sensor -> Sensed(reading.columns, reading.values.value, age(picture, now, reading.values))
-    )
-
-  private def seen(picture: Picture, now: Instant, vehicle: Int): Seen =
-    val reading = picture.readings(vehicle).get.state
-    Seen(picture.kinematics(vehicle), age(picture, now, reading), isPredicted = picture.estimates.isDefined)
-
-  private def age(picture: Picture, now: Instant, reading: Stamped[?]): Span =
-    picture.alignment.fold(reading.ageByArrival(now))(known => now.since(known.toController(reading.validAt)))
-
-  /** What the vehicle knows of its team. */
-  def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
-    TeamSight.of(observation(memory, picture, now))
-
-  private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
-
-  private def opponentIn(picture: Picture): Int =
-    scenario.opponentOf(self, picture.kinematics(_).positionNed)
-
-  /** The decision for a course that was chosen, however that was done.
-    *
-    * @param speed
-    *   absent where the vehicle commands its own
-    */
-  def decided(
-      memory: Memory,
-      picture: Picture,
-      now: Instant,
-      heading: Double,
-      speed: Option[MetresPerSecond]
-  ): (Memory, Decision) =
-    val decision = Decision(
-      vehicle = self,
-      sequence = memory.decisions,
-      decidedAt = now,
-      picture = picture,
-      opponent = opponentIn(picture),
-      headingBefore = Radians(memory.headingRad),
-      elapsed = elapsed(memory, now),
-      heading = Radians(heading),
-      speed = speed
-    )
-    (memory.copy(headingRad = heading, decidedAt = Some(now), decisions = memory.decisions + 1), decision)

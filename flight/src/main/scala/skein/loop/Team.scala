@@ -290,11 +290,11 @@ final class Team(
 
   /** The moves sent. */
   def sent: Flow[Steering, Move, NotUsed] = Flow[Steering].collect:
-    case Steering(_, Steered.Sent(decision, at)) => Move.of(decision, at)
+    case Steering(_, Steered.Sent(decision, at)) => decision.move(at)
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
   def told: Flow[Steering, Percept, NotUsed] = Flow[Steering].collect(Function.unlift:
-    case Steering(_, Steered.Sent(decision, at)) => Some(Percept.Moved(Move.of(decision, at)))
+    case Steering(_, Steered.Sent(decision, at)) => Some(Percept.Moved(decision.move(at)))
     case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
       Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
     case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
