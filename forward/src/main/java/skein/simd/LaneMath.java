@@ -37,6 +37,7 @@ public final class LaneMath {
 
   public static final FloatVector ZERO = constant(0f);
   public static final FloatVector ONE = constant(1f);
+  public static final FloatVector HALF_PI = constant(1.57079633f);
 
   private static final float QUARTER_PI = 0.785398163f;
   private static final float TWO_OVER_PI = 0.63661977f;
