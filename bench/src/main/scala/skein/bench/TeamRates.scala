@@ -2,18 +2,21 @@ package skein.bench
 
 import java.lang.management.ManagementFactory
 import skein.forward.{DelayTable, Delays, Engagement, LoopTiming}
-import skein.lanes.{Judged, TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.{Judged, ScalarTeam, TeamBatch, TeamCandidate, TeamWorlds}
 
 import skein.scenario.*
 import skein.simd.WorldRandom
 
 /** How fast do teams fly forward, by lanes and by the scalar engine? 256 candidates of each episode, `stream` over `vpn`,
   * 60 s, the reduced model, one thread; an agent-step is 0.1 s of one vehicle. The timetables are made before; what making
-  * them costs stands beside. Run: `./sbtw "bench/runMain skein.bench.TeamRates"`.
+  * them costs stands beside. Run: `./sbtw "bench/runMain skein.bench.TeamRates 6 20"`.
   */
 object TeamRates:
   private val Candidates = 256
   private val DurationS  = 60.0
+
+  /** Flights until compilers have done. */
+  private val WarmUp = 60
 
   def main(args: Array[String]): Unit =
     println(
@@ -21,22 +24,24 @@ object TeamRates:
     )
     println("|---|---|---|---|---|---|---|")
     for
-      vehicles     <- Seq(6, 20, 64)
+      vehicles     <- if args.isEmpty then Seq(6, 20, 64) else args.toSeq.map(_.toInt)
       (name, draw) <- Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles))
     do
-      val candidates = Vector.tabulate(Candidates)(draw)
-      val batch      = TeamBatch(LoopTiming.Stream(), Works.model, 1)
-      val steps      = vehicles * DurationS * 10
-      val first    = Vector.tabulate(8)(episode => cpuS(batch.fly(Worlds(candidates, 1, episode)): Unit)).min
-      val again    = Vector.fill(12)(cpuS(batch.fly(Worlds(candidates, 1, 0)): Unit)).min
-      val outcomes = batch.fly(Worlds(candidates, 1, 0))
-      val scalar   = skein.lanes.ScalarTeam(LoopTiming.Stream(), Works.model)
-      def one(i: Int) = scalar.fly(candidates(i), DelayTable.vpn, key(0))(0)
-      val flown       = (0 until 4).map(one)
-      val alone       = Vector.fill(3)(cpuS((0 until 4).foreach(i => one(i): Unit)) / 4).min
-      val witness     = (0 until 4).map(outcomes.values(0)(_).toDouble).sum / 4
+      val candidates    = Vector.tabulate(Candidates)(draw)
+      val batch         = TeamBatch(LoopTiming.Stream(), Works.model, 1)
+      val steps         = vehicles * DurationS * 10
+      val scalar        = ScalarTeam(LoopTiming.Stream(), Works.model)
+      def fly(key: Int) = batch.fly(Worlds(candidates, 1, key))
+      def alone(i: Int) = scalar.fly(candidates(i), DelayTable.vpn, key(0))(0)
+      val first         = Vector.tabulate(8)(episode => cpuS(1)(fly(episode): Unit)).min
+      for _ <- 1 to WarmUp do fly(0): Unit
+      val again            = Vector.fill(5)(cpuS(5)(fly(0): Unit)).min
+      val one              = Vector.fill(3)(cpuS(8)(alone(0): Unit)).min
+      val outcomes         = fly(0)
+      val (witness, truth) =
+        ((0 until 4).map(outcomes.values(0)(_).toDouble).sum / 4, (0 until 4).map(alone).sum / 4)
       println(
-        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / alone * 1e-6}%.3f | ${Candidates * alone / again}%.0f | ${(first - again) * 1e3}%.1f | $witness%.4f | ${flown.sum / 4}%.4f |"
+        f"| $name of $vehicles | ${Candidates * steps / again * 1e-6}%.1f | ${steps / one * 1e-6}%.3f | ${Candidates * one / again}%.0f | ${(first - again) * 1e3}%.0f | $witness%.4f | $truth%.4f |"
       )
 
   private def surround(vehicles: Int)(number: Int): TeamCandidate =
@@ -65,8 +70,8 @@ object TeamRates:
   private val system =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** Processor seconds of the whole process. */
-  private def cpuS(work: => Unit): Double =
+  /** Processor seconds of the whole process for one of so many rounds. */
+  private def cpuS(rounds: Int)(work: => Unit): Double =
     val before = system.getProcessCpuTime
-    work
-    (system.getProcessCpuTime - before) * 1e-9
+    for _ <- 1 to rounds do work
+    (system.getProcessCpuTime - before) * 1e-9 / rounds
