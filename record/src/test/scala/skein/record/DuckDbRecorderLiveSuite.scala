@@ -58,6 +58,18 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite:
       assert(sequences.nonEmpty && sequences.size < offered)
       assertEquals(sequences, Vector.range(1L, sequences.size + 1L))
 
+  folder.test("rows that the database refuses fail the recording while it goes on, and its end"): folder =>
+    val file     = folder.resolve("flight.duckdb")
+    val recorder = open(file, capacity = 1024)
+    Using.resource(RecordingFile.connect(file, readOnly = false)): beside =>
+      val _ = beside.createStatement().execute("DROP TABLE reading")
+    recorder.offer(Samples.reading(1))
+    val failed = Await.result(recorder.failure, 10.seconds)
+    failed match
+      case RecordError.WriteFailed(`file`, why) => assert(why.contains("reading"), why)
+      case other                                => fail(s"expected WriteFailed, got $other")
+    assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
+
   folder.test("an actor system that ends before the recording is closed fails the recording"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val early    = ActorSystem("early")
