@@ -25,6 +25,7 @@ object Equivalent:
       "lastOption",
       "a file holds one flight"
     ),
+    Equivalent("TeamPlanning.scala", "if sinceDecisionS > 0 then", ">", ">=", "over 0 it is infinite, too"),
     Equivalent("Ordeal.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
     Equivalent("Ordeal.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
     Equivalent("Ordeal.scala", "random.nextDouble() < 0.6", "<", "<=", Never),

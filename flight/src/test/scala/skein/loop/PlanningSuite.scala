@@ -1,0 +1,50 @@
+package skein.loop
+
+import skein.planning.Separation
+import skein.policy.Role
+import skein.scenario.PaperDuel
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** What a pursuer plans upon: its own limits, what it keeps from whom, and how far it may turn at once. */
+class PlanningSuite extends munit.FunSuite:
+  private val fleet   = PaperDuel(pairs = 2).fleet
+  private val pursuer = fleet.agents.indexWhere(_.role == Role.Pursuer)
+  private val now     = Instant.Epoch + Span.ofSeconds(50)
+  private val places  = fleet.agents.indices.map(vehicle => Vector3(10.0 * vehicle, -vehicle.toDouble, -20))
+  private val picture = fleet.agents.indices.foldLeft(Picture.empty(fleet.agents.size)): (picture, vehicle) =>
+    val state = Kinematics(places(vehicle), Vector3(1, 2, 0), Quaternion.Identity, Vector3.Zero)
+    picture.withReading(Reading(vehicle, 0, Stamped(state, now, now, now)))
+
+  private def part(settings: PlanSettings, decidedBefore: Option[Span] = None) =
+    PursuitPlanning(fleet, pursuer, settings, seed = 3)
+      .pose(Memory(0.25, decidedBefore.map(now - _), 7), picture, now)
+
+  test(
+    "vehicles that are neither planned nor the opponent are kept from where a separation is set, with a metre more"
+  ):
+    val apart = part(PlanSettings(separationM = 5))
+    assertEquals(apart.objective.separation, Separation(5, margin = 1))
+    assertEquals(apart.situation.others.size, 1) // the other pair's evader
+    assert(PursuitPlanning(fleet, pursuer, PlanSettings(separationM = 5), 3).regardsTeam)
+    val alone = part(PlanSettings())
+    assertEquals(alone.objective.separation, Separation(0, margin = 0))
+    assertEquals(alone.situation.others.size, 0)
+    assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
+
+  test("it may turn for as long as it has not decided, at most for half a second"):
+    assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
+    assertEquals(part(PlanSettings(), Some(Span.ofMillis(200))).situation.sinceDecisionS, 0.2)
+    assertEquals(part(PlanSettings(), Some(Span.ofSeconds(3))).situation.sinceDecisionS, 0.5)
+
+  test("its turn rate is its speed over its turning radius, its least speed a share of the one it commands"):
+    val limits = part(PlanSettings(turningRadiusM = 4, slowestShare = 0.5)).objective.limits
+    val speed  = fleet.agents(pursuer).speed.value
+    assertEquals((limits.minSpeed, limits.maxSpeed), (speed / 2, speed))
+    assertEqualsDouble(limits.turnRateAt(speed), speed / 4, 1e-12)
+
+  test("each vehicle's each plan has random numbers of its own"):
+    val streams =
+      for seed <- 1L to 5L; self <- 0 until 5; decisions <- 0L until 20L
+      yield Planning.stream(seed, self, Memory(0, None, decisions))
+    assertEquals(streams.distinct.size, streams.size)
