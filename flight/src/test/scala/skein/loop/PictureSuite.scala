@@ -96,3 +96,18 @@ class PictureSuite extends munit.FunSuite:
     assertEquals(seen(Percept.Read(first), Percept.Due(Set(0, 1)))._1, Vector.empty)
     assertEquals(seen(Percept.Seen(Vector(first), Set(0)))._1, Vector.empty)
     assertEquals(seen(Percept.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
+
+  test("everybody is due to decide once a period, in the middle between two questions"):
+    val due = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val start              = clock.now()
+        val recorder           = MemoryRecorder(Samples.heading)
+        val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
+        team.due(
+          start
+        ).map(percept => (percept, clock.now().since(start).toMillis.round)).take(3).runWith(Sink.seq)
+      .value
+    assertEquals(due, Seq(50L, 150L, 250L).map(ms => (Percept.Due(Set(0, 1)), ms)))
