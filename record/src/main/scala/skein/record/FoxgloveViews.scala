@@ -20,13 +20,9 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
     val world = Json.obj(
       "transforms" -> Json.array(Vector(transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)))
     )
-    View("/tf", "foxglove.FrameTransforms", world) +: vehicles.map(name =>
-      View(
-        "/scene",
-        "foxglove.SceneUpdate",
-        scene(entity(at, name, s"$name", Forever, cubes = Vector(body(name)), texts = Vector(label(name))))
-      )
-    )
+    View("/tf_static", "foxglove.FrameTransforms", world) +: vehicles.map: name =>
+      val drawn = entity(at, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
+      View(s"/vehicles/$name/body", "foxglove.SceneUpdate", scene(drawn))
 
   def of(record: Record): Vector[View] = record match
     case reading: Reading =>
@@ -58,28 +54,25 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
       Vector(View("/log", "foxglove.Log", log))
     case _ => Vector.empty
 
-  /** Where the vehicle flew in the last second, when that is over. */
+  /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it at once. */
   private def trail(name: String, at: Instant, position: Vector3): Option[View] =
     val trail = trails.getOrElseUpdate(name, Trail(at))
-    trail.points += position
-    Option.when(at.since(trail.begin) >= TrailPiece || trail.points.size >= TrailPoints):
-      trails(name) = Trail(at, mutable.ArrayBuffer(position))
+    trail.points.append((at, position)): Unit
+    Option.when(at.since(trail.shownAt) >= TrailEvery):
+      trail.shownAt = at
+      trail.points.dropWhileInPlace((passed, _) => at.since(passed) > TrailLength): Unit
       val line = Json.obj(
         "type"            -> LineStrip,
         "pose"            -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
         "thickness"       -> "2",
         "scale_invariant" -> "true",
-        "points"          -> Json.array(trail.points.map(xyz)),
+        "points"          -> Json.array(trail.points.map((_, point) => xyz(point))),
         "color"           -> colours.getOrElse(name, colour(0)),
         "colors"          -> "[]",
         "indices"         -> "[]"
       )
-      val id = s"$name trail ${trail.begin.toNanos}"
-      View(
-        "/scene",
-        "foxglove.SceneUpdate",
-        scene(entity(at, "world_ned", id, TrailLifetime, lines = Vector(line)))
-      )
+      val drawn = entity(at, "world_ned", s"$name trail", lines = Vector(line))
+      View(s"/vehicles/$name/trail", "foxglove.SceneUpdate", scene(drawn))
 
   private def body(name: String) = Json.obj(
     "pose"  -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
@@ -100,17 +93,13 @@ private[record] object FoxgloveViews:
   /** A message for a topic. */
   final case class View(topic: String, schema: String, json: String)
 
-  private final case class Trail(
-      begin: Instant,
-      points: mutable.ArrayBuffer[Vector3] = mutable.ArrayBuffer.empty
-  )
+  private final class Trail(var shownAt: Instant):
+    val points: mutable.ArrayBuffer[(Instant, Vector3)] = mutable.ArrayBuffer.empty
 
-  private val Warning       = "3"
-  private val LineStrip     = "0"
-  private val Forever       = Span.Zero
-  private val TrailPiece    = Span.ofSeconds(1)
-  private val TrailPoints   = 1000
-  private val TrailLifetime = Span.ofSeconds(20)
+  private val Warning     = "3"
+  private val LineStrip   = "0"
+  private val TrailEvery  = Span.ofSeconds(1)
+  private val TrailLength = Span.ofSeconds(20)
 
   /** Half a turn about the line between north and east: x becomes y, y becomes x, and z turns round. */
   private val NedInWorld = Quaternion(0, math.sqrt(0.5), math.sqrt(0.5), 0)
@@ -158,7 +147,6 @@ private[record] object FoxgloveViews:
       at: Instant,
       frame: String,
       id: String,
-      lifetime: Span,
       cubes: Vector[String] = Vector.empty,
       lines: Vector[String] = Vector.empty,
       texts: Vector[String] = Vector.empty
@@ -166,7 +154,7 @@ private[record] object FoxgloveViews:
     "timestamp"    -> time(at),
     "frame_id"     -> Json.string(frame),
     "id"           -> Json.string(id),
-    "lifetime"     -> seconds(lifetime.toNanos),
+    "lifetime"     -> seconds(0),
     "frame_locked" -> "true",
     "metadata"     -> "[]",
     "arrows"       -> "[]",

@@ -84,11 +84,25 @@ class McapRecordingSuite extends munit.FunSuite:
       pose.message.data.utf8.contains(s""""position":{"x":${at.x},"y":${at.y},"z":${at.z}}"""),
       pose.message.data.utf8
     )
-    val frames = messages(mcap, "/tf").map(_.message.data.utf8)
+    val frames =
+      messages(mcap, "/tf_static").map(_.message.data.utf8) ++ messages(mcap, "/tf").map(_.message.data.utf8)
     assert(frames.head.contains(""""parent_frame_id":"world","child_frame_id":"world_ned""""), frames.head)
     assert(frames.exists(_.contains(""""child_frame_id":"Pursuer"""")))
-    assertEquals(messages(mcap, "/scene").size, 2)
+    assertEquals(messages(mcap, "/vehicles/Evader/body").size, 1)
     assert(messages(mcap, "/log").head.message.data.utf8.contains(""""level":3"""))
+
+  folder.test("a trail is shown once a second, and is that of the last twenty"): folder =>
+    val file     = folder.resolve("long.duckdb")
+    val mcap     = folder.resolve("long.mcap")
+    val recorder = MemoryRecorder(Samples.heading)
+    // Ten a second.
+    (1L to 300).foreach(sequence => recorder.offer(Samples.reading(sequence)))
+    assert(recorder.writeTo(file).isRight)
+    assertEquals(McapRecording.write(file, mcap), Right(()))
+    val trails = messages(mcap, "/vehicles/Pursuer/trail").map(found => ujson.read(found.message.data.utf8))
+    val points = trails.map(_("entities")(0)("lines")(0)("points").arr.map(_("x").num))
+    assertEquals(points.map(_.size), (1 to 29).map(second => (second * 10 + 1).min(201)).toVector)
+    assertEquals((points.last.head, points.last.last), (91.1, 291.1))
 
   folder.test("what is no exported recording is refused, and nothing is left behind"): folder =>
     val mcap                                        = exported(folder)
