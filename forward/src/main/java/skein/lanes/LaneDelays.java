@@ -1,6 +1,12 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.LSHR;
+import static jdk.incubator.vector.VectorOperators.XOR;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
 import java.util.Arrays;
+import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 import skein.forward.Rollout;
 import skein.simd.WorldRandom;
@@ -52,5 +58,45 @@ final class LaneDelays {
   /** Where the random numbers of a step begin. */
   static int placeOf(int step) {
     return step * Rollout.Places() * WorldRandom.STRIDE;
+  }
+
+  private static final LaneVectors ALL = LaneVectors.all();
+
+  /** The delays of a line at places of each world's own. */
+  void draw(LaneVectors vectors, int[] places, int line, int[] into) {
+    IntVector there = IntVector.broadcast(INTS, line * WorldRandom.STRIDE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, keys, i)
+          .add(IntVector.fromArray(INTS, places, i))
+          .add(there)
+          .intoArray(into, i);
+    }
+    look(vectors, into);
+  }
+
+  /** The delays of a line at one place of all worlds. */
+  void draw(int place, int line, int[] into) {
+    IntVector there = IntVector.broadcast(INTS, place + line * WorldRandom.STRIDE);
+    for (int i = 0; i < WORLDS; i += LANES)
+      IntVector.fromArray(INTS, keys, i).add(there).intoArray(into, i);
+    look(ALL, into);
+  }
+
+  /** Hashes, and looks the delays up. */
+  private void look(LaneVectors vectors, int[] values) {
+    IntVector multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector a = IntVector.fromArray(INTS, values, i);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+      a.lanewise(LSHR, DROP).add(IntVector.fromArray(INTS, tableOf, i)).intoArray(values, i);
+    }
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, delays, 0, values, i).intoArray(values, i);
+    }
   }
 }

@@ -38,9 +38,13 @@ final class LaneScores {
     Arrays.fill(lastSum, 0f);
   }
 
-  /** Adds the distances of two vehicles at the end of a period, counted from 1. */
-  void add(int period, LagVehicles evaders, LagVehicles pursuers) {
-    float[] evader = evaders.state, pursuer = pursuers.state;
+  /**
+   * Adds the distances of two vehicles at the end of a period, counted from 1.
+   *
+   * @param at where the positions east begin; those north begin at 0
+   */
+  void add(
+      int period, float[] evaderX, float[] evaderY, float[] pursuerX, float[] pursuerY, int at) {
     FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
         radius = FloatVector.broadcast(SPECIES, captureRadiusM),
         infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
@@ -49,11 +53,11 @@ final class LaneScores {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
           x =
-              FloatVector.fromArray(SPECIES, evader, LagVehicles.X + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.X + i)),
+              FloatVector.fromArray(SPECIES, evaderX, i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuerX, i)),
           y =
-              FloatVector.fromArray(SPECIES, evader, LagVehicles.Y + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuer, LagVehicles.Y + i));
+              FloatVector.fromArray(SPECIES, evaderY, at + i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuerY, at + i));
       FloatVector now = x.fma(x, y.mul(y)).sqrt();
       FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);

@@ -31,7 +31,7 @@ final class StreamDuelKernel extends DuelKernel {
   private final boolean withVelocity;
   private final LaneScores scores;
 
-  /** Whether the kernel can fly this model over this link; if not, {@link Rollout} can. */
+  /** Whether the kernel can fly this model over this link; if not, {@link LoopDuelKernel} or {@link Rollout} can. */
   static boolean canFly(LoopTiming.Stream timing, DelayTable link, Reduced model) {
     return refusal(timing, link.maxS(), model) == null;
   }
@@ -145,7 +145,7 @@ final class StreamDuelKernel extends DuelKernel {
       pictures.startRow(row);
       read(evaders, 0, row, true);
       read(pursuers, 1, row, true);
-      if (row > 0) scores.add(row, evaders, pursuers);
+      if (row > 0) score(row);
       decide(row);
       while (pictures.nextBeat()) {
         read(evaders, 0, row, false);
@@ -155,8 +155,13 @@ final class StreamDuelKernel extends DuelKernel {
     }
     evaders.flyTo(steps, pictures.sampledAt[0], 0);
     pursuers.flyTo(steps, pictures.sampledAt[1], 0);
-    scores.add(steps, evaders, pursuers);
+    score(steps);
     scores.finish();
+  }
+
+  private void score(int row) {
+    scores.add(
+        row, evaders.state, evaders.state, pursuers.state, pursuers.state, LagVehicles.Y);
   }
 
   /** Flies on to a row's question, and takes the readings of the beat's pictures. */

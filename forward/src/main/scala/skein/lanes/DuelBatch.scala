@@ -7,8 +7,8 @@ import skein.simd.LaneMath
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes with every model of a lag
-  * and with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with a [[Reduced]] model under
-  * `LoopTiming.Stream` ([[StreamDuelKernel]]). Other worlds' quadrotors fly by lanes under the scalar loops
+  * and with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with these models under `stream`,
+  * `sequential` and `futures` ([[LoopDuelKernel]], and [[StreamDuelKernel]] where it can). Other worlds' quadrotors fly by lanes under the scalar loops
   * ([[QuadrotorFleet]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the
   * world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
   * One call at a time.
@@ -35,10 +35,11 @@ final class DuelBatch(
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  = (timing, model) match
-      case (stream: LoopTiming.Stream, reduced: Reduced) if plant.isRight =>
-        StreamFlyer(duel, stream, reduced, scalar)
-      case (_, quadrotor: QuadrotorResponse) if plant.isRight => QuadrotorFleet(duel, timing, quadrotor)
-      case _                                                  => scalar
+      case _ if plant.isLeft                             => scalar
+      case (stream: LoopTiming.Stream, reduced: Reduced) =>
+        StreamFlyer(duel, stream, reduced, LoopFlyer(duel, timing, model, scalar))
+      case (_, quadrotor: QuadrotorResponse) => QuadrotorFleet(duel, timing, quadrotor)
+      case _                                 => LoopFlyer(duel, timing, model, scalar)
     val together: DuelFlyer = lanes match
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
       case _           => alone
@@ -68,35 +69,35 @@ final class DuelBatch(
     lanesOf(pursuer, evader, shareEpisodes).isRight && refusals(shareEpisodes, links).isEmpty
 
   /** Why no lanes fly over links, for each link over which none do. */
-  private def refusals(shareEpisodes: Boolean, links: Seq[Delays]): Seq[String] = (timing, model) match
-    case (stream: LoopTiming.Stream, reduced: Reduced) if !shareEpisodes =>
+  private def refusals(shareEpisodes: Boolean, links: Seq[Delays]): Seq[String] = model match
+    case _: QuadrotorResponse                => Nil
+    case _ if shareEpisodes && lanes.isRight => Nil
+    case _                                   =>
       links.flatMap:
-        case table: DelayTable => Option(StreamDuelKernel.refusal(stream, table.maxS, reduced))
+        case table: DelayTable => refusal(table.maxS)
         case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
-    case _ => Nil
+
+  /** Why worlds with delays of their own do not fly by lanes over a link this slow. */
+  private def refusal(maxDelayS: Double): Option[String] = (timing, model) match
+    case (stream: LoopTiming.Stream, reduced: Reduced)
+        if StreamDuelKernel.refusal(stream, maxDelayS, reduced) == null => None
+    case _ => Option(LoopDuelKernel.refusal(timing, maxDelayS, model))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
     plant.flatMap: _ =>
       val each    = LaneMath.LANES
       val refused = Seq(pursuer, evader).flatMap(PolicyLanes.of(_).left.toOption).headOption
-      (timing, model) match
+      model match
         case _ if shareEpisodes && refused.isEmpty && lanes.isRight =>
           Right(s"$each candidates of an episode at a time")
-        case (_, _: QuadrotorResponse) =>
+        case _: QuadrotorResponse =>
           Right(s"$each quadrotors at a time; their loops by the scalar engine")
-        case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
         case _ if refused.isDefined             => Left(s"a policy is no formula: ${refused.get.getMessage}")
-        case (_: LoopTiming.Stream, _: Reduced)
-            if Seq(pursuer, evader).exists(PolicyLanes.get(_).needsAges) =>
-          Left("a policy asks how old readings are, which the lanes tell only candidates that share episodes")
-        case (_: LoopTiming.Stream, _: Reduced) => Right(s"$each worlds at a time")
-        case (_: LoopTiming.Stream, _)          =>
-          Left(
-            "worlds with delays of their own fly by lanes with reduced, a model of three parameters, or quadrotor"
-          )
-        case _ =>
-          Left("worlds with delays of their own fly by lanes under the stream loop, or with quadrotor")
+        case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
+        case _                                  =>
+          // Refused over the fastest link, it is over any.
+          refusal(0).toLeft(s"$each worlds at a time")
 
   /** Flies all worlds, unless it is cancelled.
     *

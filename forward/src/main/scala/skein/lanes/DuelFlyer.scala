@@ -119,6 +119,37 @@ private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Re
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
+/** By [[LoopDuelKernel]], where a world's link allows. */
+private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse, other: DuelFlyer)
+    extends LaneFlyer(other):
+
+  protected def canFly(link: Delays): Boolean = link match
+    case table: DelayTable => LoopDuelKernel.refusal(timing, table.maxS, model) == null
+    case _                 => false
+
+  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
+    private val keys    = Array.ofDim[Int](batch)
+    private val links   = Array.ofDim[DelayTable](batch)
+    private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
+
+    // One for links about as slow: how far a loop is looked ahead depends on it, and no result does.
+    private def slowestS: Double =
+      val slowest = links.iterator.map(_.maxS).max
+      Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
+
+    protected def kernel: LoopDuelKernel =
+      kernels.getOrElseUpdate(slowestS, LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders))
+
+    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+      keys(lane) = worlds.key(world)
+      links(lane) = worlds.link(world).asInstanceOf[DelayTable]
+
+    protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
+
+private object LoopFlyer:
+  /** One-way, s. */
+  private val FastestS = 0.02
+
 /** By [[TimetableKernel]]. All worlds of a batch have one key and one link. */
 private final class TimetableFlyer(
     duel: Duel,

@@ -99,7 +99,7 @@ private[skein] object TimetableModel:
         case _ => Right(vehicles)
 
   /** Below, powers of e leave what floats hold. */
-  private[lanes] val LeastLagS = 0.01
+  val LeastLagS = 0.01
 
   /** AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0

@@ -17,9 +17,9 @@ class UnseenPolicySuite extends munit.FunSuite:
     (timing, shared) <- Seq(
       LoopTiming.Stream()     -> true,
       LoopTiming.Sequential() -> true,
-      LoopTiming.Stream()     -> false
+      LoopTiming.Stream()     -> false,
+      LoopTiming.Futures()    -> false
     )
-    if shared || name != "ages"
   do
     test(s"$name, ${timing.productPrefix}, ${
         if shared then "one episode" else "delays of their own"
@@ -51,11 +51,6 @@ class UnseenPolicySuite extends munit.FunSuite:
           (flown.minDistanceM(world) - scalar.minDistanceM).abs max
           (flown.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs
       assert(off.max < 5e-3, off.sorted.takeRight(10).mkString(" "))
-
-  test("worlds of their own tell no ages by lanes, and the engine says so"):
-    val batch = DuelBatch(short, LoopTiming.Stream(), model, 1)
-    val line  = batch.engine(AgeAwarePursuer(10, 1, 1), ChauffeurEvader(), false, Seq(DelayTable.vpn))
-    assert(line.startsWith("scalar: a policy asks how old readings are"), line)
 
 object UnseenPolicySuite:
   val Evader: ChauffeurEvader = ChauffeurEvader()

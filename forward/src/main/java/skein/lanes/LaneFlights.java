@@ -1,0 +1,271 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import jdk.incubator.vector.VectorOperators;
+
+/**
+ * The vehicles of one role in many worlds, whose commands act at times of their own in each. They fly
+ * in pieces, each known from its begin on; the pieces of the near past are kept, so that a vehicle can
+ * be read at any moment of it. A slot holds the piece that was the newest in each world when it was
+ * filled. Times are in seconds from the begin of a period.
+ */
+abstract class LaneFlights {
+  static final int WORLDS = LanePolicy.WORLDS;
+
+  /** Of a piece: when it begins, where the vehicle is then; what follows, the kind of vehicle says. */
+  static final int TIME = 0, X = 1, Y = 2, OWN = 3;
+
+  private static final float FUTURE = 1e9f;
+
+  /** How the vehicles answered last: m and m/s, north and east. */
+  final float[] seenX = new float[WORLDS],
+      seenY = new float[WORLDS],
+      seenVx = new float[WORLDS],
+      seenVy = new float[WORLDS];
+
+  /** Where they are flown to, and how fast they fly there. */
+  final float[] x = new float[WORLDS],
+      y = new float[WORLDS],
+      vx = new float[WORLDS],
+      vy = new float[WORLDS];
+
+  private final int fields, keptRows;
+  private final double periodS;
+  private final float startX, startY;
+  float[] pieces;
+
+  /** A power of two. */
+  private int slots = 16;
+
+  private int[] rowOf = new int[slots];
+
+  /** How many slots were filled; the newest is one less. */
+  private int filled;
+
+  /** Until when, and the pieces that lead there. */
+  final float[] until = new float[WORLDS], chosen;
+
+  private final LaneVectors all = LaneVectors.all();
+
+  /** Where in {@link #pieces} those begin that were found; and each world's number. */
+  private final int[] place = new int[WORLDS];
+
+  private static final int[] WORLD = new int[WORLDS];
+
+  static {
+    for (int i = 0; i < WORLDS; i++) WORLD[i] = i;
+  }
+
+  /**
+   * @param fields numbers of a piece
+   * @param keptRows periods before, of which a reading may ask for the pieces that were the newest
+   */
+  LaneFlights(int fields, int keptRows, double periodS, double startX, double startY) {
+    this.fields = fields;
+    this.keptRows = keptRows;
+    this.periodS = periodS;
+    this.startX = (float) startX;
+    this.startY = (float) startY;
+    pieces = new float[slots * fields * WORLDS];
+    chosen = new float[fields * WORLDS];
+  }
+
+  /** Back to the start of an episode, where they rest. */
+  final void start() {
+    Arrays.fill(pieces, 0, fields * WORLDS, 0f);
+    Arrays.fill(pieces, X * WORLDS, (X + 1) * WORLDS, startX);
+    Arrays.fill(pieces, Y * WORLDS, (Y + 1) * WORLDS, startY);
+    rest(pieces);
+    rowOf[0] = 0;
+    filled = 1;
+  }
+
+  /** Fills in what a piece at rest has of its own, from index 0 on. */
+  abstract void rest(float[] pieces);
+
+  /** Flies {@link #chosen} pieces {@link #until} the times there, into {@link #x} and the others. */
+  abstract void fly(LaneVectors vectors, boolean withVelocity);
+
+  /**
+   * New pieces begin where the vehicles were flown to, under commands; from {@code at} on in {@link
+   * #pieces}, in worlds where {@code acts} is less than {@link LaneOffers#NONE}.
+   */
+  abstract void begin(LaneVectors vectors, int at, int[] acts, Directions commanded);
+
+  /** Pieces that begin by themselves before the times there, if this kind of vehicle has such. */
+  void goOn(int row, LaneVectors vectors) {}
+
+  /**
+   * Reads the vehicles where {@code fresh} is 1, or everywhere.
+   *
+   * @param at when, from the row's begin, in grains
+   */
+  final void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f);
+    // Elsewhere the newest piece will do.
+    if (vectors.count * LANES < WORLDS) Arrays.fill(until, FUTURE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      FloatVector time =
+          ((FloatVector) IntVector.fromArray(INTS, at, i).convertShape(VectorOperators.I2F, SPECIES, 0))
+              .mul(grainS);
+      if (fresh != null)
+        time = zero.blend(time, IntVector.fromArray(INTS, fresh, i).compare(GT, 0).cast(SPECIES));
+      time.intoArray(until, i);
+    }
+    flyTo(row, vectors, withVelocity);
+    keep(vectors, x, seenX, fresh);
+    keep(vectors, y, seenY, fresh);
+    if (withVelocity) {
+      keep(vectors, vx, seenVx, fresh);
+      keep(vectors, vy, seenVy, fresh);
+    }
+  }
+
+  private static void keep(LaneVectors vectors, float[] now, float[] seen, int[] fresh) {
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      FloatVector value = FloatVector.fromArray(SPECIES, now, i);
+      if (fresh != null)
+        value =
+            FloatVector.fromArray(SPECIES, seen, i)
+                .blend(value, IntVector.fromArray(INTS, fresh, i).compare(GT, 0).cast(SPECIES));
+      value.intoArray(seen, i);
+    }
+  }
+
+  /** Flies to a row's begin. */
+  final void flyToRow(int row) {
+    Arrays.fill(until, 0f);
+    flyTo(row, all, false);
+  }
+
+  private void flyTo(int row, LaneVectors vectors, boolean withVelocity) {
+    goOn(row, vectors);
+    choose(row);
+    fly(vectors, withVelocity);
+  }
+
+  /**
+   * Lets commands act, none earlier than the one before.
+   *
+   * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
+   */
+  final void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        zero = FloatVector.broadcast(SPECIES, 0f);
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector grains = IntVector.fromArray(INTS, acts, i);
+      VectorMask<Float> does = grains.compare(VectorOperators.LT, none).cast(SPECIES);
+      zero.blend(
+              ((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS), does)
+          .intoArray(until, i);
+    }
+    goOn(row, vectors);
+    chooseNewest(row);
+    fly(vectors, true);
+    begin(vectors, fill(row), acts, commanded);
+  }
+
+  /** Fills a slot with {@link #chosen}, which are the newest. */
+  final int fill(int row) {
+    if (filled >= slots && rowOf[filled & slots - 1] >= row - keptRows) makeRoom();
+    int slot = filled++ & slots - 1, at = slot * fields * WORLDS;
+    rowOf[slot] = row;
+    System.arraycopy(chosen, 0, pieces, at, fields * WORLDS);
+    return at;
+  }
+
+  private void makeRoom() {
+    int before = slots, size = fields * WORLDS;
+    float[] held = pieces;
+    int[] rows = rowOf;
+    slots = 2 * before;
+    pieces = new float[slots * size];
+    rowOf = new int[slots];
+    for (int number = filled - before; number < filled; number++) {
+      int from = number & before - 1, to = number & slots - 1;
+      rowOf[to] = rows[from];
+      System.arraycopy(held, from * size, pieces, to * size, size);
+    }
+  }
+
+  private float shift(int slot, int row) {
+    return (float) ((rowOf[slot] - row) * periodS);
+  }
+
+  /** The newest pieces, in times of a row. */
+  final void chooseNewest(int row) {
+    int slot = filled - 1 & slots - 1;
+    System.arraycopy(pieces, slot * fields * WORLDS, chosen, 0, fields * WORLDS);
+    FloatVector shift = FloatVector.broadcast(SPECIES, shift(slot, row));
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, chosen, i).add(shift).intoArray(chosen, i);
+  }
+
+  /** The pieces in which the times there lie. */
+  private void choose(int row) {
+    int back = filled - 1, slot = back & slots - 1;
+    findFrom(slot * fields * WORLDS, shift(slot, row));
+    while (isLate()) {
+      back--;
+      if (back < 0 || back < filled - slots)
+        throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
+      slot = back & slots - 1;
+      findWhereLate(slot * fields * WORLDS, shift(slot, row));
+    }
+    if (back == filled - 1)
+      System.arraycopy(pieces, slot * fields * WORLDS + WORLDS, chosen, WORLDS, (fields - 1) * WORLDS);
+    else for (int field = X; field < fields; field++) copy(field * WORLDS);
+  }
+
+  private void findFrom(int from, float shiftS) {
+    FloatVector shift = FloatVector.broadcast(SPECIES, shiftS);
+    IntVector here = IntVector.broadcast(INTS, from);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector.fromArray(SPECIES, pieces, from + i).add(shift).intoArray(chosen, i);
+      here.add(IntVector.fromArray(INTS, WORLD, i)).intoArray(place, i);
+    }
+  }
+
+  /** Whether a piece that was found begins only after the time there. */
+  private boolean isLate() {
+    for (int i = 0; i < WORLDS; i += LANES)
+      if (FloatVector.fromArray(SPECIES, chosen, i)
+          .compare(GT, FloatVector.fromArray(SPECIES, until, i))
+          .anyTrue()) return true;
+    return false;
+  }
+
+  private void findWhereLate(int from, float shiftS) {
+    FloatVector shift = FloatVector.broadcast(SPECIES, shiftS);
+    IntVector here = IntVector.broadcast(INTS, from);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector begins = FloatVector.fromArray(SPECIES, chosen, i);
+      VectorMask<Float> late = begins.compare(GT, FloatVector.fromArray(SPECIES, until, i));
+      begins
+          .blend(FloatVector.fromArray(SPECIES, pieces, from + i).add(shift), late)
+          .intoArray(chosen, i);
+      IntVector.fromArray(INTS, place, i)
+          .blend(here.add(IntVector.fromArray(INTS, WORLD, i)), late.cast(INTS))
+          .intoArray(place, i);
+    }
+  }
+
+  /** One of the numbers of the pieces that were found. */
+  private void copy(int of) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, pieces, of, place, i).intoArray(chosen, of + i);
+  }
+}

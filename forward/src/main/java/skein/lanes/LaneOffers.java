@@ -1,0 +1,51 @@
+package skein.lanes;
+
+import skein.forward.DelayTable;
+
+/**
+ * What the controllers of two vehicles are offered to decide upon, in many worlds: under each loop
+ * another order of the same messages. Nothing of it depends on what is decided, so it is told ahead.
+ * The reference are the loops of {@code Rollout}.
+ *
+ * <p>Worlds go through the flight period by period, together. Offers of a period come in beats: of
+ * each world and agent at most one, none of which is earlier than one of a beat before. Times are in
+ * {@link DelayTable#GrainNs} from the period's begin.
+ */
+abstract class LaneOffers {
+  static final int WORLDS = LanePolicy.WORLDS;
+
+  /** Who is offered something in a beat. */
+  static final int EVADER = 0, PURSUER = 1, BOTH = 2;
+
+  /** In the place of a time: none. */
+  static final int NONE = LanePictures.NONE;
+
+  final LaneDelays delays;
+
+  /** Whose beat it is. */
+  int whose = BOTH;
+
+  /** The beat's offers: when each is made ({@link #NONE} in worlds without), and when the next one is. */
+  int[] joinedAt, nextAt;
+
+  /** By vehicle: when it was read. */
+  final int[][] sampledAt = new int[2][];
+
+  /** By vehicle: 1 where the reading is another than before; null where they all are. */
+  final int[][] fresh = new int[2][];
+
+  /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
+  final int[][] place = new int[2][];
+
+  LaneOffers(LaneDelays delays) {
+    this.delays = delays;
+  }
+
+  abstract void start(int[] worldKeys, DelayTable[] links);
+
+  /** To a period; they are taken in turn, from 0. */
+  abstract void startRow(int row);
+
+  /** To the next beat of the period, if it has one. */
+  abstract boolean nextBeat();
+}

@@ -1,0 +1,32 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import jdk.incubator.vector.IntVector;
+
+/** Which vectors of a block of worlds a pass goes over: those in which something happens. Mutable. */
+final class LaneVectors {
+  private static final int WORLDS = LanePolicy.WORLDS;
+
+  /** The first worlds of these vectors. */
+  final int[] first = new int[WORLDS / LANES];
+
+  int count;
+
+  /** All vectors. */
+  static LaneVectors all() {
+    LaneVectors all = new LaneVectors();
+    for (int i = 0; i < WORLDS; i += LANES) all.first[all.count++] = i;
+    return all;
+  }
+
+  /** Those in which some world has a time. */
+  void take(int[] times) {
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
+    count = 0;
+    for (int i = 0; i < WORLDS; i += LANES)
+      if (IntVector.fromArray(INTS, times, i).compare(LT, none).anyTrue()) first[count++] = i;
+  }
+}

@@ -1,0 +1,217 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.GT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.IntVector;
+import skein.forward.DelayTable;
+import skein.forward.Duel;
+import skein.forward.LoopTiming;
+import skein.forward.Reduced;
+import skein.forward.ReducedResponse;
+import skein.forward.Steering;
+import skein.forward.VelocityResponse;
+
+/**
+ * Duels of many worlds at a time, each with delays of its own, under the full event timing of {@code
+ * stream}, {@code sequential} or {@code futures}, with a reduced model of the vehicles. A loop tells
+ * what is offered when ({@link LaneOffers}), {@link LaneAgents} decide upon it and send, {@link
+ * LaneFlights} fly. {@link skein.forward.Rollout} is the scalar reference: both draw the same delays
+ * from a world's key, and every event happens at the same nanosecond in both. {@link
+ * StreamDuelKernel} is the faster way for its loop and vehicles. Nothing is allocated after
+ * construction but where links need more room than any before; one instance per thread.
+ */
+final class LoopDuelKernel extends DuelKernel {
+  /** Times stay within what integers of grains can hold. */
+  private static final double MOST_S = 3.5;
+
+  private final int steps;
+  private final double periodS;
+  private final LaneOffers offers;
+  private final LaneAgents evader, pursuer;
+  private final boolean withVelocity, withAges;
+  private final int[][] readAt = new int[2][WORLDS];
+  private final LaneScores scores;
+
+  /** In which somebody is offered something in a beat. */
+  private final LaneVectors vectors = new LaneVectors();
+
+  /**
+   * Why the kernel cannot fly this loop over a link, for a person; null where it can.
+   *
+   * @param maxDelayS the longest one-way delay of the link
+   */
+  static String refusal(LoopTiming timing, double maxDelayS, VelocityResponse model) {
+    Steering steering = LoopTiming.steeringOf(timing);
+    double deadTimeS;
+    switch (model) {
+      case Reduced lag -> {
+        if (!(lag.lagS() >= TimetableModel.LeastLagS())) return "the lanes need vehicles that lag";
+        deadTimeS = lag.deadTimeS();
+      }
+      case ReducedResponse drag -> {
+        if (Math.min(drag.model().lagS(), drag.model().turnLagS()) < TimetableModel.LeastLagS())
+          return "the lanes fly models with lags of " + TimetableModel.LeastLagS() + " s at least";
+        deadTimeS = drag.model().deadTimeS();
+      }
+      default -> {
+        return "worlds with delays of their own fly by lanes with a reduced model or quadrotor";
+      }
+    }
+    if (steering.mostOutstanding() != LoopTiming.MostOutstanding())
+      return "the lanes know "
+          + LoopTiming.MostOutstanding()
+          + " moves in flight, and this loop has "
+          + steering.mostOutstanding();
+    double patienceS = 0, toleranceS = 0;
+    if (timing instanceof LoopTiming.Stream stream) {
+      if (stream.asking().inOrder())
+        return "the lanes take answers as they come, and this loop in order";
+      if (stream.asking().spreadS() != 0)
+        return "the lanes ask all vehicles at once, and this loop spreads its questions";
+      if (!(stream.patienceS() > 0))
+        return "the lanes wait for the other vehicle's reading, and this loop does not";
+      patienceS = stream.patienceS();
+      toleranceS = stream.toleranceS();
+    } else if (!(timing instanceof LoopTiming.Sequential || timing instanceof LoopTiming.Futures))
+      return "worlds with delays of their own fly by lanes under sequential, futures and stream, or with quadrotor";
+    double timeoutS = LoopTiming.askingOf(timing).timeoutS();
+    if (timing.periodS() + patienceS + 2 * timeoutS + 2 * maxDelayS + deadTimeS > MOST_S)
+      return "a command may act later than the lanes can count";
+    boolean whole =
+        LanePictures.isWhole(timing.periodS())
+            && LanePictures.isWhole(toleranceS)
+            && LanePictures.isWhole(patienceS)
+            && LanePictures.isWhole(timeoutS)
+            && LanePictures.isWhole(steering.minIntervalS())
+            && LanePictures.isWhole(steering.handoverS());
+    return whole ? null : "the lanes count time in grains of 4 ns, and this loop's times are none";
+  }
+
+  /**
+   * @param duel start, speeds and duration; its policies are not used
+   * @param model reduced
+   * @param maxDelayS the longest one-way delay of any link flown over
+   * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
+   */
+  LoopDuelKernel(
+      Duel duel,
+      LoopTiming timing,
+      VelocityResponse model,
+      double maxDelayS,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy) {
+    periodS = timing.periodS();
+    steps = (int) Math.round(duel.durationS() / periodS);
+    double intervalS = 0;
+    boolean decidesFirst = true;
+    if (timing instanceof LoopTiming.Stream stream) {
+      intervalS = periodS - stream.toleranceS();
+      decidesFirst = stream.decideThenPace();
+      offers = new StreamOffers(stream, duel.durationS());
+    } else if (timing instanceof LoopTiming.Sequential sequential)
+      offers = new SequentialOffers(sequential);
+    else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
+    // From a reading to its decision, and from the decision before that to when its command acts.
+    double timeoutS = LoopTiming.askingOf(timing).timeoutS();
+    double kept = Math.min(2 * timeoutS, 4 * maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5;
+    int keptRows = 2 + (int) Math.ceil(kept / periodS);
+    LaneFlights[] flights = new LaneFlights[2];
+    double deadTimeS = 0;
+    for (int v = 0; v < 2; v++) {
+      var duelist = v == 0 ? duel.evader() : duel.pursuer();
+      switch (model) {
+        case Reduced lag -> {
+          flights[v] = new LagFlights(duelist, lag, periodS, keptRows);
+          deadTimeS = lag.deadTimeS();
+        }
+        case ReducedResponse drag -> {
+          flights[v] = new DragFlights(duelist, drag.model(), periodS, keptRows);
+          deadTimeS = drag.model().deadTimeS();
+        }
+        default -> throw new IllegalArgumentException("no lanes fly " + model);
+      }
+    }
+    Steering steering = LoopTiming.steeringOf(timing);
+    evader =
+        new LaneAgents(
+            0, duel.evader(), periodS, steering, intervalS, decidesFirst, deadTimeS, flights[0],
+            evaderPolicy, evaderEffortRad);
+    pursuer =
+        new LaneAgents(
+            1, duel.pursuer(), periodS, steering, intervalS, decidesFirst, deadTimeS, flights[1],
+            pursuerPolicy, pursuerEffortRad);
+    withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
+    withAges = evaderPolicy.needsAges() || pursuerPolicy.needsAges();
+    scores = new LaneScores(duel.durationS(), periodS, this);
+  }
+
+  /**
+   * Flies one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
+   *
+   * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
+   * @param links of each world; none may be {@link #refusal refused}
+   * @param captureRadiusM a distance of at most this is a capture
+   */
+  void fly(int[] worldKeys, DelayTable[] links, float captureRadiusM) {
+    offers.start(worldKeys, links);
+    evader.start();
+    pursuer.start();
+    scores.start(captureRadiusM);
+    for (int row = 0; row < steps; row++) {
+      if (row > 0) {
+        score(row);
+        evader.nextRow();
+        pursuer.nextRow();
+        if (withAges) growOlder();
+      }
+      offers.startRow(row);
+      while (offers.nextBeat()) {
+        vectors.take(offers.joinedAt);
+        read(row, 0, evader.flights);
+        read(row, 1, pursuer.flights);
+        boolean forPursuer = offers.whose != LaneOffers.EVADER,
+            forEvader = offers.whose != LaneOffers.PURSUER;
+        if (forPursuer) pursuer.decide(evader, offers, vectors, readAt);
+        if (forEvader) evader.decide(pursuer, offers, vectors, readAt);
+        int end = grainsToEnd(row);
+        if (forPursuer) pursuer.command(row, offers, vectors, end);
+        if (forEvader) evader.command(row, offers, vectors, end);
+      }
+    }
+    score(steps);
+    scores.finish();
+  }
+
+  private void read(int row, int vehicle, LaneFlights flights) {
+    int[] at = offers.sampledAt[vehicle], fresh = offers.fresh[vehicle];
+    flights.read(row, vectors, at, fresh, withVelocity);
+    if (withAges)
+      for (int i = 0; i < WORLDS; i += LANES) {
+        IntVector now = IntVector.fromArray(INTS, at, i), held = IntVector.fromArray(INTS, readAt[vehicle], i);
+        if (fresh != null) now = held.blend(now, IntVector.fromArray(INTS, fresh, i).compare(GT, 0));
+        now.intoArray(readAt[vehicle], i);
+      }
+  }
+
+  private void growOlder() {
+    int period = LanePictures.grains(periodS);
+    for (int[] each : readAt)
+      for (int i = 0; i < WORLDS; i++) each[i] = Math.max(each[i] - period, Integer.MIN_VALUE / 2);
+  }
+
+  private void score(int row) {
+    evader.flights.flyToRow(row);
+    pursuer.flights.flyToRow(row);
+    scores.add(
+        row, evader.flights.x, evader.flights.y, pursuer.flights.x, pursuer.flights.y, 0);
+  }
+
+  /** From a row's begin to the end of the episode, as far as integers count. */
+  private int grainsToEnd(int row) {
+    double seconds = (steps - row) * periodS;
+    return seconds < 7 ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
+  }
+}

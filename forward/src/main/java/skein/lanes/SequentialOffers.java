@@ -1,0 +1,173 @@
+package skein.lanes;
+
+import static jdk.incubator.vector.VectorOperators.EQ;
+import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.NE;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
+import skein.forward.DelayTable;
+import skein.forward.LoopTiming;
+import skein.forward.Rollout;
+import skein.simd.WorldRandom;
+
+/**
+ * The rounds of the {@code sequential} loop: one vehicle is asked after the other, both are offered
+ * what was read at the last answer. A round whose question failed offers nothing.
+ */
+final class SequentialOffers extends LaneOffers {
+  private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
+
+  /** As far as rounds are looked ahead for one that succeeds. */
+  private static final int HORIZON = LanePictures.grains(4);
+
+  private final int periodGrains, timeoutGrains;
+
+  // The next round: when it begins, and the places of its random numbers.
+  private final int[] tick = new int[WORLDS], tickPlace = new int[WORLDS];
+
+  // The next two rounds that succeed, by world: when they end, when the vehicles are read, places.
+  private final int[] end = new int[WORLDS], laterEnd = new int[WORLDS];
+  private final int[][] read = new int[2][WORLDS], laterRead = new int[2][WORLDS];
+  private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];
+
+  private final int[][] drawn = new int[4][WORLDS];
+  private final int[][] beatRead = new int[2][WORLDS];
+  private final int[] beatPlaces = new int[WORLDS];
+  private int rowPlace;
+
+  /** In which some world looks for its next round. */
+  private final LaneVectors searching = new LaneVectors();
+
+  SequentialOffers(LoopTiming.Sequential timing) {
+    super(new LaneDelays());
+    periodGrains = LanePictures.grains(timing.periodS());
+    timeoutGrains = LanePictures.grains(timing.asking().timeoutS());
+    joinedAt = new int[WORLDS];
+    nextAt = new int[WORLDS];
+    for (int v = 0; v < 2; v++) {
+      sampledAt[v] = beatRead[v];
+      place[v] = beatPlaces;
+    }
+  }
+
+  @Override
+  void start(int[] worldKeys, DelayTable[] links) {
+    delays.start(worldKeys, links);
+    Arrays.fill(tick, 0);
+    Arrays.fill(tickPlace, 0);
+    Arrays.fill(end, NONE);
+    Arrays.fill(laterEnd, NONE);
+    find();
+  }
+
+  @Override
+  void startRow(int row) {
+    rowPlace = row * STEP;
+    if (row > 0) {
+      IntVector period = IntVector.broadcast(INTS, periodGrains), none = IntVector.broadcast(INTS, NONE);
+      for (int i = 0; i < WORLDS; i += LANES) {
+        IntVector.fromArray(INTS, tick, i).sub(period).intoArray(tick, i);
+        for (int[] each : new int[][] {end, laterEnd}) {
+          IntVector time = IntVector.fromArray(INTS, each, i);
+          time.sub(period, time.compare(NE, none)).intoArray(each, i);
+        }
+        for (int[] each : new int[][] {read[0], read[1], laterRead[0], laterRead[1]})
+          IntVector.fromArray(INTS, each, i).sub(period).intoArray(each, i);
+      }
+      find();
+    }
+  }
+
+  @Override
+  boolean nextBeat() {
+    IntVector period = IntVector.broadcast(INTS, periodGrains),
+        none = IntVector.broadcast(INTS, NONE),
+        zero = IntVector.broadcast(INTS, 0),
+        here = IntVector.broadcast(INTS, rowPlace);
+    boolean any = false;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector ends = IntVector.fromArray(INTS, end, i);
+      VectorMask<Integer> due = ends.compare(LT, period);
+      any |= due.anyTrue();
+      none.blend(ends, due).intoArray(joinedAt, i);
+      IntVector.fromArray(INTS, laterEnd, i).intoArray(nextAt, i);
+      zero.blend(IntVector.fromArray(INTS, read[0], i), due).intoArray(beatRead[0], i);
+      zero.blend(IntVector.fromArray(INTS, read[1], i), due).intoArray(beatRead[1], i);
+      IntVector.fromArray(INTS, places, i).sub(here).intoArray(beatPlaces, i);
+      none.blend(ends, due.not()).intoArray(end, i);
+    }
+    if (any) find();
+    return any;
+  }
+
+  /** Fills up what each world knows of its next two rounds. */
+  private void find() {
+    while (shift()) {
+      for (int line = 0; line < 4; line++) delays.draw(searching, tickPlace, line, drawn[line]);
+      flyRound();
+    }
+  }
+
+  /** Takes the later round for the next where that is over; whether some world has to look for one. */
+  private boolean shift() {
+    IntVector none = IntVector.broadcast(INTS, NONE), horizon = IntVector.broadcast(INTS, HORIZON);
+    searching.count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      IntVector ends = IntVector.fromArray(INTS, end, i),
+          later = IntVector.fromArray(INTS, laterEnd, i);
+      VectorMask<Integer> over = ends.compare(EQ, none);
+      if (over.anyTrue()) {
+        ends.blend(later, over).intoArray(end, i);
+        later = later.blend(NONE, over);
+        later.intoArray(laterEnd, i);
+        for (int v = 0; v < 2; v++)
+          IntVector.fromArray(INTS, read[v], i)
+              .blend(IntVector.fromArray(INTS, laterRead[v], i), over)
+              .intoArray(read[v], i);
+        IntVector.fromArray(INTS, places, i)
+            .blend(IntVector.fromArray(INTS, laterPlaces, i), over)
+            .intoArray(places, i);
+      }
+      if (later.compare(EQ, none).and(IntVector.fromArray(INTS, tick, i).compare(LT, horizon)).anyTrue())
+        searching.first[searching.count++] = i;
+    }
+    return searching.count > 0;
+  }
+
+  /** One more round, in worlds that look for one. */
+  private void flyRound() {
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        horizon = IntVector.broadcast(INTS, HORIZON),
+        timeout = IntVector.broadcast(INTS, timeoutGrains),
+        period = IntVector.broadcast(INTS, periodGrains),
+        step = IntVector.broadcast(INTS, STEP);
+    for (int k = 0; k < searching.count; k++) {
+      int i = searching.first[k];
+      IntVector later = IntVector.fromArray(INTS, laterEnd, i),
+          begin = IntVector.fromArray(INTS, tick, i),
+          at = IntVector.fromArray(INTS, tickPlace, i);
+      VectorMask<Integer> searches = later.compare(EQ, none).and(begin.compare(LT, horizon));
+      IntVector there = IntVector.fromArray(INTS, drawn[0], i),
+          first = IntVector.fromArray(INTS, drawn[1], i).add(there),
+          thereToo = IntVector.fromArray(INTS, drawn[2], i),
+          second = IntVector.fromArray(INTS, drawn[3], i).add(thereToo);
+      VectorMask<Integer> fails = first.compare(GT, timeout), failsToo = second.compare(GT, timeout);
+      IntVector middle = begin.add(first.min(timeout));
+      IntVector over = middle.add(second.min(timeout)).blend(middle, fails);
+      VectorMask<Integer> found = searches.andNot(fails.or(failsToo));
+      later.blend(over, found).intoArray(laterEnd, i);
+      IntVector.fromArray(INTS, laterRead[0], i).blend(begin.add(there), found).intoArray(laterRead[0], i);
+      IntVector.fromArray(INTS, laterRead[1], i)
+          .blend(middle.add(thereToo), found)
+          .intoArray(laterRead[1], i);
+      IntVector.fromArray(INTS, laterPlaces, i).blend(at, found).intoArray(laterPlaces, i);
+      begin.blend(over.add(period), searches).intoArray(tick, i);
+      at.add(step, searches).intoArray(tickPlace, i);
+    }
+  }
+}
