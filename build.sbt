@@ -47,7 +47,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
-    .aggregate(mcap, ownGraph, ownVehicle, virtualTime)
+    .aggregate(mcap, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -140,6 +140,21 @@ lazy val cli = project
   .settings(
     libraryDependencies ++= Seq(mainargs, logback, scalatags) ++ munit,
     Compile / mainClass  := Some("skein.cli.Main"),
+    // What a project that ./skein new writes takes from this build.
+    Compile / resourceGenerators += Def.task {
+      val folder = (Compile / resourceManaged).value / "skein" / "project"
+      val home   = (ThisBuild / baseDirectory).value
+      val copied = Seq("sbtw", "project/find-jdk", "project/build.properties").map { name =>
+        val to = folder / file(name).getName
+        IO.copyFile(home / name, to)
+        to
+      }
+      val told = Seq("version" -> version.value, "scala-version" -> scalaVersion.value).map { case (name, text) =>
+        IO.write(folder / name, text)
+        folder / name
+      }
+      copied ++ told
+    }.taskValue,
     executableScriptName := "skein",
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
     // A class-data archive, made at the first run, halves the start-up time; beside an agent it must be allowed.
@@ -200,6 +215,18 @@ lazy val mutation = project
     libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
       "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
   )
+
+/** A policy of one's own, flown against the paper's evader. */
+lazy val ownPolicy = project
+  .in(file("examples/own-policy"))
+  .dependsOn(cli)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
+
+/** A scenario of one's own in three dimensions, with its picture and all commands. */
+lazy val ownScenario = project
+  .in(file("examples/own-scenario"))
+  .dependsOn(cli)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
 
 /** The operators on a data source that is not a drone. */
 lazy val ownGraph = project

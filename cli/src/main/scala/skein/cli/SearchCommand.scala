@@ -54,7 +54,7 @@ final case class SearchOptions(
     json: Flag
 )
 
-final class SearchCommand(using Scenarios)
+final class SearchCommand(using scenarios: Scenarios)
     extends OptionsCommand[SearchOptions](
       "search",
       "looks for the best of many policies by forward simulation under a loop's real timing",
@@ -96,7 +96,7 @@ final class SearchCommand(using Scenarios)
       s"searches/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
     ))
     for
-      question <- options.scenario.fold(duel(options))(team(options, _))
+      question <- options.scenario.orElse(scenarios.firstWithoutDuel).fold(duel(options))(team(options, _))
       _        <- Either.cond(
         !Files.exists(folder.resolve(SearchFile.Name)),
         (),

@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
-import skein.scenario.{ScenarioKind, Scenarios}
+import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 
 /** A program with all of Skein's commands, for scenarios of one's own:
   *
@@ -25,7 +25,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     FlyCommand(),
     SpreadCommand(),
     SearchCommand(),
-    BudgetCommand,
+    ofDuels(BudgetCommand),
     ServeCommand,
     LinkCommand,
     LatencyCommand,
@@ -35,16 +35,32 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     IdentifyCommand,
     ReplayCommand(),
     DigestCommand,
-    TortureCommand,
+    TortureCommand(),
     ScenariosCommand(),
+    NewCommand,
     CompletionCommand(commands)
   )
+
+  /** Budgets fly the duel forward, and nothing else. */
+  private def ofDuels(command: Command): Command =
+    if scenarios.names.contains(PaperDuel.Name) then command
+    else
+      Refused(
+        command,
+        s"expected a program with the scenario ${PaperDuel.Name}, came one with ${scenarios.names.mkString(", ")}: " +
+          "forward simulation judges policies of a pursuer and an evader; spread flies any scenario many times in virtual time"
+      )
 
   final def main(arguments: Array[String]): Unit =
     val status = run(arguments.toSeq)
     if !Edge.isInterrupted then sys.exit(status)
 
-  private[skein] final def run(arguments: Seq[String]): Int =
+  /** Runs one command, for tests.
+    *
+    * @return
+    *   the exit status: 0 done, 1 failed, 2 wrong arguments
+    */
+  final def run(arguments: Seq[String]): Int =
     arguments.headOption match
       case None | Some("--help" | "-h" | "help") =>
         Console.out.println(help)
@@ -87,3 +103,11 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
        |${lines.mkString("\n")}
        |
        |./skein COMMAND --help tells a command's options.""".stripMargin
+
+/** A command that a program cannot have, and why. */
+private final class Refused(of: Command, reason: String) extends Command(of.name, of.summary):
+  def help: String = s"${of.help}\n$reason"
+
+  def run(arguments: Seq[String]): Int =
+    Console.err.println(s"skein ${of.name}: $reason")
+    1

@@ -2,6 +2,7 @@ package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
+import skein.scenario.{Scenario, Scenarios}
 import skein.torture.{Ordeal, Torture, Verdict}
 import skein.units.*
 
@@ -15,11 +16,13 @@ final case class TortureOptions(
     duration: String = "60s",
     @arg(doc = "flights at once; without it, as many as there are cores")
     threads: Option[Int],
+    @arg(doc = "whose task is flown (default: duels, several side by side, where there are any, else the first)")
+    scenario: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
 
-object TortureCommand
+final class TortureCommand(using scenarios: Scenarios)
     extends OptionsCommand[TortureOptions](
       "torture",
       "flies teams in virtual time while everything goes wrong, and checks what must hold all the same",
@@ -39,10 +42,16 @@ object TortureCommand
       threads = options.threads.getOrElse(Runtime.getRuntime.availableProcessors)
       _ <- Either.cond(options.seeds > 0 && threads > 0, (), "--seeds and --threads: expected 1 or more")
       shown = Shown(options.json.value)
-      failed <- Right(fly(options, duration, threads, shown))
+      task <- scenarioOf(options.scenario)
+      failed = fly(options, duration, threads, task, shown)
       _ = if options.json.value then shown.tables(Seq(broken(failed)), "")
       _ <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
     yield ()
+
+  /** Absent where duels are flown, as many as the seed says. */
+  private def scenarioOf(named: Option[String]): Either[String, Option[Scenario]] = named match
+    case Some(name) => scenarios.kind(name).left.map("--scenario: " + _).map(kind => Some(kind.standard))
+    case None       => Right(scenarios.firstWithoutDuel.map(_ => scenarios.kinds.head.standard))
 
   /** A row for each rule that a flight broke. */
   private def broken(failed: Vector[Verdict]): Section = Section(
@@ -58,7 +67,13 @@ object TortureCommand
     )
   )
 
-  private def fly(options: TortureOptions, duration: Span, threads: Int, shown: Shown): Vector[Verdict] =
+  private def fly(
+      options: TortureOptions,
+      duration: Span,
+      threads: Int,
+      task: Option[Scenario],
+      shown: Shown
+  ): Vector[Verdict] =
     val startedAt = System.nanoTime()
     var flown     = 0
     var shownAt   = startedAt
@@ -72,14 +87,14 @@ object TortureCommand
       )
 
     Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed"):
-      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads): verdict =>
+      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task): verdict =>
         flown += 1
         if !verdict.isClean then
           failed :+= verdict
           shown.say(verdict.ordeal.toString)
           verdict.violations.foreach(line => shown.say(s"  $line"))
           shown.say(
-            s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}"
+            s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold("")(name => s" --scenario $name")}"
           )
         if System.nanoTime() - shownAt > 10_000_000_000L then
           shownAt = System.nanoTime()

@@ -49,7 +49,7 @@ final case class PaperDuel(
       PaperDuel.distance.sd("sd", last),
       PaperDuel.distance.least("closest"),
       PaperDuel.distance.leastAt("at")
-    )
+    ).map(measure => Measure(measure.name, measure.unit)(tracks => measure.of(tracks.first(2))))
 
   override def note: String = "Horizontal distance between pursuer and evader."
 

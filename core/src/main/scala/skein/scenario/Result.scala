@@ -13,7 +13,15 @@ final case class Result(
     measured: Vector[Measured],
     curves: Vector[(Series, Curve)],
     violations: Vector[Violation]
-)
+):
+  /** What a measure came to, by its name; absent where the flight never came to it. */
+  def value(measure: String): Option[Double] =
+    measured
+      .find(_.measure.name == measure)
+      .getOrElse(throw IllegalArgumentException(
+        s"no measure '$measure'; there are: ${measured.map(_.measure.name).mkString(", ")}"
+      ))
+      .value
 
 object Result:
   def of(scenario: Scenario, tracks: Tracks): Result = Result(

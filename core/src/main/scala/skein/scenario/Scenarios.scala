@@ -11,6 +11,9 @@ final case class Scenarios(kinds: Vector[ScenarioKind[?]]):
 
   def names: Vector[String] = kinds.map(_.name)
 
+  /** What a command flies that knows the duel apart, where there is no duel. */
+  def firstWithoutDuel: Option[String] = Option.when(!names.contains(PaperDuel.Name))(names.head)
+
   /** @return or what was expected, what came, and what is nearest */
   def kind(name: String): Either[String, ScenarioKind[?]] =
     kinds

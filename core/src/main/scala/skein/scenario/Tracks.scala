@@ -29,6 +29,9 @@ final class Tracks private (
   def positionNed(vehicle: Int, instant: Int): Vector3 =
     Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
 
+  /** Of the first vehicles alone, over the time for which they were all seen. */
+  def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
+
   /** Of all vehicles. */
   def places(instant: Int): Places =
     def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))

@@ -133,7 +133,8 @@ final class FlightRigs(
             opened.closing(workers(settings.planningByModel)): threads =>
               threads.close()
               Future.successful(Done)
-        val team      = Team(plan.fleet(settings), crafts, clock, watch, loopSettings, planners)
+        val finish    = Finish(settings.scenario, plan.loop == LoopKind.Paused, watch)
+        val team      = Team(plan.fleet(settings), crafts, clock, finish, loopSettings, planners)
         val startedAt = clock.now()
         val vigil     = Vigil(
           watch,
@@ -150,9 +151,10 @@ final class FlightRigs(
           Some(AirSimTime(client)),
           settings.duration,
           clock,
-          watch,
+          finish,
           () => vigil.onTime
         )
+        finish.isOver.foreach(_ => flight.complete())
         vigil.over(flight)
         Right(FlightRig(plan, flight, watch, vigil, startedAt, clock, () => opened.close()))
     starting

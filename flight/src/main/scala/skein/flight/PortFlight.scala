@@ -66,8 +66,10 @@ final case class PortFlight(
       system: ActorSystem
   ): PortFlight.UnderWay =
     import system.dispatcher
-    val team   = Team(scenario.fleet, vehicles, clock, recorder, settings)
-    val flight = Flight.start(loop, team, time, duration, clock, recorder)
+    val finish = Finish(scenario, loop == LoopKind.Paused, recorder)
+    val team   = Team(scenario.fleet, vehicles, clock, finish, settings)
+    val flight = Flight.start(loop, team, time, duration, clock, finish)
+    finish.isOver.foreach(_ => flight.complete())
     val landed =
       for
         outcome <- flight.outcome

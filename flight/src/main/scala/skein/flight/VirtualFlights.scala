@@ -6,11 +6,14 @@ import java.util.concurrent.Executors
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{MemoryNetwork, NetworkPlan}
-import skein.loop.PlanSettings
+import skein.loop.{LoopKind, Outcome, PlanSettings}
+import skein.measure.RecordedTracks
 import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
+import skein.scenario.{Result, Scenario, Tracks}
 import skein.settings.{FlightPlan, FlySettings}
-import skein.units.Clock
+import skein.signal.LatencyProfile
+import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler and the
@@ -79,6 +82,30 @@ object VirtualFlights:
             case Left(reason) => Future.successful(Left(reason))
             case Right(rig)   => rig.landed.map(landed => Right(VirtualLanding(landed, recorder)))
       .value
+
+  /** What one flight of a scenario comes to, for tests. Flies on the calling thread.
+    *
+    * @return
+    *   or why it could not be flown to its end, or its vehicles were not all seen
+    */
+  def result(
+      scenario: Scenario,
+      loop: LoopKind,
+      link: LatencyProfile,
+      seed: Long,
+      period: Span = Span.ofMillis(100)
+  ): Either[String, Result] =
+    val settings = FlySettings(List(loop), List(link), scenario.duration, period, seed, scenario)
+    for
+      flown  <- fly(settings, FlightPlan(s"${loop.label}-${link.name}", loop, link, seed))
+      _      <- flown.landed.outcome match
+        case Outcome.Failed(reason) => Left(reason)
+        case _                      => Right(())
+      tracks <- Tracks
+        .of(RecordedTracks.of(flown.recorder.recording))
+        .filter(_.vehicles.size == scenario.agents.size)
+        .toRight("its vehicles were not all seen")
+    yield Result.of(scenario, tracks)
 
   private def workers(planning: PlanSettings): PlanWorkers =
     CountedPlanWorkers(planning.searches, planning.slices)

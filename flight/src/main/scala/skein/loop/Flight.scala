@@ -15,7 +15,7 @@ export skein.record.LoopKind
 
 /** How a flight ended. */
 enum Outcome:
-  /** It flew its whole time. */
+  /** It flew its whole time, or its scenario was over. */
   case Completed
 
   /** Somebody stopped it. */
@@ -35,6 +35,10 @@ final class Flight private (stopping: Promise[Outcome], val outcome: Future[Outc
   /** Ends the flight now, because it cannot go on. */
   def fail(reason: String): Unit =
     val _ = stopping.trySuccess(Outcome.Failed(reason))
+
+  /** Ends the flight now, since there is nothing more to fly. */
+  def complete(): Unit =
+    val _ = stopping.trySuccess(Outcome.Completed)
 
   /** Ends the flight now. */
   def stop(): Unit =

@@ -53,7 +53,7 @@ final case class FlightSummary(
 
   /** Time flown on the simulator's clock, s. */
   def flownS: Double =
-    result.map(_.tracks.lastS).orElse(distance.map(_.points.last._1)).getOrElse(0.0)
+    distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
 
   /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where it was cut
     * short.

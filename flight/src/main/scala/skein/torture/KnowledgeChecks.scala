@@ -17,7 +17,7 @@ private[torture] object KnowledgeChecks:
         case LoopKind.Paused              => Vector.empty
         case LoopKind.Futures             => notAtOnce(seen, told)
         case LoopKind.Sequential          => notAtOnce(seen, told) ++ outdated(seen, told)
-        case _ if seen.ordeal.asPublished => backwards(seen)
+        case _ if seen.ordeal.scenario.asPublished => backwards(seen)
         case _                            => outdated(seen, told) ++ backwards(seen)
       ,
       agesWrong(seen)

@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.link.{Fault, TimedFault}
 import skein.loop.LoopKind
+import skein.scenario.{PaperDuel, Scenario}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 
@@ -23,10 +24,9 @@ import skein.units.*
 final case class Ordeal(
     seed: Long,
     loop: LoopKind,
-    pairs: Int,
+    scenario: Scenario,
     link: LatencyProfile,
     cutsSegments: Boolean,
-    asPublished: Boolean,
     duration: Span,
     calmFrom: Span,
     faults: Vector[TimedFault],
@@ -36,6 +36,16 @@ final case class Ordeal(
     stopAt: Option[Span],
     clockAhead: Span = Span.Zero
 ):
+  /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to stand still
+    * costs the simulator a worker for each: with many vehicles `stream` flies in their place.
+    */
+  def flying(task: Scenario): Ordeal =
+    val most = loop match
+      case LoopKind.Paused                        => 4
+      case LoopKind.Sequential | LoopKind.Futures => 6
+      case _                                      => Int.MaxValue
+    copy(scenario = task, loop = if task.agents.size > most then LoopKind.Stream else loop)
+
   /** Whether the recording is written to a file and read back, which takes longer than most flights: one in ten. */
   def isFiled: Boolean = seed % 10 == 0
 
@@ -43,7 +53,7 @@ final case class Ordeal(
   override def toString: String =
     val what = Seq(
       Some(
-        s"seed $seed: ${loop.label}${if asPublished then " as published" else ""}, ${2 * pairs} vehicles, ${link.name}"
+        s"seed $seed: ${loop.label}${if scenario.asPublished then " as published" else ""}, ${scenario.agents.size} vehicles, ${link.name}"
       ),
       Option.when(faults.nonEmpty)(
         faults.map(f => s"${f.fault} at ${f.at.toMillis.round} ms").mkString(", ")
@@ -130,7 +140,7 @@ object Ordeal:
     )
     val looped =
       if added.nextDouble() < 0.1 then
-        loses.copy(loop = LoopKind.Paused, pairs = drawn.pairs.min(2), asPublished = false)
+        loses.copy(loop = LoopKind.Paused, scenario = PaperDuel(loses.scenario.agents.size.min(4) / 2))
       else loses
     looped.copy(clockAhead = Span.ofSeconds(40 * added.nextDouble() - 20))
 
@@ -144,14 +154,15 @@ object Ordeal:
       val link = pick(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
       // A loop that asks its vehicles in turn needs a round trip for each.
       val most  = if loop == LoopKind.Sequential || loop == LoopKind.Futures then 3 else 10
-      val pairs = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
+      val pairs        = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
+      val cutsSegments = chance(0.5)
+      val asPublished  = loop == LoopKind.Stream && chance(0.2)
       Ordeal(
         seed,
         loop,
-        pairs,
+        PaperDuel(pairs, asPublished),
         link,
-        cutsSegments = chance(0.5),
-        asPublished = loop == LoopKind.Stream && chance(0.2),
+        cutsSegments,
         duration,
         calmFrom,
         several(0.6)(fault()),

@@ -1,6 +1,7 @@
 package skein.torture
 
 import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
+import skein.scenario.Scenario
 import skein.units.*
 
 /** How one flight stood its ordeal. */
@@ -10,8 +11,9 @@ final case class Verdict(ordeal: Ordeal, violations: Vector[String]):
 object Torture:
 
   /** Flies the ordeal of one seed. A flight that cannot be flown to its end is a violation, too. */
-  def of(seed: Long, duration: Span): Verdict =
-    val ordeal = Ordeal.of(seed, duration)
+  def of(seed: Long, duration: Span, scenario: Option[Scenario] = None): Verdict =
+    val drawn  = Ordeal.of(seed, duration)
+    val ordeal = scenario.fold(drawn)(drawn.flying)
     Verdict(ordeal, violations(Checks.violations(TortureFlight.fly(ordeal))))
 
   /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
@@ -21,14 +23,16 @@ object Torture:
 
   /** Flies many, as many at once as there are `threads`. Blocks.
     *
+    * @param scenario
+    *   that is flown; without one, duels
     * @param onVerdict
     *   told of each as it comes, on the calling thread
     */
-  def all(seeds: Iterator[Long], duration: Span, threads: Int)(onVerdict: Verdict => Unit): Unit =
+  def all(seeds: Iterator[Long], duration: Span, threads: Int, scenario: Option[Scenario] = None)(onVerdict: Verdict => Unit): Unit =
     val pool                     = Executors.newFixedThreadPool(threads)
     val ended                    = ExecutorCompletionService[Verdict](pool)
     def submit(seed: Long): Unit =
-      val flight: Callable[Verdict] = () => of(seed, duration)
+      val flight: Callable[Verdict] = () => of(seed, duration, scenario)
       val _                         = ended.submit(flight)
     try
       var underWay = 0

@@ -12,7 +12,6 @@ import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.RpcClient
-import skein.scenario.PaperDuel
 import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -45,7 +44,7 @@ object TortureFlight:
     import system.dispatcher
 
     private val clock    = Clock.ofNanos(VirtualTime.clock(system))
-    private val scenario = PaperDuel(ordeal.pairs, ordeal.asPublished).fleet
+    private val scenario = ordeal.scenario.fleet
     private val start    = clock.now()
     private val faults   = LinkProfile
       .symmetric(ordeal.link)
@@ -91,7 +90,7 @@ object TortureFlight:
           )
         crafts       = multirotors.map(WatchedVehicle(_, clock))
         stepper      = WatchedTime(AirSimTime(client))
-        loopSettings = if ordeal.asPublished then LoopSettings().asPublished else LoopSettings()
+        loopSettings = if ordeal.scenario.asPublished then LoopSettings().asPublished else LoopSettings()
         team         = Team(scenario, crafts, clock, recorder, loopSettings)
         flight       =
           Flight.start(ordeal.loop, team, Some(stepper), ordeal.duration, clock, recorder)

@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, RecordError, TrueAge}
+import skein.scenario.PaperDuel
 import skein.signal.Stamped
 import skein.units.*
 
@@ -13,8 +14,7 @@ class ChecksSuite extends munit.FunSuite:
       .of(10, Span.ofSeconds(8))
       .copy(
         loop = LoopKind.Stream,
-        pairs = 1,
-        asPublished = false,
+        scenario = PaperDuel(),
         faults = Vector.empty,
         meddling = Meddling.None,
         restarts = Vector.empty,
@@ -190,7 +190,7 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(withDecision(60)(_.copy(own = older))).contains("and had the newer"))
 
   test("a decision upon a reading that is older than what was decided upon before"):
-    val published = clean.ordeal.copy(asPublished = true)
+    val published = clean.ordeal.copy(scenario = PaperDuel(asPublished = true))
     val older     = clean.recording.decisions(20).own
     val forged    = withDecision(60)(_.copy(own = older)).copy(ordeal = published)
     assert(found(forged).contains("after the newer"))

@@ -3,6 +3,7 @@ package skein.torture
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.EventKind
+import skein.scenario.PaperDuel
 import skein.units.*
 
 /** Each mischief alone is really done, borne by the loop, and over when calm begins. */
@@ -14,8 +15,7 @@ class MischiefSuite extends munit.FunSuite:
       .of(11, Span.ofSeconds(8))
       .copy(
         loop = LoopKind.Stream,
-        pairs = 1,
-        asPublished = false,
+        scenario = PaperDuel(),
         faults = Vector.empty,
         meddling = meddling,
         restarts = Vector.empty,

@@ -1,0 +1,76 @@
+package skein.cli
+
+import java.io.IOException
+import java.nio.file.attribute.PosixFilePermissions
+import java.nio.file.{FileSystems, Files, Path}
+import mainargs.{Leftover, ParserForClass, arg}
+import scala.util.Using
+
+/** Options of `./skein new`. */
+final case class NewOptions(
+    @arg(doc = "of the project, and of the folder that is made: letters, digits and dashes, for example ridge-watch")
+    name: Leftover[String]
+)
+
+object NewCommand
+    extends OptionsCommand[NewOptions](
+      "new",
+      "writes a project with a scenario of one's own: build, policy, test, all commands",
+      ParserForClass[NewOptions]
+    ):
+
+  protected def execute(options: NewOptions): Either[String, Unit] = options.name.value match
+    case Seq(name) =>
+      for
+        _ <- Either.cond(
+          name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*"),
+          (),
+          s"expected a name of small letters, digits and dashes that begins with a letter, came '$name'"
+        )
+        folder = Path.of(name)
+        _ <- Either.cond(!Files.exists(folder), (), s"expected a name that is free, came '$name', which is there already")
+        _ <- write(folder, name)
+      yield
+        Console.out.println(s"written: $folder")
+        Console.out.println(s"fly it: cd $folder && ./skein fly --clock virtual")
+        Console.out.println("It builds from what ./sbtw publishLocal has put on this machine.")
+    case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
+
+  private def write(folder: Path, name: String): Either[String, Unit] =
+    val words  = name.split('-').map(_.capitalize).mkString
+    val filled = Map(
+      "@NAME@"    -> name,
+      "@PACKAGE@" -> name.replace("-", ""),
+      "@CLASS@"   -> words,
+      "@VERSION@" -> resource("version"),
+      "@SCALA@"   -> resource("scala-version")
+    )
+    val source = s"src/main/scala/${filled("@PACKAGE@")}/$words.scala"
+    val suite  = s"src/test/scala/${filled("@PACKAGE@")}/${words}Suite.scala"
+    val files  = Seq(
+      "build.sbt"        -> "build.sbt",
+      "build.properties" -> "project/build.properties",
+      "find-jdk"         -> "project/find-jdk",
+      "sbtw"             -> "sbtw",
+      "skein"            -> "skein",
+      "gitignore"        -> ".gitignore",
+      "README.md"        -> "README.md",
+      "Scenario.scala"   -> source,
+      "Suite.scala"      -> suite
+    )
+    try
+      for (from, to) <- files do
+        val file = folder.resolve(to)
+        val text = filled.foldLeft(resource(from)) { case (text, (mark, value)) => text.replace(mark, value) }
+        Files.createDirectories(file.getParent)
+        Files.writeString(file, text)
+        if executable(to) && FileSystems.getDefault.supportedFileAttributeViews.contains("posix") then
+          val _ = Files.setPosixFilePermissions(file, PosixFilePermissions.fromString("rwxr-xr-x"))
+      Right(())
+    catch case failed: IOException => Left(s"cannot write $folder: $failed")
+
+  private val executable = Set("sbtw", "skein")
+
+  /** Beside the classes: what this version was built by, and what a project begins with. */
+  private def resource(name: String): String =
+    Using.resource(getClass.getResourceAsStream(s"/skein/project/$name"))(stream => String(stream.readAllBytes, "UTF-8"))

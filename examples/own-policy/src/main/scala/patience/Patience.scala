@@ -1,0 +1,40 @@
+package patience
+
+import skein.cli.SkeinApp
+import skein.policy.*
+import skein.scenario.*
+import skein.units.*
+
+/** Follows its opponent at a distance, and trusts a reading the less the older it is: where the opponent was seen to go,
+  * it goes too, but only as far as the reading is fresh. Remembers how old readings have been.
+  *
+  * @param trustS
+  *   at this age a reading's velocity counts half
+  */
+final case class Patient(metres: Double, trustS: Double) extends AgentPolicy:
+  type Memory = Double
+  def start: Double = 0
+
+  def choose(seen: Observation, meanAgeS: Double): (Action, Double) =
+    val other = seen.vehicles(seen.opponent)
+    val age   = meanAgeS + (other.age.toSeconds - meanAgeS) * 0.1
+    val trust = trustS / (trustS + age)
+    val way   = other.kinematics.positionNed - seen.own.kinematics.positionNed
+    val wish  = other.kinematics.velocityNed * trust + way * (0.5 * (way.norm - metres) / way.norm.max(1e-9))
+    (Action.Velocity(wish * (seen.cruise.value / wish.norm.max(seen.cruise.value)), Yaw.Forward), age)
+
+/** The paper's evader, and the patient one behind it. */
+final case class Chase(metres: Double = 8, trustS: Double = 0.2) extends Scenario:
+  def agents: Vector[Agent] =
+    val evader = PaperDuel().agents.head
+    val behind = Vector3(0, 0, evader.startPositionNed.z)
+    Vector(evader, Agent("Patient", Role.Pursuer, MetresPerSecond(10), behind, Radians(0), Patient(metres, trustS)))
+
+  private val apart = Series("distance", "m", Some(Bound("asked for", metres)))(tracks => tracks.separationM(0, 1, _))
+
+  override def series: Vector[Series]    = Vector(apart)
+  override def measures: Vector[Measure] =
+    val last = Window.Last(10)
+    Vector(apart.mean("last 10 s", last), apart.sd("sd", last), apart.least("closest"))
+
+object Main extends SkeinApp(ScenarioKind(Chase()))

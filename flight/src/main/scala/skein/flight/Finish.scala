@@ -1,0 +1,69 @@
+package skein.flight
+
+import java.util.concurrent.atomic.AtomicReference
+import scala.concurrent.{Future, Promise}
+import skein.policy.Seen
+import skein.record.*
+import skein.scenario.{Known, Scenario}
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.units.*
+
+/** Records as `recorder` does, and upon every decision asks the scenario whether the flight is over. What is known then is
+  * what was read and not yet overtaken.
+  *
+  * @param isPaused
+  *   whether time stands still while is decided: then nothing has an age
+  */
+private[flight] final class Finish(scenario: Scenario, isPaused: Boolean, recorder: Recorder) extends Recorder:
+  private val names = scenario.agents.map(_.name)
+  private val heard = AtomicReference(Finish.Heard(Map.empty, None, None))
+  private val over  = Promise[Unit]()
+
+  /** Completes when the scenario is over. */
+  def isOver: Future[Unit] = over.future
+
+  def offer(record: Record): Unit =
+    recorder.offer(record)
+    record match
+      case reading: Reading   => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
+      case decision: Decision =>
+        val now = heard.updateAndGet(_.begun(decision.decidedAt))
+        for known <- now.known(names, decision.decidedAt, isPaused) if scenario.isOver(known) do
+          val _ = over.trySuccess(())
+      case _ => ()
+
+  def failure: Future[RecordError]                  = recorder.failure
+  def close(): Future[Either[RecordError, Written]] = recorder.close()
+
+private object Finish:
+
+  /** @param from
+    *   the first decision
+    */
+  final case class Heard(
+      states: Map[String, Stamped[Kinematics]],
+      alignment: Option[ClockAlignment],
+      from: Option[Instant]
+  ):
+    def read(vehicle: String, state: Stamped[Kinematics]): Heard =
+      val isNews = states.get(vehicle).forall(state.isNewerThan)
+      copy(
+        states = if isNews then states.updated(vehicle, state) else states,
+        alignment = Some(alignment.fold(ClockAlignment.of(state))(_.updated(state)))
+      )
+
+    def begun(at: Instant): Heard = if from.isDefined then this else copy(from = Some(at))
+
+    /** Absent until every vehicle was seen. */
+    def known(vehicles: Vector[String], now: Instant, isPaused: Boolean): Option[Known] =
+      for
+        begin <- from
+        seen = vehicles.flatMap(states.get) if seen.size == vehicles.size
+      yield Known(
+        now.since(begin),
+        seen.map: state =>
+          val age =
+            if isPaused then Span.Zero
+            else alignment.fold(state.ageByArrival(now))(known => now.since(known.toController(state.validAt)))
+          Seen(state.value, age, isPredicted = false)
+      )
