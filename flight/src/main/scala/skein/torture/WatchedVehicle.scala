@@ -8,7 +8,11 @@ import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A move as the loop sent it. */
+/** A move as the loop sent it. What is no velocity is told apart by its place among the moves alone.
+  *
+  * @param north
+  *   m/s; 0 where it is no velocity
+  */
 final case class Sending(at: Instant, north: Float, east: Float)
 
 /** Where a vehicle said that it is.
@@ -42,8 +46,11 @@ final class WatchedVehicle(craft: VehiclePort, clock: Clock)(using ExecutionCont
         case Success(Right(state)) => told += Answer(question, state)
 
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
-    for case Action.VelocityAt(north, east, _, _) <- Some(action) do
-      moves += Sending(clock.now(), north.toFloat, east.toFloat)
+    val (north, east) = action match
+      case Action.VelocityAt(north, east, _, _) => (north, east)
+      case Action.Velocity(velocityNed, _)      => (velocityNed.x, velocityNed.y)
+      case _                                    => (0.0, 0.0)
+    moves += Sending(clock.now(), north.toFloat, east.toFloat)
     lastIsHover = false
     commands.count(craft.act(action, lasts))
 

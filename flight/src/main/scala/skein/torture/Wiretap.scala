@@ -63,10 +63,13 @@ final class Wiretap(
 
   private def request(moves: mutable.LongMap[String], frame: Array[Byte]): ByteString =
     Message.fromClient(frame) match
-      case Message.Request(id, Move, params @ Float64(north) +: Float64(east) +: _) =>
-        if meddles(meddling.refused) then renamed(frame)
+      case Message.Request(id, method, params) if Moves(method) && params.nonEmpty =>
+        if meddles(meddling.refused) then renamed(method, frame)
         else
-          val vehicle = textOf(params.last)
+          val vehicle       = textOf(params.last)
+          val (north, east) = params match
+            case Float64(north) +: Float64(east) +: _ if ByVelocity(method) => (north, east)
+            case _                                                          => (0.0, 0.0)
           arrived += Arrival(clock.now(), vehicle, north.toFloat, east.toFloat)
           moves(id) = vehicle
           unanswered(vehicle) += 1
@@ -112,7 +115,12 @@ final class Wiretap(
   private def upTo(most: Span): Span = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
 
 private object Wiretap:
-  private val Move  = "moveByVelocityZ"
+  private val ByVelocity = Set("moveByVelocityZ", "moveByVelocity")
+
+  /** What a vehicle is told, but for hovering. */
+  private val Moves =
+    ByVelocity ++ Set("moveToPosition", "rotateToYaw", "rotateByYawRate", "moveByRollPitchYawThrottle", "land")
+
   private val Hover = "hover"
 
   /** Answers that one connection may hold back at once. */
@@ -137,8 +145,8 @@ private object Wiretap:
     ).mapConcat(identity)
 
   /** The same request with another last letter in its method's name. */
-  private def renamed(frame: Array[Byte]): ByteString =
-    val at = frame.indexOfSlice(Move.getBytes) + Move.length - 1
+  private def renamed(method: String, frame: Array[Byte]): ByteString =
+    val at = frame.indexOfSlice(method.getBytes) + method.length - 1
     ByteString.fromArrayUnsafe(frame.updated(at, 'Q'.toByte))
 
   private def encoded(message: Msg): ByteString = ByteString.fromArrayUnsafe(upack.write(message))

@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.link.Fault
 import skein.loop.LoopKind
+import skein.scenario.PaperDuel
 import skein.units.*
 
 /** What seeds draw: enough of every trouble, none of it in the calm. */
@@ -18,6 +19,8 @@ class OrdealSuite extends munit.FunSuite:
     val share  = among.count(is) / among.size.toDouble
     val spread = 4 * math.sqrt(expected * (1 - expected) / among.size)
     assert((share - expected).abs <= spread, s"$what in $share of ${among.size}, not in $expected")
+
+  private def pairs(ordeal: Ordeal) = ordeal.scenario.agents.size / 2
 
   test("the same seed and duration are the same ordeal, and another seed is another"):
     assertEquals(Ordeal.of(7, duration), ordeals(6))
@@ -82,7 +85,7 @@ class OrdealSuite extends munit.FunSuite:
       )
     do often(what, 0.3)(ordeal => of(ordeal.meddling) > 0)
     often("a file", 0.1)(_.isFiled)
-    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(_.asPublished)
+    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(_.scenario.asPublished)
 
   test("mischief is bounded, so that flights still have something to show"):
     for ordeal <- ordeals do
@@ -99,11 +102,11 @@ class OrdealSuite extends munit.FunSuite:
         case LoopKind.Paused                        => 2
         case LoopKind.Sequential | LoopKind.Futures => 3
         case _                                      => 10
-      assert(ordeal.pairs >= 1 && ordeal.pairs <= most, ordeal.toString)
-      assert(!ordeal.asPublished || ordeal.loop == LoopKind.Stream, ordeal.toString)
+      assert(pairs(ordeal) >= 1 && pairs(ordeal) <= most, ordeal.toString)
+      assert(!ordeal.scenario.asPublished || ordeal.loop == LoopKind.Stream, ordeal.toString)
     val streams = ordeals.filter(_.loop == LoopKind.Stream)
-    often("one pair", 0.6 + 0.4 / 10, streams)(_.pairs == 1)
-    assertEquals(streams.map(_.pairs).distinct.sorted, (1 to 10).toSeq)
+    often("one pair", 0.6 + 0.4 / 10, streams)(pairs(_) == 1)
+    assertEquals(streams.map(pairs).distinct.sorted, (1 to 10).toSeq)
 
   test("the simulator's clock is ahead or behind by up to 20 s"):
     val ahead = ordeals.map(_.clockAhead.toSeconds)
@@ -118,8 +121,7 @@ class OrdealSuite extends munit.FunSuite:
   test("a line for a person names all that will happen, and nothing else"):
     val calm = ordeals.head.copy(
       loop = LoopKind.Stream,
-      pairs = 2,
-      asPublished = false,
+      scenario = PaperDuel(2),
       faults = Vector.empty,
       meddling = Meddling.None,
       restarts = Vector.empty,
@@ -128,7 +130,7 @@ class OrdealSuite extends munit.FunSuite:
     )
     assertEquals(calm.toString, s"seed 1: stream, 4 vehicles, ${calm.link.name}")
     val all = calm.copy(
-      asPublished = true,
+      scenario = PaperDuel(2, asPublished = true),
       faults = Vector(skein.link.TimedFault(Span.ofMillis(900), Fault.Reset)),
       meddling = Meddling(lost = 0.1),
       restarts = Vector(Restart(Span.ofSeconds(2), Span.ofSeconds(1), Span.Zero)),
