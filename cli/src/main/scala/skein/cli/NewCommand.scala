@@ -55,8 +55,8 @@ object NewCommand
       "skein"            -> "skein",
       "gitignore"        -> ".gitignore",
       "README.md"        -> "README.md",
-      "Scenario.scala"   -> source,
-      "Suite.scala"      -> suite
+      "Scenario.scala.txt" -> source,
+      "Suite.scala.txt"    -> suite
     )
     try
       for (from, to) <- files do

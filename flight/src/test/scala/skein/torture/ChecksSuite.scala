@@ -125,7 +125,7 @@ class ChecksSuite extends munit.FunSuite:
     val rows   = Recorded.rows(clean.recording)
     val flown  = Span.ofSeconds(rows / (2 * 325.0) - 1)
     val dense  = clean.copy(endedAt = clean.startedAt + flown)
-    val tapped = dense.copy(ordeal = clean.ordeal.copy(asPublished = true))
+    val tapped = dense.copy(ordeal = clean.ordeal.copy(scenario = PaperDuel(asPublished = true)))
     assert(found(dense).contains("are many for this flight"))
     assert(!found(tapped).contains("are many for this flight"), found(tapped))
 
