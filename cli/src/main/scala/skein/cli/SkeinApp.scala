@@ -108,6 +108,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 private final class Refused(of: Command, reason: String) extends Command(of.name, of.summary):
   def help: String = s"${of.help}\n$reason"
 
+  private[cli] def options: Seq[CommandOption] = of.options
+
   def run(arguments: Seq[String]): Int =
     Console.err.println(s"skein ${of.name}: $reason")
     1

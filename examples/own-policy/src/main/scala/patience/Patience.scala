@@ -17,7 +17,9 @@ final case class Patient(metres: Double, trustS: Double) extends AgentPolicy:
 
   def choose(seen: Observation, meanAgeS: Double): (Action, Double) =
     val other = seen.vehicles(seen.opponent)
-    val age   = meanAgeS + (other.age.toSeconds - meanAgeS) * 0.1
+    // What a loop has carried forward to when the command acts is as good as fresh.
+    val old   = if other.isPredicted then 0.0 else other.age.toSeconds
+    val age   = meanAgeS + (old - meanAgeS) * 0.1
     val trust = trustS / (trustS + age)
     val way   = other.kinematics.positionNed - seen.own.kinematics.positionNed
     val wish  = other.kinematics.velocityNed * trust + way * (0.5 * (way.norm - metres) / way.norm.max(1e-9))
