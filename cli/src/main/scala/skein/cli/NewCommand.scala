@@ -54,7 +54,7 @@ object NewCommand
       "sbtw"             -> "sbtw",
       "skein"            -> "skein",
       "gitignore"        -> ".gitignore",
-      "README.md"        -> "README.md",
+      "README.md.txt"    -> "README.md",
       "Scenario.scala.txt" -> source,
       "Suite.scala.txt"    -> suite
     )
