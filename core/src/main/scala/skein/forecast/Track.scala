@@ -4,18 +4,6 @@ import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.{Setpoint, VehicleModel}
 
-/** One command sent to a vehicle.
-  *
-  * @param answeredAt
-  *   when it was known to have arrived, on the controller's clock
-  */
-final case class Commanded(
-    sequence: Long,
-    setpoint: Setpoint,
-    sentAt: Instant,
-    answeredAt: Option[Instant] = None
-)
-
 /** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except where
   * they come from the simulator: `validAt` and everything named after it.
   *

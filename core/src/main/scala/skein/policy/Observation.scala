@@ -68,5 +68,6 @@ final case class Sensed(columns: Vector[String], values: Vector[Double], age: Sp
     */
   def apply(column: String): Double =
     columns.indexOf(column) match
-      case -1    => throw java.util.NoSuchElementException(s"expected one of ${columns.mkString(", ")}, came '$column'")
+      case -1 =>
+        throw java.util.NoSuchElementException(s"expected one of ${columns.mkString(", ")}, came '$column'")
       case index => values(index)

@@ -227,7 +227,7 @@ final class FuturesOffers extends LaneOffers {
       step.sub(here).mul(STEP).intoArray(beatPlaces, i);
     }
     if (any) {
-      taken.take(joinedAt);
+      taken.take(joinedAt, NONE);
       forget(agent);
       look(agent, taken);
     }

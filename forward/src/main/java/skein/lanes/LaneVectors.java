@@ -22,9 +22,13 @@ final class LaneVectors {
     return all;
   }
 
-  /** Those in which some world has a time. */
-  void take(int[] times) {
-    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
+  /**
+   * Those in which some world has a time.
+   *
+   * @param noneAt in the place of a time, above all
+   */
+  void take(int[] times, int noneAt) {
+    IntVector none = IntVector.broadcast(INTS, noneAt);
     count = 0;
     for (int i = 0; i < WORLDS; i += LANES)
       if (IntVector.fromArray(INTS, times, i).compare(LT, none).anyTrue()) first[count++] = i;

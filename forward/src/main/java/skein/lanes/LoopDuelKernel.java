@@ -169,7 +169,7 @@ final class LoopDuelKernel extends DuelKernel {
       }
       offers.startRow(row);
       while (offers.nextBeat()) {
-        vectors.take(offers.joinedAt);
+        vectors.take(offers.joinedAt, LaneOffers.NONE);
         read(row, 0, evader.flights);
         read(row, 1, pursuer.flights);
         boolean forPursuer = offers.whose != LaneOffers.EVADER,

@@ -16,28 +16,31 @@ final class PredictedDragVehicles extends PredictedVehicles {
 
   @Override
   void predict(
-      TimetableVehicles vehicles,
+      float[] seenX,
+      float[] seenY,
+      float[] seenVx,
+      float[] seenVy,
       Directions sent,
       int reading,
       int into,
       Courses courses,
       int course,
       boolean withVelocity) {
-    System.arraycopy(vehicles.seenX, reading, flight.x, 0, WORLDS);
-    System.arraycopy(vehicles.seenY, reading, flight.y, 0, WORLDS);
-    System.arraycopy(vehicles.seenVx, reading, flight.vx, 0, WORLDS);
-    System.arraycopy(vehicles.seenVy, reading, flight.vy, 0, WORLDS);
+    System.arraycopy(seenX, reading, flight.x, 0, WORLDS);
+    System.arraycopy(seenY, reading, flight.y, 0, WORLDS);
+    System.arraycopy(seenVx, reading, flight.vx, 0, WORLDS);
+    System.arraycopy(seenVy, reading, flight.vy, 0, WORLDS);
     for (int part = courses.start(course); part < courses.end(course); part++) {
       int place = courses.place(part);
-      if (place == REST) flight.rest();
+      if (place == Courses.Rest()) flight.rest();
       else flight.act(sent, place * WORLDS);
       flight.fly((int) courses.span(part), courses.rest(part));
     }
-    System.arraycopy(flight.x, 0, vehicles.seenX, into, WORLDS);
-    System.arraycopy(flight.y, 0, vehicles.seenY, into, WORLDS);
+    System.arraycopy(flight.x, 0, seenX, into, WORLDS);
+    System.arraycopy(flight.y, 0, seenY, into, WORLDS);
     if (withVelocity) {
-      System.arraycopy(flight.vx, 0, vehicles.seenVx, into, WORLDS);
-      System.arraycopy(flight.vy, 0, vehicles.seenVy, into, WORLDS);
+      System.arraycopy(flight.vx, 0, seenVx, into, WORLDS);
+      System.arraycopy(flight.vy, 0, seenVy, into, WORLDS);
     }
   }
 }

@@ -24,7 +24,10 @@ final class PredictedLagVehicles extends PredictedVehicles {
 
   @Override
   void predict(
-      TimetableVehicles vehicles,
+      float[] seenX,
+      float[] seenY,
+      float[] seenVx,
+      float[] seenVy,
       Directions sent,
       int reading,
       int into,
@@ -32,21 +35,21 @@ final class PredictedLagVehicles extends PredictedVehicles {
       int course,
       boolean withVelocity) {
     float carried = courses.first(course), kept = courses.second(course);
-    carry(vehicles.seenX, vehicles.seenVx, carried, vehicles.seenX, reading, into);
-    carry(vehicles.seenY, vehicles.seenVy, carried, vehicles.seenY, reading, into);
+    carry(seenX, seenVx, carried, seenX, reading, into);
+    carry(seenY, seenVy, carried, seenY, reading, into);
     if (withVelocity) {
-      keep(vehicles.seenVx, kept, reading, into);
-      keep(vehicles.seenVy, kept, reading, into);
+      keep(seenVx, kept, reading, into);
+      keep(seenVy, kept, reading, into);
     }
     for (int part = courses.start(course); part < courses.end(course); part++) {
       int place = courses.place(part);
-      if (place != REST) {
+      if (place != Courses.Rest()) {
         float moved = courses.span(part) * speed, faster = courses.rest(part) * speed;
-        add(sent.cos, place * WORLDS, moved, vehicles.seenX, into);
-        add(sent.sin, place * WORLDS, moved, vehicles.seenY, into);
+        add(sent.cos, place * WORLDS, moved, seenX, into);
+        add(sent.sin, place * WORLDS, moved, seenY, into);
         if (withVelocity) {
-          add(sent.cos, place * WORLDS, faster, vehicles.seenVx, into);
-          add(sent.sin, place * WORLDS, faster, vehicles.seenVy, into);
+          add(sent.cos, place * WORLDS, faster, seenVx, into);
+          add(sent.sin, place * WORLDS, faster, seenVy, into);
         }
       }
     }

@@ -8,9 +8,6 @@ package skein.lanes;
 abstract class PredictedVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** In the place of a command: none yet. */
-  static final int REST = -1;
-
   /** Back to the start of an episode. */
   void start(int worlds) {}
 
@@ -19,12 +16,13 @@ abstract class PredictedVehicles {
    * next. Only for models that know more of a vehicle than a reading tells.
    */
   void correct(
-      TimetableVehicles vehicles, Directions sent, int reading, Courses courses, int course) {}
+      Directions sent, int reading, Courses courses, int course) {}
 
   /**
    * Carries a reading forward.
    *
-   * @param vehicles whose readings they are; what is predicted is put beside them
+   * @param seenX positions and velocities that were read, north and east, by place; what is predicted
+   *     is put beside them
    * @param sent the commands, by place
    * @param reading the index of the reading's first world
    * @param into the same of what is predicted
@@ -32,7 +30,10 @@ abstract class PredictedVehicles {
    * @param withVelocity whether velocities are predicted too
    */
   abstract void predict(
-      TimetableVehicles vehicles,
+      float[] seenX,
+      float[] seenY,
+      float[] seenVx,
+      float[] seenVy,
       Directions sent,
       int reading,
       int into,

@@ -62,7 +62,10 @@ final class TimetableKernel {
                 agents, pictures, first * agents.length, operations[field + 3] != 0, times[number]);
         case PREDICT ->
             agent.vehicles.predicted.predict(
-                agent.vehicles,
+                agent.vehicles.seenX,
+                agent.vehicles.seenY,
+                agent.vehicles.seenVx,
+                agent.vehicles.seenVy,
                 agent.headings,
                 first * WORLDS,
                 operations[field + 3] * WORLDS,
@@ -70,8 +73,7 @@ final class TimetableKernel {
                 operations[field + 4],
                 withVelocity);
         case CORRECT ->
-            agent.vehicles.predicted.correct(
-                agent.vehicles, agent.headings, first * WORLDS, courses, operations[field + 3]);
+            agent.vehicles.predicted.correct(agent.headings, first * WORLDS, courses, operations[field + 3]);
         default ->
             agent.decide(
                 agents,

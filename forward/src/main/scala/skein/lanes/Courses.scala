@@ -1,7 +1,7 @@
 package skein.lanes
 
 /** The ways by which a [[Timetable]]'s readings are carried forward: parts flown under one command each. What the numbers
-  * mean, the kind of [[PredictedVehicles]] says.
+  * mean, the kind of predicted vehicles says.
   *
   * @param starts
   *   of each course, its first part; and behind the last course the number of parts
@@ -10,7 +10,7 @@ package skein.lanes
   * @param seconds
   *   and another
   * @param places
-  *   of each part, the place of the command, or [[PredictedVehicles.REST]]
+  *   of each part, the place of the command, or [[Courses.Rest]]
   * @param spans
   *   of each part, a number
   * @param rests
@@ -33,6 +33,10 @@ private[skein] final class Courses(
   def span(part: Int): Float     = spans(part)
   def rest(part: Int): Float     = rests(part)
   private[lanes] def bytes: Long = 4L * (starts.length * 3 + places.length * 3)
+
+private[skein] object Courses:
+  /** In the place of a command: none yet. */
+  val Rest: Int = -1
 
 /** One course before its commands have places. */
 private[lanes] final case class Course(parts: Vector[Course.Part], first: Double = 0, second: Double = 0)
@@ -58,7 +62,7 @@ private[lanes] object Course:
       */
     def add(course: Course, placeOf: Int => Int): Int =
       for part <- course.parts do
-        places += (if part.decision == 0 then PredictedVehicles.REST else placeOf(part.decision))
+        places += (if part.decision == 0 then Courses.Rest else placeOf(part.decision))
         spans += part.span.toFloat
         rests += part.rest.toFloat
       parts += course.parts.size

@@ -99,7 +99,7 @@ private[skein] object TimetableModel:
         case _ => Right(vehicles)
 
   /** Below, powers of e leave what floats hold. */
-  val LeastLagS = 0.01
+  val LeastLagS: Double = TimetablePredictor.LeastLagS
 
   /** AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0

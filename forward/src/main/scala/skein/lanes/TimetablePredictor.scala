@@ -34,16 +34,19 @@ private[lanes] object CoursePlotter:
   final case class Leg(decision: Int, span: Span)
 
 private[skein] object TimetablePredictor:
+  /** Below, powers of e leave what floats hold. */
+  val LeastLagS = 0.01
+
   /** @return
     *   or why this model does not predict by lanes
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
-    case ReducedVehicleModel(reduced) if reduced.lagS.min(reduced.turnLagS) >= TimetableModel.LeastLagS =>
+    case ReducedVehicleModel(reduced) if reduced.lagS.min(reduced.turnLagS) >= LeastLagS =>
       Right(
         if reduced.dragPerM == 0 && reduced.turnLagS == reduced.lagS then LagPredictor(reduced)
         else DragPredictor(reduced)
       )
-    case _ => Left(s"the lanes predict by models with lags of ${TimetableModel.LeastLagS} s at least")
+    case _ => Left(s"the lanes predict by models with lags of ${LeastLagS} s at least")
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
   * command, how long it carries the vehicle, and how much of its velocity is reached.

@@ -1,0 +1,16 @@
+package skein.forecast
+
+import skein.units.Instant
+import skein.vehicle.Setpoint
+
+/** One command sent to a vehicle.
+  *
+  * @param answeredAt
+  *   when it was known to have arrived, on the controller's clock
+  */
+final case class Commanded(
+    sequence: Long,
+    setpoint: Setpoint,
+    sentAt: Instant,
+    answeredAt: Option[Instant] = None
+)
