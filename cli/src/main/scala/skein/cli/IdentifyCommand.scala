@@ -138,7 +138,7 @@ object IdentifyCommand
       val found = fit.identification
       found.structure.label +: names.map(name => found.parameters.find(_.name == name).fold("")(interval)) ++:
         Vector(f"${found.velocityRmsMps}%.4f", f"${found.positionRmsM}%.4f")
-    val seconds = flights.map(flown => flown.sights.last.atS - flown.sights.head.atS).sum
+    val seconds = flights.map(flown => flown.samples.last.atS - flown.samples.head.atS).sum
     val first   = fits.head.identification
     Vector(
       Section(

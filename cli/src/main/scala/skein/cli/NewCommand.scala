@@ -8,7 +8,9 @@ import scala.util.Using
 
 /** Options of `./skein new`. */
 final case class NewOptions(
-    @arg(doc = "of the project, and of the folder that is made: letters, digits and dashes, for example ridge-watch")
+    @arg(doc = "folder that is made; without it, one of the project's name, here")
+    out: Option[String],
+    @arg(doc = "of the project: small letters, digits and dashes, for example ridge-watch")
     name: Leftover[String]
 )
 
@@ -27,8 +29,9 @@ object NewCommand
           (),
           s"expected a name of small letters, digits and dashes that begins with a letter, came '$name'"
         )
-        folder = Path.of(name)
-        _ <- Either.cond(!Files.exists(folder), (), s"expected a name that is free, came '$name', which is there already")
+        folder = Path.of(options.out.getOrElse(name))
+        _ <-
+          Either.cond(!Files.exists(folder), (), s"expected a folder that is not there yet, came '$folder'")
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")
@@ -48,13 +51,13 @@ object NewCommand
     val source = s"src/main/scala/${filled("@PACKAGE@")}/$words.scala"
     val suite  = s"src/test/scala/${filled("@PACKAGE@")}/${words}Suite.scala"
     val files  = Seq(
-      "build.sbt"        -> "build.sbt",
-      "build.properties" -> "project/build.properties",
-      "find-jdk"         -> "project/find-jdk",
-      "sbtw"             -> "sbtw",
-      "skein"            -> "skein",
-      "gitignore"        -> ".gitignore",
-      "README.md.txt"    -> "README.md",
+      "build.sbt"          -> "build.sbt",
+      "build.properties"   -> "project/build.properties",
+      "find-jdk"           -> "project/find-jdk",
+      "sbtw"               -> "sbtw",
+      "skein"              -> "skein",
+      "gitignore"          -> ".gitignore",
+      "README.md.txt"      -> "README.md",
       "Scenario.scala.txt" -> source,
       "Suite.scala.txt"    -> suite
     )
@@ -73,4 +76,6 @@ object NewCommand
 
   /** Beside the classes: what this version was built by, and what a project begins with. */
   private def resource(name: String): String =
-    Using.resource(getClass.getResourceAsStream(s"/skein/project/$name"))(stream => String(stream.readAllBytes, "UTF-8"))
+    Using.resource(getClass.getResourceAsStream(s"/skein/project/$name"))(stream =>
+      String(stream.readAllBytes, "UTF-8")
+    )

@@ -16,7 +16,9 @@ final case class TortureOptions(
     duration: String = "60s",
     @arg(doc = "flights at once; without it, as many as there are cores")
     threads: Option[Int],
-    @arg(doc = "whose task is flown (default: duels, several side by side, where there are any, else the first)")
+    @arg(doc =
+      "whose task is flown (default: duels, several side by side, where there are any, else the first)"
+    )
     scenario: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
@@ -44,7 +46,7 @@ final class TortureCommand(using scenarios: Scenarios)
       shown = Shown(options.json.value)
       task <- scenarioOf(options.scenario)
       failed = fly(options, duration, threads, task, shown)
-      _ = if options.json.value then shown.tables(Seq(broken(failed)), "")
+      _      = if options.json.value then shown.tables(Seq(broken(failed)), "")
       _ <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
     yield ()
 
@@ -87,17 +89,20 @@ final class TortureCommand(using scenarios: Scenarios)
       )
 
     Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed"):
-      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task): verdict =>
-        flown += 1
-        if !verdict.isClean then
-          failed :+= verdict
-          shown.say(verdict.ordeal.toString)
-          verdict.violations.foreach(line => shown.say(s"  $line"))
-          shown.say(
-            s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold("")(name => s" --scenario $name")}"
-          )
-        if System.nanoTime() - shownAt > 10_000_000_000L then
-          shownAt = System.nanoTime()
-          show()
+      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task):
+        verdict =>
+          flown += 1
+          if !verdict.isClean then
+            failed :+= verdict
+            shown.say(verdict.ordeal.toString)
+            verdict.violations.foreach(line => shown.say(s"  $line"))
+            shown.say(
+              s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
+                  ""
+                )(name => s" --scenario $name")}"
+            )
+          if System.nanoTime() - shownAt > 10_000_000_000L then
+            shownAt = System.nanoTime()
+            show()
     show()
     failed

@@ -16,14 +16,14 @@ object ResponseFigure:
   private val east  = Colour(0xd55e00)
 
   def apply(model: ReducedModel, flights: Vector[Flown]): Drawing =
-    val panels = flights.filter(_.sights.sizeIs > 1).map(panel(model, _))
+    val panels = flights.filter(_.samples.sizeIs > 1).map(panel(model, _))
     Drawing.stacked(Drawing.grid(panels, columns = 2), legend)
 
   private def panel(model: ReducedModel, flown: Flown): Drawing =
     val modelled = flight(model, flown)
-    val sights   = flown.sights
-    val time     = Axis.exactly("time, s", sights.head.atS, sights.last.atS.max(sights.head.atS + 1), 6)
-    val speeds   = sights.flatMap(sight => Vector(sight.vx, sight.vy))
+    val samples  = flown.samples
+    val time     = Axis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
+    val speeds   = samples.flatMap(sample => Vector(sample.vx, sample.vy))
     val top      =
       Panel(
         time.copy(label = ""),
@@ -34,20 +34,20 @@ object ResponseFigure:
         height
       )
     val remains =
-      sights.zip(modelled).flatMap((sight, model) => Vector(sight.vx - model._1, sight.vy - model._2))
+      samples.zip(modelled).flatMap((sample, model) => Vector(sample.vx - model._1, sample.vy - model._2))
     val most  = remains.map(math.abs).max.max(0.05)
     val below =
       Panel(time, Axis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
     val shapes =
       for
         (colour, measured, model) <- Vector(
-          (north, sights.map(_.vx), modelled.map(_._1)),
-          (east, sights.map(_.vy), modelled.map(_._2))
+          (north, samples.map(_.vx), modelled.map(_._1)),
+          (east, samples.map(_.vy), modelled.map(_._2))
         )
-        shape <- dots(top, sights.map(_.atS).zip(measured), colour) ++ Vector(
-          top.curve(sights.map(_.atS).zip(model), Stroke(colour, 1.1)),
+        shape <- dots(top, samples.map(_.atS).zip(measured), colour) ++ Vector(
+          top.curve(samples.map(_.atS).zip(model), Stroke(colour, 1.1)),
           below.curve(
-            sights.map(_.atS).zip(measured.zip(model).map(_ - _)),
+            samples.map(_.atS).zip(measured.zip(model).map(_ - _)),
             Stroke(colour.faded(0.8), 0.9)
           )
         )
@@ -62,9 +62,9 @@ object ResponseFigure:
   private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Shape] =
     values.map((at, value) => Shape.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
 
-  /** The modelled velocity at every sight. */
+  /** The modelled velocity at every sample. */
   private def flight(model: ReducedModel, flown: Flown): Vector[(Double, Double)] =
-    val start    = flown.sights.head
+    val start    = flown.samples.head
     val modelled = Vector.newBuilder[(Double, Double)]
     modelled += ((start.vx, start.vy))
     val flight = ReducedFlight(model)

@@ -59,7 +59,7 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
       case "latency" => Seq("--period", "5ms")
       case _         => Seq.empty
     words ++ more ++
-      Option.when(Set("fly", "search", "budget", "latency")(words.head))(Seq(
+      Option.when(Set("fly", "search", "budget", "latency", "new")(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
@@ -120,6 +120,7 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         Option(found.group(1)).getOrElse(found.group(2))
       ).map:
         case "HOST:PORT"                => server.address.toString
+        case "NAME"                     => "patrol"
         case "FILE" | "FILE…"           => recording.toString
         case "settings.json"            => settings.toString
         case "searches/…/policy.conf"   => policy.toString

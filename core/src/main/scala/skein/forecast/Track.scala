@@ -9,7 +9,7 @@ import skein.vehicle.{Setpoint, VehicleModel}
   *
   * @param state
   *   the model's, at the newest reading
-  * @param sights
+  * @param readings
   *   the newest readings, the newest last
   * @param resting
   *   in effect before the first of all commands
@@ -21,12 +21,12 @@ import skein.vehicle.{Setpoint, VehicleModel}
 final case class Track[S] private (
     model: VehicleModel[S],
     state: S,
-    sights: Vector[Stamped[Kinematics]],
+    readings: Vector[Stamped[Kinematics]],
     resting: Setpoint,
     before: Option[Commanded],
     commands: Vector[Commanded]
 ):
-  def newest: Stamped[Kinematics] = sights.last
+  def newest: Stamped[Kinematics] = readings.last
 
   /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading that is not
     * newer than the newest changes nothing.
@@ -38,7 +38,7 @@ final case class Track[S] private (
       val (past, needed) = commands.splitAt(inEffect(reading.validAt, delays, reading.receivedAt))
       copy(
         state = model.corrected(flown, reading.value, reading.validAt.since(newest.validAt)),
-        sights = (sights :+ reading).takeRight(Track.SightLimit),
+        readings = (readings :+ reading).takeRight(Track.ReadingLimit),
         before = past.lastOption.orElse(before),
         commands = needed
       )
@@ -73,8 +73,8 @@ final case class Track[S] private (
     * absent where there are none, or none close enough together.
     */
   def positionNedAt(validAt: Instant): Option[Vector3] =
-    sights
-      .zip(sights.drop(1))
+    readings
+      .zip(readings.drop(1))
       .find((before, after) =>
         before.validAt <= validAt && validAt <= after.validAt &&
           after.validAt.since(before.validAt) <= Track.MaxGap
@@ -130,7 +130,7 @@ final case class Track[S] private (
 
 object Track:
   /** Readings remembered, to hold predictions against. */
-  val SightLimit = 8
+  val ReadingLimit = 8
 
   /** Commands remembered: at most these can be on their way. */
   val CommandLimit = 64

@@ -34,26 +34,26 @@ final case class Avoidance(
   private val apartM = minimumM + marginM
   require(apartM > 0 && horizonS > 0, s"discs of $apartM m and a horizon of $horizonS s keep nobody apart")
 
-  def course(seen: TeamSight): Course =
+  def course(seen: TeamObservation): Course =
     val wanted = preferred(seen)
     val bounds = boundsOf(seen)
     val chosen = nearestAllowed(wanted, bounds, mostMps, relaxedMps = 0)
       .getOrElse(leastViolation(wanted, bounds, mostMps))
     Course.of(chosen.north, chosen.east, mostMps, seen.headingRad)
 
-  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
     val distance      = StrictMath.hypot(north, east)
     val share         = if distance == 0 then 1.0 else (cruiseMps * aheadS / distance).min(1)
     (seen.northM(seen.self) + share * north, seen.eastM(seen.self) + share * east)
 
-  private def preferred(seen: TeamSight): Velocity =
+  private def preferred(seen: TeamObservation): Velocity =
     val (north, east) = (goalNorthM - seen.northM(seen.self), goalEastM - seen.eastM(seen.self))
     val distance      = StrictMath.hypot(north, east)
     if distance == 0 then Velocity(0, 0)
     else Velocity(north, east) * (cruiseMps.min(arrivePerS * distance) / distance)
 
-  private def boundsOf(seen: TeamSight): Array[Bound] =
+  private def boundsOf(seen: TeamObservation): Array[Bound] =
     val self  = seen.self
     val own   = Velocity(seen.northMps(self), seen.eastMps(self))
     val reach = apartM + 2 * mostMps * horizonS

@@ -9,10 +9,10 @@ package skein.policy
 final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends GoalPolicy:
   def mostMps: Double = speedMps
 
-  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
     circuit.point(circuit.nearest(seen.northM(seen.self), seen.eastM(seen.self)) + speedMps * aheadS)
 
-  def course(seen: TeamSight): Course =
+  def course(seen: TeamObservation): Course =
     val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
     val (toNorth, toEast) = circuit.point(circuit.nearest(north, east) + aheadM)
     val direction         = StrictMath.hypot(toNorth - north, toEast - east)
@@ -41,7 +41,7 @@ final case class KeepSlot(
     pursuit: Pursuit = Pursuit()
 ) extends GoalPolicy:
 
-  def course(seen: TeamSight): Course =
+  def course(seen: TeamObservation): Course =
     val self                      = seen.self
     val place                     = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val heading                   = circuit.headingRad(place)
@@ -73,7 +73,7 @@ final case class KeepSlot(
     )
 
   /** The slot when the leader has flown on along the circuit at its present speed. */
-  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
     val here      = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val direction = circuit.headingRad(here)
     val alongMps  =

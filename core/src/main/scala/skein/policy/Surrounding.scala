@@ -15,7 +15,7 @@ package skein.policy
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
     extends GoalPolicy:
 
-  def course(seen: TeamSight): Course =
+  def course(seen: TeamObservation): Course =
     val slot  = slotRad(seen)
     val north = seen.northM(evader) + ringM * StrictMath.cos(slot)
     val east  = seen.eastM(evader) + ringM * StrictMath.sin(slot)
@@ -27,7 +27,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       seen.headingRad
     )
 
-  def wanted(seen: TeamSight, aheadS: Double): (Double, Double) =
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
     val slot = slotRad(seen)
     (
       seen.northM(evader) + seen.northMps(evader) * aheadS + ringM * StrictMath.cos(slot),
@@ -35,7 +35,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
     )
 
   /** The own slot's bearing from the evader, from north towards east. */
-  private[policy] def slotRad(seen: TeamSight): Double =
+  private[policy] def slotRad(seen: TeamObservation): Double =
     val n      = seen.count - 1
     val own    = bearing(seen, seen.self)
     var before = 0
@@ -46,13 +46,13 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       if its < own || its == own && vehicle < seen.self then before += 1
     sum / n + (before - (n - 1) / 2.0) * 2 * math.Pi / n
 
-  private def bearing(seen: TeamSight, vehicle: Int): Double =
+  private def bearing(seen: TeamObservation, vehicle: Int): Double =
     StrictMath.atan2(seen.eastM(vehicle) - seen.eastM(evader), seen.northM(vehicle) - seen.northM(evader))
 
 /** Flees straight away from whoever of the others is nearest, the first of equals. */
 final case class Flee(speedMps: Double) extends TeamPolicy:
 
-  def course(seen: TeamSight): Course =
+  def course(seen: TeamObservation): Course =
     val self      = seen.self
     var least     = Double.PositiveInfinity
     var awayNorth = 0.0

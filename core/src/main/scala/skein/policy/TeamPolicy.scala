@@ -8,21 +8,21 @@ import skein.units.{MetresPerSecond, Radians}
 trait TeamPolicy extends PlanarPolicy:
 
   /** The horizontal velocity to command now. */
-  def course(seen: TeamSight): Course
+  def course(seen: TeamObservation): Course
 
   type Memory = Unit
 
   final def start: Unit = ()
 
   final def planar(seen: Observation, memory: Unit): (Planar, Unit) =
-    val chosen = course(TeamSight.of(seen))
+    val chosen = course(TeamObservation.of(seen))
     (Planar(Radians(chosen.headingRad), Some(MetresPerSecond(chosen.speedMps))), ())
 
 /** A policy of a vehicle that wants to be somewhere: what a planner can plan for in its place. */
 trait GoalPolicy extends TeamPolicy:
 
   /** Where it wants to be a time ahead, north and east, m, if it were alone. */
-  def wanted(seen: TeamSight, aheadS: Double): (Double, Double)
+  def wanted(seen: TeamObservation, aheadS: Double): (Double, Double)
 
   /** The fastest that is commanded, m/s. */
   def mostMps: Double
@@ -44,7 +44,7 @@ trait GoalPolicy extends TeamPolicy:
   * @param elapsedS
   *   time since the own last decision; 0 at the first
   */
-final case class TeamSight(
+final case class TeamObservation(
     self: Int,
     northM: IArray[Double],
     eastM: IArray[Double],
@@ -61,10 +61,10 @@ final case class TeamSight(
   /** How many vehicles there are. */
   def count: Int = northM.length
 
-object TeamSight:
-  def of(seen: Observation): TeamSight =
+object TeamObservation:
+  def of(seen: Observation): TeamObservation =
     val all = seen.vehicles.map(_.kinematics)
-    TeamSight(
+    TeamObservation(
       seen.self,
       IArray.from(all.map(_.positionNed.x)),
       IArray.from(all.map(_.positionNed.y)),

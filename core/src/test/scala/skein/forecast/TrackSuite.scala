@@ -79,8 +79,8 @@ class TrackSuite extends munit.FunSuite:
   test("what is remembered is bounded"):
     val busy = (2 to 1000).foldLeft(commanded)((track, n) => track.sent(command(n, 1, n)))
     assertEquals(busy.commands.size, Track.CommandLimit)
-    val sights = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
-    assertEquals(sights.sights.size, Track.SightLimit)
+    val readings = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
+    assertEquals(readings.readings.size, Track.ReadingLimit)
 
   test(
     "a position between two readings is that of the cubic through them, within 5 mm; over a gap there is none"

@@ -83,9 +83,9 @@ class PolicyFormulaLaws extends munit.FunSuite:
           // Now and then two at one place, or all of them.
           def place() = if random.nextDouble() < 0.2 then 0.0 else 60 * random.nextDouble() - 30
           def numbers = IArray.fill(count)(place())
-          val seen    = TeamSight(self, numbers, numbers, numbers, numbers, place(), random.nextDouble())
-          val course  = policy.course(seen)
-          val input   = Seq(
+          val seen   = TeamObservation(self, numbers, numbers, numbers, numbers, place(), random.nextDouble())
+          val course = policy.course(seen)
+          val input  = Seq(
             seen.northM,
             seen.eastM,
             seen.northMps,

@@ -16,7 +16,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   /** The smallest distance of any two so far, m. */
   var leastM: Double = Double.PositiveInfinity
 
-  def seenBy(vehicle: Int): TeamSight = TeamSight(
+  def seenBy(vehicle: Int): TeamObservation = TeamObservation(
     vehicle,
     IArray.from(northM),
     IArray.from(eastM),

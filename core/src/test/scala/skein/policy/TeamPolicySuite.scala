@@ -33,7 +33,7 @@ class TeamPolicySuite extends munit.FunSuite:
         val flat   = IArray.fill(8)(0.0)
         for self <- 0 until 8 if self != 3
         yield policy.slotRad(
-          TeamSight(
+          TeamObservation(
             self,
             IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.cos(rad))),
             IArray.from(all.map(rad => if rad.isNaN then 0.0 else 9 * math.sin(rad))),

@@ -66,7 +66,7 @@ class VehicleModelSuite extends munit.FunSuite:
     val after = ConstantVelocity.advanced(seen(start, Vector3(1, 2, -3)), Setpoint.Armed, Span.ofSeconds(0.5))
     assertClose(after.positionNed, start + Vector3(0.5, 1, -1.5), 1e-12)
 
-  test("constant turn goes on along the circle that two sights lie on"):
+  test("constant turn goes on along the circle that two readings lie on"):
     def onCircle(t: Double) =
       seen(
         Vector3(10 * math.cos(0.8 * t), 10 * math.sin(0.8 * t), -20),

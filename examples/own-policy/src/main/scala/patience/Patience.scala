@@ -30,9 +30,13 @@ final case class Chase(metres: Double = 8, trustS: Double = 0.2) extends Scenari
   def agents: Vector[Agent] =
     val evader = PaperDuel().agents.head
     val behind = Vector3(0, 0, evader.startPositionNed.z)
-    Vector(evader, Agent("Patient", Role.Pursuer, MetresPerSecond(10), behind, Radians(0), Patient(metres, trustS)))
+    Vector(
+      evader,
+      Agent("Patient", Role.Pursuer, MetresPerSecond(10), behind, Radians(0), Patient(metres, trustS))
+    )
 
-  private val apart = Series("distance", "m", Some(Bound("asked for", metres)))(tracks => tracks.separationM(0, 1, _))
+  private val apart =
+    Series("distance", "m", Some(Bound("asked for", metres)))(tracks => tracks.separationM(0, 1, _))
 
   override def series: Vector[Series]    = Vector(apart)
   override def measures: Vector[Measure] =

@@ -25,7 +25,7 @@ class PatienceSuite extends munit.FunSuite:
     )
 
   test("a policy is a pure function: a fresh reading is followed at its speed, an old one more slowly"):
-    val patient                          = Patient(metres = 8, trustS = 0.2)
+    val patient                           = Patient(metres = 8, trustS = 0.2)
     def northMps(age: Span, held: Double) = patient.choose(seen(age), held)._1 match
       case Action.Velocity(velocity, _) => velocity.x
       case other                        => fail(s"came $other")

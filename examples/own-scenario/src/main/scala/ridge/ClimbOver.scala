@@ -9,7 +9,8 @@ import skein.units.*
   * @param laneM
   *   east, that it keeps to
   */
-final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Double, other: Int) extends AgentPolicy:
+final case class ClimbOver(land: Land, goalM: Double, laneM: Double, aboveM: Double, other: Int)
+    extends AgentPolicy:
   type Memory = Unit
   def start: Unit = ()
 

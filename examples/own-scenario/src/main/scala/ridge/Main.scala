@@ -18,13 +18,23 @@ object RidgeKind extends ScenarioKind(OverTheRidge()), ScenarioReport:
       val land   = flown.scenario match
         case ridge: OverTheRidge => Land(60, ridge.crestM, ridge.widthM)
         case _                   => Land(0, 0, 1)
-      val panel  = Panel(Axis.exactly("north, m", -20, 130, 8), Axis.exactly("altitude, m", 0, 50), 52, 34, 560, 187)
-      val ground = panel.curve((-20 to 130).map(north => (north.toDouble, land.heightM(north))), Stroke(Colour(0x8c6d46), 2))
-      val ways   = tracks.vehicles.toVector.map(scout =>
+      val panel =
+        Panel(Axis.exactly("north, m", -20, 130, 8), Axis.exactly("altitude, m", 0, 50), 52, 34, 560, 187)
+      val ground = panel.curve(
+        (-20 to 130).map(north => (north.toDouble, land.heightM(north))),
+        Stroke(Colour(0x8c6d46), 2)
+      )
+      val ways = tracks.vehicles.toVector.map(scout =>
         panel.curve(
           tracks.instants.map(now => (tracks.northM(scout)(now), tracks.altitudeM(scout, now))),
           Stroke(Colour(if scout == 0 then 0x0072b2 else 0xd55e00), 1.4)
         )
       )
-      Drawing(640, 270, (panel.title(s"${flight.summary.name}, ${flight.summary.flight.link}") +: panel.axes) ++ (ground +: ways))
+      Drawing(
+        640,
+        270,
+        (panel.title(
+          s"${flight.summary.name}, ${flight.summary.flight.link}"
+        ) +: panel.axes) ++ (ground +: ways)
+      )
     Figure("ridge", "From the side", "The ground in brown, a line for each scout.", Drawing.stacked(panels*))

@@ -22,26 +22,29 @@ class CommandsSimulation extends munit.FunSuite:
     val status = Console.withOut(stream)(Console.withErr(stream)(Main.run(words)))
     (status, said.toString)
 
-  folder.test("it flies, is reported and replayed from its recordings alone, and a model is fitted to them"): out =>
-    val flown = run(
-      "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --out".split(' ') :+
-        out.toString*
-    )
-    assertEquals(flown._1, 0, flown._2)
-    assert(clue(flown._2).contains("Results: over-the-ridge"))
-    assert(flown._2.contains("off the truth by: "))
-    val page = Files.readString(out.resolve("report.html"))
-    assert(page.contains("From the side") && page.contains("Over-the-ridge: altitudes"))
-    val recordings = Seq("stream-vpn", "predictive-vpn").map(name => out.resolve(s"$name.duckdb").toString)
-    val again      = Files.createDirectory(out.resolve("again"))
-    val reported   = run("report" +: recordings :+ "--out" :+ again.toString*)
-    assertEquals(reported._1, 0, reported._2)
-    assert(clue(reported._2).contains("Results: over-the-ridge"))
-    val replayed = run("replay" +: recordings.take(1)*)
-    assertEquals(replayed._1, 0, replayed._2)
-    assert(clue(replayed._2).contains("all the same"))
-    val fitted = run("identify" +: recordings :+ "--out" :+ again.toString*)
-    assertEquals(fitted._1, 0, fitted._2)
+  folder.test("it flies, is reported and replayed from its recordings alone, and a model is fitted to them"):
+    out =>
+      val flown = run(
+        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --out".split(
+          ' '
+        ) :+
+          out.toString*
+      )
+      assertEquals(flown._1, 0, flown._2)
+      assert(clue(flown._2).contains("Results: over-the-ridge"))
+      assert(flown._2.contains("off the truth by: "))
+      val page = Files.readString(out.resolve("report.html"))
+      assert(page.contains("From the side") && page.contains("Over-the-ridge: altitudes"))
+      val recordings = Seq("stream-vpn", "predictive-vpn").map(name => out.resolve(s"$name.duckdb").toString)
+      val again      = Files.createDirectory(out.resolve("again"))
+      val reported   = run("report" +: recordings :+ "--out" :+ again.toString*)
+      assertEquals(reported._1, 0, reported._2)
+      assert(clue(reported._2).contains("Results: over-the-ridge"))
+      val replayed = run("replay" +: recordings.take(1)*)
+      assertEquals(replayed._1, 0, replayed._2)
+      assert(clue(replayed._2).contains("all the same"))
+      val fitted = run("identify" +: recordings :+ "--out" :+ again.toString*)
+      assertEquals(fitted._1, 0, fitted._2)
 
   test("many seeds are flown and added up; it stands what goes wrong"):
     val spread = run("spread --seeds 2 --loop paused --loop stream --link vpn".split(' ')*)
@@ -53,16 +56,32 @@ class CommandsSimulation extends munit.FunSuite:
   test("what cannot be had is refused in a line that says why"):
     val (refused, why) = run("budget")
     assertEquals(refused, 1)
-    assert(clue(why).startsWith("skein budget: expected a program with the scenario duel, came one with over-the-ridge"))
+    assert(clue(
+      why
+    ).startsWith("skein budget: expected a program with the scenario duel, came one with over-the-ridge"))
     val searched = run("search --objective lowest-view --vary cruise-mps=3..6 --candidates 4".split(' ')*)
     assertEquals(searched._1, 1)
     assert(clue(searched._2).contains("is told of recorded flights alone"))
     val (status, said) = run("fly", "--set", "crest=3", "--set", "side-m=wide")
     assertEquals(status, 1)
-    assert(clue(said).contains("--set: the scenario over-the-ridge has no setting 'crest'; expected one of crest-m"))
-    assert(clue(run("fly", "--set", "side-m=wide")._2).contains("skein.fly.over-the-ridge.side-m: expected a number, came 'wide'"))
-    assert(clue(run("fly", "--scenario", "duel")._2).contains("scenario: expected over-the-ridge, came 'duel'"))
-    assert(clue(run("fly", "--vehicles", "3")._2).contains("--vehicles: the scenario over-the-ridge has no setting 'vehicles'"))
+    assert(clue(
+      said
+    ).contains("--set: the scenario over-the-ridge has no setting 'crest'; expected one of crest-m"))
+    assert(clue(run(
+      "fly",
+      "--set",
+      "side-m=wide"
+    )._2).contains("skein.fly.over-the-ridge.side-m: expected a number, came 'wide'"))
+    assert(clue(run(
+      "fly",
+      "--scenario",
+      "duel"
+    )._2).contains("scenario: expected over-the-ridge, came 'duel'"))
+    assert(clue(run(
+      "fly",
+      "--vehicles",
+      "3"
+    )._2).contains("--vehicles: the scenario over-the-ridge has no setting 'vehicles'"))
 
   test("its settings are listed"):
     val (status, said) = run("scenarios")

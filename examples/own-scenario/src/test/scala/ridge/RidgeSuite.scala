@@ -10,7 +10,9 @@ class RidgeSuite extends munit.FunSuite:
     VirtualFlights.result(scenario, loop, LatencyProfile.vpn, seed = 1).fold(fail(_), identity)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label}: both come over the ridge over a slow link, never out of view, and no limit is broken"):
+    test(
+      s"${loop.label}: both come over the ridge over a slow link, never out of view, and no limit is broken"
+    ):
       val result = fly(OverTheRidge(), loop)
       assertEquals(result.violations.map(_.limit.text), Vector.empty)
       assertEquals(result.value("out of view"), Some(0.0))
@@ -19,7 +21,10 @@ class RidgeSuite extends munit.FunSuite:
   test("the flight ends when both are over, long before its time"):
     assert(fly(OverTheRidge()).tracks.lastS < 55)
 
-  test("where the ridge is steeper than a scout climbs, what happened is told: the limit, the scout, and when"):
+  test(
+    "where the ridge is steeper than a scout climbs, what happened is told: the limit, the scout, and when"
+  ):
     val broken = fly(OverTheRidge(crestM = 200, widthM = 10)).violations
     assert(clue(broken.map(_.limit.text)).contains("height above the ground of at least 3 m"))
-    for one <- broken do assert(one.vehicles.size == 1 && one.fromS <= one.worstAtS && one.worstAtS <= one.toS)
+    for one <- broken do
+      assert(one.vehicles.size == 1 && one.fromS <= one.worstAtS && one.worstAtS <= one.toS)

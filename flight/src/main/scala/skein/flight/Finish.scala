@@ -14,7 +14,8 @@ import skein.units.*
   * @param isPaused
   *   whether time stands still while is decided: then nothing has an age
   */
-private[flight] final class Finish(scenario: Scenario, isPaused: Boolean, recorder: Recorder) extends Recorder:
+private[flight] final class Finish(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
+    extends Recorder:
   private val names = scenario.agents.map(_.name)
   private val heard = AtomicReference(Finish.Heard(Map.empty, None, None))
   private val over  = Promise[Unit]()
@@ -64,6 +65,7 @@ private object Finish:
         seen.map: state =>
           val age =
             if isPaused then Span.Zero
-            else alignment.fold(state.ageByArrival(now))(known => now.since(known.toController(state.validAt)))
+            else
+              alignment.fold(state.ageByArrival(now))(known => now.since(known.toController(state.validAt)))
           Seen(state.value, age, isPredicted = false)
       )

@@ -31,7 +31,7 @@ final class FlightRig private[skein] (
   /** How far it is, in the controller's time. */
   def progress: Progress =
     val now = clock.now()
-    Progress(plan.id, now.since(startedAt), watch.sight(now), vigil.silentFor)
+    Progress(plan.id, now.since(startedAt), watch.lastSeen(now), vigil.silentFor)
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[Landed] =

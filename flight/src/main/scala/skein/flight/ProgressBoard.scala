@@ -10,13 +10,13 @@ import skein.units.Decimals.fixed
   * @param silentFor
   *   how long nothing was heard of the simulator, where it is silent
   */
-final case class Progress(id: String, flown: Span, sight: Option[Sight], silentFor: Option[Span] = None):
+final case class Progress(id: String, flown: Span, seen: Option[LastSeen], silentFor: Option[Span] = None):
   def text: String =
     val silence = silentFor.map(span => s"no answer for ${span.toSeconds.fixed(0)} s")
-    val seen    = sight.map(sight =>
-      s"${sight.distance.value.fixed(1, width = 5)} m apart, ${sight.age.toMillis.fixed(0, width = 3)} ms old"
+    val shown   = seen.map(seen =>
+      s"${seen.distance.value.fixed(1, width = 5)} m apart, ${seen.age.toMillis.fixed(0, width = 3)} ms old"
     )
-    silence.orElse(seen).getOrElse("")
+    silence.orElse(shown).getOrElse("")
 
 /** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
 trait ProgressBoard extends AutoCloseable:

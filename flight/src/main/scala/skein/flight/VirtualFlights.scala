@@ -97,8 +97,8 @@ object VirtualFlights:
   ): Either[String, Result] =
     val settings = FlySettings(List(loop), List(link), scenario.duration, period, seed, scenario)
     for
-      flown  <- fly(settings, FlightPlan(s"${loop.label}-${link.name}", loop, link, seed))
-      _      <- flown.landed.outcome match
+      flown <- fly(settings, FlightPlan(s"${loop.label}-${link.name}", loop, link, seed))
+      _     <- flown.landed.outcome match
         case Outcome.Failed(reason) => Left(reason)
         case _                      => Right(())
       tracks <- Tracks

@@ -29,14 +29,14 @@ final class Watch(recorder: Recorder) extends Recorder:
   def broken: Option[Event] = lastBroken
 
   /** Distance between a vehicle and its opponent at the newest decision, and how old the newest reading is now. */
-  def sight(now: Instant): Option[Sight] =
+  def lastSeen(now: Instant): Option[LastSeen] =
     for
       decision <- newest
       heard    <- heardAt
     yield
       // From when physics was sampled until the reading came.
       val underWay = decision.trueAge.fold(Span.Zero)(_.own - decision.observations.ownAge)
-      Sight(
+      LastSeen(
         Metres(
           decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
         ),
@@ -44,4 +44,4 @@ final class Watch(recorder: Recorder) extends Recorder:
       )
 
 /** What is known of a flight, in two numbers. */
-final case class Sight(distance: Metres, age: Span)
+final case class LastSeen(distance: Metres, age: Span)

@@ -1,10 +1,10 @@
 package skein.loop
 
-import skein.policy.{AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Seen, Sensed, TeamSight}
+import skein.policy.{AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Seen, Sensed, TeamObservation}
 import skein.signal.Stamped
 import skein.units.*
 
-/** What one vehicle's decisions depend on apart from the picture.
+/** What one vehicle's decisions depend on apart from the view.
   *
   * @param held
   *   what the policy remembers; of its own type
@@ -23,25 +23,25 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
 
   val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
 
-  /** Decides from a complete picture.
+  /** Decides from a complete view.
     *
     * @param now
     *   on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
     */
-  def decide(memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
-    val seen = observation(memory, picture, now)
+  def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
+    val seen = observation(memory, view, now)
     // A memory comes from this policy alone: from its start, or from its last decision.
     policy match
       case planar: PlanarPolicy =>
         val (chosen, held)   = planar.planar(seen, memory.held.asInstanceOf[planar.Memory])
-        val (next, decision) = decided(memory, picture, now, chosen.heading.value, chosen.speed)
+        val (next, decision) = decided(memory, view, now, chosen.heading.value, chosen.speed)
         (next.copy(held = held), decision)
       case _ =>
         val (action, held)   = policy.choose(seen, memory.held.asInstanceOf[policy.Memory])
         val (next, decision) =
           decided(
             memory,
-            picture,
+            view,
             now,
             Acting.headingRad(action, memory.headingRad),
             Some(Acting.speed(action))
@@ -53,38 +53,38 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
     case _         => true
 
   /** What the vehicle's policy decides upon. */
-  def observation(memory: Memory, picture: Picture, now: Instant): Observation =
+  def observation(memory: Memory, view: TeamView, now: Instant): Observation =
     val places = scenario.agents.indices.toVector
     Observation(
       self,
-      places.map(seen(picture, now, _)),
-      opponentIn(picture),
+      places.map(seen(view, now, _)),
+      opponentIn(view),
       places.map(place =>
-        Radians(if place == self then memory.headingRad else picture.headingRad(place, scenario))
+        Radians(if place == self then memory.headingRad else view.headingRad(place, scenario))
       ),
       elapsed(memory, now),
       memory.decisions,
       agent.speed,
       Metres(agent.startPositionNed.z),
-      picture.sensed(self).map: (sensor, reading) =>
-        sensor -> Sensed(reading.columns, reading.values.value, age(picture, now, reading.values))
+      view.sensed(self).map: (sensor, reading) =>
+        sensor -> Sensed(reading.columns, reading.values.value, age(view, now, reading.values))
     )
 
-  private def seen(picture: Picture, now: Instant, vehicle: Int): Seen =
-    val reading = picture.readings(vehicle).get.state
-    Seen(picture.kinematics(vehicle), age(picture, now, reading), isPredicted = picture.estimates.isDefined)
+  private def seen(view: TeamView, now: Instant, vehicle: Int): Seen =
+    val reading = view.readings(vehicle).get.state
+    Seen(view.kinematics(vehicle), age(view, now, reading), isPredicted = view.estimates.isDefined)
 
-  private def age(picture: Picture, now: Instant, reading: Stamped[?]): Span =
-    picture.alignment.fold(reading.ageByArrival(now))(known => now.since(known.toController(reading.validAt)))
+  private def age(view: TeamView, now: Instant, reading: Stamped[?]): Span =
+    view.alignment.fold(reading.ageByArrival(now))(known => now.since(known.toController(reading.validAt)))
 
   /** What the vehicle knows of its team. */
-  def sight(memory: Memory, picture: Picture, now: Instant): TeamSight =
-    TeamSight.of(observation(memory, picture, now))
+  def request(memory: Memory, view: TeamView, now: Instant): TeamObservation =
+    TeamObservation.of(observation(memory, view, now))
 
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 
-  private def opponentIn(picture: Picture): Int =
-    scenario.opponentOf(self, picture.kinematics(_).positionNed)
+  private def opponentIn(view: TeamView): Int =
+    scenario.opponentOf(self, view.kinematics(_).positionNed)
 
   /** The decision for a course that was chosen, however that was done.
     *
@@ -93,7 +93,7 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
     */
   def decided(
       memory: Memory,
-      picture: Picture,
+      view: TeamView,
       now: Instant,
       heading: Double,
       speed: Option[MetresPerSecond]
@@ -102,8 +102,8 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
       vehicle = self,
       sequence = memory.decisions,
       decidedAt = now,
-      picture = picture,
-      opponent = opponentIn(picture),
+      view = view,
+      opponent = opponentIn(view),
       headingBefore = Radians(memory.headingRad),
       elapsed = elapsed(memory, now),
       heading = Radians(heading),

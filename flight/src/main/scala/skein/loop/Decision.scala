@@ -7,7 +7,7 @@ import skein.units.*
   *
   * @param sequence
   *   counts the decisions for this vehicle
-  * @param picture
+  * @param view
   *   what the controller knew
   * @param opponent
   *   whom it was decided against
@@ -26,7 +26,7 @@ final case class Decision(
     vehicle: Int,
     sequence: Long,
     decidedAt: Instant,
-    picture: Picture,
+    view: TeamView,
     opponent: Int,
     headingBefore: Radians,
     elapsed: Span,

@@ -21,7 +21,7 @@ object FuturesLoop:
           team.log.note(EventKind.Skipped, None, s"${ticks - 1} steps missed: too many futures run")
         team.vehicles
       .mapAsyncUnordered(team.settings.window * team.vehicles.size)(vehicle =>
-        team.readAll().map(_.map(Percept.Seen(_, Set(vehicle))))
+        team.readAll().map(_.map(LoopEvent.Seen(_, Set(vehicle))))
       )
       .collect { case Right(seen) => seen }
     SnapshotGraph(team, steps.via(stop.flow), stop)

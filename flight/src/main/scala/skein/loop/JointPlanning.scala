@@ -22,16 +22,16 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
   /** What is planned for, by vehicle.
     *
-    * @param pictures
+    * @param views
     *   with the estimates of when the commands will act
     */
-  def pose(memories: Vector[Memory], pictures: Vector[Picture], now: Instant): Vector[Part] =
-    plannings.indices.toVector.map(index => plannings(index).pose(memories(index), pictures(index), now))
+  def pose(memories: Vector[Memory], views: Vector[TeamView], now: Instant): Vector[Part] =
+    plannings.indices.toVector.map(index => plannings(index).pose(memories(index), views(index), now))
 
   /** The decisions for what was found, by vehicle. */
   def decide(
       memories: Vector[Memory],
-      pictures: Vector[Picture],
+      views: Vector[TeamView],
       now: Instant,
       parts: Vector[Part],
       answer: Plan.Answer
@@ -40,7 +40,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
       .map: index =>
         plannings(index).decide(
           memories(index),
-          pictures(index),
+          views(index),
           now,
           parts(index).copy(situation = answer.best.situation(index, parts(index))),
           answer.best.plans(index),

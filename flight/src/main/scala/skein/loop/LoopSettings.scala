@@ -25,8 +25,8 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param early
   *   what `stream` does with a reading that comes before an older one of the same vehicle
   * @param decideThenPace
-  *   `stream` decides at every picture and paces the commands, instead of pacing first and deciding with the newest
-  *   picture
+  *   `stream` decides at every view and paces the commands, instead of pacing first and deciding with the newest
+  *   view
   * @param model
   *   by which `predictive` and `plan` carry the readings of a vehicle forward
   * @param planning

@@ -32,7 +32,7 @@ object PausedLoop:
   private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
     read.copy(sentAt = read.validAt, receivedAt = read.validAt)
 
-private final case class Step(number: Long, memories: Vector[Memory], picture: Picture)
+private final case class Step(number: Long, memories: Vector[Memory], view: TeamView)
 
 /** One flight of [[PausedLoop]]. */
 private final class PausedFlight(
@@ -48,7 +48,7 @@ private final class PausedFlight(
   @volatile private var newest, replaced = Vector.empty[Future[Either[VehicleError, Boolean]]]
 
   val start: Step =
-    Step(0, team.vehicles.map(team.start).toVector, Picture.empty(team.vehicles.size))
+    Step(0, team.vehicles.map(team.start).toVector, TeamView.empty(team.vehicles.size))
 
   def next(step: Step): Future[Option[(Step, Done)]] =
     if step.number == steps || stopped() then Future.successful(None) else fly(step)
@@ -75,21 +75,21 @@ private final class PausedFlight(
       readings <- orFail(team.readAll())
       sensed   <- orFail(team.senseAll())
       now  = readings(0).state.validAt
-      seen = readings.foldLeft(step.picture)((seen, reading) =>
+      seen = readings.foldLeft(step.view)((seen, reading) =>
         seen.withReading(reading.copy(state = PausedLoop.timeless(reading.state)))
       )
-      picture = sensed.foldLeft(seen)((seen, reading) =>
+      view = sensed.foldLeft(seen)((seen, reading) =>
         seen.withSensorReading(reading.copy(values = PausedLoop.timeless(reading.values)))
       )
       _       = verifyStep(step, now)
       decided =
-        team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), picture, now))
+        team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), view, now))
       _ = send(decided.map(_._2))
       // A move has reached the simulator when the one that it replaces has ended.
       _ <- Future.traverse(replaced)(orFail)
       _ <- orFail(stepper.continueFor(team.settings.period))
     yield
-      val moved = decided.foldLeft(picture):
+      val moved = decided.foldLeft(view):
         case (seen, (_, decision)) => seen.withMove(decision.move(now))
       Some((Step(step.number + 1, decided.map(_._1), moved), Done))
 
@@ -101,7 +101,7 @@ private final class PausedFlight(
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
   private def verifyStep(step: Step, now: Instant): Unit =
-    for before <- step.picture.readings(0) do
+    for before <- step.view.readings(0) do
       val stepped = now.since(before.state.validAt)
       if stepped != team.settings.period then
         team.log.note(

@@ -22,7 +22,7 @@ object PlanLoop:
       val single   = team.vehicles.filterNot(planning.vehicles.contains)
       val lead     = team.settings.planning.deadline + planning.deadTime
       val observed = builder.add(Observed(team, stop))
-      val cast     = builder.add(Broadcast[Sight](single.size + 1))
+      val cast     = builder.add(Broadcast[DecisionRequest](single.size + 1))
       val planned  = builder.add(Broadcast[Vector[Decision]](planning.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))

@@ -18,11 +18,11 @@ private abstract class Planning(scenario: Fleet, self: Int):
   /** Whether plans depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean
 
-  /** What is planned upon, from a picture with the estimates of when the command will act. */
-  def pose(memory: Memory, picture: Picture, now: Instant): Part
+  /** What is planned upon, from a view with the estimates of when the command will act. */
+  def pose(memory: Memory, view: TeamView, now: Instant): Part
 
   /** What the vehicle's policy does in the plan's place. */
-  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action
 
   /** Whether speeds are planned too. */
   protected def choosesSpeed: Boolean
@@ -36,18 +36,18 @@ private abstract class Planning(scenario: Fleet, self: Int):
     */
   final def decide(
       memory: Memory,
-      picture: Picture,
+      view: TeamView,
       now: Instant,
       part: Part,
       plan: Plan,
       isOld: Boolean
   ): (Memory, PlannedDecision) =
     val action =
-      if isOld then byPolicy(memory, picture, now, part)
+      if isOld then byPolicy(memory, view, now, part)
       else Action.of(plan.copy(manoeuvre = begun(part, plan)), part.situation, part.objective, planner.dtS)
     val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
     val (next, decision) =
-      decider.decided(memory, picture, now, memory.headingRad + action.turned, speed)
+      decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
     (next, PlannedDecision(decision, action, plan, isOld))
 
   /** The plan's manoeuvre where it costs clearly less than every one suggested. */

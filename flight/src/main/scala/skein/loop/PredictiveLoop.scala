@@ -17,7 +17,7 @@ object PredictiveLoop:
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
       val observed = builder.add(Observed(team, stop))
-      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
+      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))
 
@@ -35,5 +35,8 @@ object PredictiveLoop:
     })
 
   /** A prediction is made for the moment of its decision: when the command can leave. */
-  private[loop] def newest(team: Team, vehicle: Option[Int]): Flow[Sight, Sight, NotUsed] =
-    Newest[Sight](_ => team.log.note(EventKind.Dropped, vehicle, "not commanded within a period"))
+  private[loop] def newest(
+      team: Team,
+      vehicle: Option[Int]
+  ): Flow[DecisionRequest, DecisionRequest, NotUsed] =
+    Newest[DecisionRequest](_ => team.log.note(EventKind.Dropped, vehicle, "not commanded within a period"))

@@ -34,18 +34,18 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
 
   def regardsTeam: Boolean = settings.separationM > 0
 
-  def pose(memory: Memory, picture: Picture, now: Instant): Part =
-    val opponent = scenario.opponentOf(self, picture.kinematics(_).positionNed)
+  def pose(memory: Memory, view: TeamView, now: Instant): Part =
+    val opponent = scenario.opponentOf(self, view.kinematics(_).positionNed)
     val stream   = Planning.stream(seed, self, memory)
     val others   =
       if regardsTeam then Planning.unplanned(scenario, but = opponent) else Vector.empty
     val situation = Situation(
-      motion(picture.kinematics(self)),
+      motion(view.kinematics(self)),
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       response,
-      Behaviours.around(target(opponent, motion(picture.kinematics(opponent))), settings.behaviours, stream),
-      others.map(other => straight(motion(picture.kinematics(other)), planner))
+      Behaviours.around(target(opponent, motion(view.kinematics(opponent))), settings.behaviours, stream),
+      others.map(other => straight(motion(view.kinematics(other)), planner))
     )
     Part(objective, situation, stream)
 
@@ -56,8 +56,8 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1
 
-  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action =
-    val (_, decision) = decider.decide(memory, picture, now)
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
+    val (_, decision) = decider.decide(memory, view, now)
     val most          = objective.limits.turnRateAt(speed) * part.situation.sinceDecisionS
     val turned        = decision.heading.value - memory.headingRad
     Action(math.min(math.max(turned, -most), most), speed, Vector.empty)

@@ -58,16 +58,16 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
 
   /** The first decision that comes out differently. */
   def firstDifference: Option[Difference] =
-    val minds = scenario.agents.indices.toVector.map: self =>
+    val states = scenario.agents.indices.toVector.map: self =>
       val decider = Decider(scenario, self)
-      Mind(decider, decider.start)
+      DecisionState(decider, decider.start)
     val jointly =
-      joint.map(planning => JointMind(planning, planning.vehicles.map(Decider(scenario, _).start)))
+      joint.map(planning => JointDecisionState(planning, planning.vehicles.map(Decider(scenario, _).start)))
     whole.iterator
-      .scanLeft((Minds(minds, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
+      .scanLeft((Minds(states, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
         again(state._1, recorded) match
-          case Left(difference)         => (state._1, Some(difference))
-          case Right((minds, decision)) => (minds, Difference.between(recorded, decision))
+          case Left(difference)          => (state._1, Some(difference))
+          case Right((states, decision)) => (states, Difference.between(recorded, decision))
       .collectFirst { case (_, Some(difference)) => difference }
 
   /** All decisions, but for those made together last of which a recording that broke off has not got all. */
@@ -77,27 +77,28 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       cut.contains(decision.decidedAt) && planners.contains(decision.vehicle)
     )
 
-  private def again(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
-    (minds.decided.get(recorded.vehicle, recorded.sequence), minds.jointly) match
-      case (Some(decision), _)                                       => Right((minds, decision))
-      case (None, Some(mind)) if planners.contains(recorded.vehicle) => againTogether(minds, mind, recorded)
-      case _                                                         => againAlone(minds, recorded)
+  private def again(states: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
+    (states.decided.get(recorded.vehicle, recorded.sequence), states.jointly) match
+      case (Some(decision), _)                                        => Right((states, decision))
+      case (None, Some(state)) if planners.contains(recorded.vehicle) =>
+        againTogether(states, state, recorded)
+      case _ => againAlone(states, recorded)
 
-  private def againAlone(minds: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
+  private def againAlone(states: Minds, recorded: DecisionRow): Either[Difference, (Minds, DecisionRow)] =
     for
-      self    <- vehicle(recorded, "vehicle", recorded.vehicle)
-      picture <- picture(recorded, self, minds.single(self).regardsTeam)
+      self <- vehicle(recorded, "vehicle", recorded.vehicle)
+      view <- view(recorded, self, states.single(self).regardsTeam)
     yield
-      val mind             = minds.single(self)
+      val state            = states.single(self)
       val (next, decision) =
         if missed((recorded.vehicle, recorded.sequence)) then
-          mind.decideBy(instead(self), picture, recorded.decidedAt)
-        else mind.decide(picture, recorded.decidedAt)
-      (minds.copy(single = minds.single.updated(self, next)), rows.decision(decision))
+          state.decideBy(instead(self), view, recorded.decidedAt)
+        else state.decide(view, recorded.decidedAt)
+      (states.copy(single = states.single.updated(self, next)), rows.decision(decision))
 
   private def againTogether(
-      minds: Minds,
-      mind: JointMind,
+      states: Minds,
+      state: JointDecisionState,
       recorded: DecisionRow
   ): Either[Difference, (Minds, DecisionRow)] =
     val recordedToo = together(recorded.decidedAt)
@@ -109,18 +110,18 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
           name,
           "expected to decide at that time too"
         ))
-      pictures <- collected(all): decision =>
+      views <- collected(all): decision =>
         vehicle(decision, "vehicle", decision.vehicle).flatMap(self =>
-          picture(decision, self, mind.planning.regardsTeam(self))
+          view(decision, self, state.planning.regardsTeam(self))
         )
       slices <- searched(recorded)
     yield
-      val (next, made) = mind.decide(pictures, recorded.decidedAt, slices)
+      val (next, made) = state.decide(views, recorded.decidedAt, slices)
       val decisions    = made.map(rows.decision)
       val decided      = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
       // Where its number is another, it differs from what is recorded.
       val own = decisions(planners.indexOf(recorded.vehicle))
-      (minds.copy(jointly = Some(next), decided = decided), own)
+      (states.copy(jointly = Some(next), decided = decided), own)
 
   private def collected[A, B](all: Vector[A])(one: A => Either[Difference, B])
       : Either[Difference, Vector[B]] =
@@ -129,7 +130,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       case (missing, _)      => Left(missing.head)
 
   /** What a decision was made from. */
-  private def picture(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, Picture] =
+  private def view(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, TeamView] =
     for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
       own      <- reading(recorded, "ownSequence", recorded.own)
@@ -139,7 +140,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       sensed   <- sensed(recorded, self)
       others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
     yield
-      val empty = Picture.empty(scenario.agents.size)
+      val empty = TeamView.empty(scenario.agents.size)
       val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
       val known = empty.copy(
         readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),
@@ -147,9 +148,9 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
         alignment = recorded.trueAge.map(alignment),
         sensed = empty.sensed.updated(self, sensed)
       )
-      val possible = pictures(known, recorded)
+      val possible = views(known, recorded)
       possible
-        .find(picture => scenario.opponentOf(self, picture.kinematics(_).positionNed) == other)
+        .find(view => scenario.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
 
   /** What the vehicle's sensors had said. */
@@ -196,22 +197,22 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
   private def sightingOf(of: DecisionRow, vehicle: String): Option[Sighting] =
     sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
 
-  /** The picture with what was known of the vehicles that the decision was not made from. It was drawn at some moment
+  /** The view with what was known of the vehicles that the decision was not made from. It was drawn at some moment
     * after the readings used had come, so there is one for each reading that came since.
     */
-  private def pictures(known: Picture, recorded: DecisionRow): Vector[Picture] =
+  private def views(known: TeamView, recorded: DecisionRow): Vector[TeamView] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
     val others   = scenario.agents.indices.filter(known.readings(_).isEmpty).toVector
     val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))
     for
       moment <- (earliest +: moments).distinct
-      picture = others.foldLeft(known): (picture, other) =>
-        picture.copy(readings = picture.readings.updated(other, heard(other).newestAt(moment)))
-      if picture.isComplete
-    yield picture.copy(estimates = recorded.predicted.map(estimates(picture, recorded, _)))
+      view = others.foldLeft(known): (view, other) =>
+        view.copy(readings = view.readings.updated(other, heard(other).newestAt(moment)))
+      if view.isComplete
+    yield view.copy(estimates = recorded.predicted.map(estimates(view, recorded, _)))
 
-  private def estimates(picture: Picture, recorded: DecisionRow, predicted: Predicted) =
-    picture.readings.flatten.map: reading =>
+  private def estimates(view: TeamView, recorded: DecisionRow, predicted: Predicted) =
+    view.readings.flatten.map: reading =>
       val name      = rows.name(reading.vehicle)
       val read      = reading.state.value
       val estimated =
@@ -287,8 +288,8 @@ object Replay:
     *   together last, by vehicle and number
     */
   private final case class Minds(
-      single: Vector[Mind],
-      jointly: Option[JointMind],
+      single: Vector[DecisionState],
+      jointly: Option[JointDecisionState],
       decided: Map[(String, Long), DecisionRow]
   )
 

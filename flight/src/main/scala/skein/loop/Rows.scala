@@ -36,12 +36,12 @@ private final class Rows(fleet: Fleet):
     )
 
   def decision(decision: Decision): DecisionRow =
-    import decision.{opponent as other, picture, vehicle as self}
+    import decision.{opponent as other, view, vehicle as self}
     val now                        = decision.decidedAt
-    val own                        = picture.readings(self).get
-    val opponent                   = picture.readings(other).get
-    val opponentHeading            = picture.headingRad(other, fleet)
-    val (here, there)              = (picture.kinematics(self), picture.kinematics(other))
+    val own                        = view.readings(self).get
+    val opponent                   = view.readings(other).get
+    val opponentHeading            = view.headingRad(other, fleet)
+    val (here, there)              = (view.kinematics(self), view.kinematics(other))
     val toOpponent                 = there.positionNed - here.positionNed
     val (toEvader, pursuerHeading) = fleet.agents(self).role match
       case Role.Evader => (toOpponent * -1, opponentHeading)
@@ -62,10 +62,10 @@ private final class Rows(fleet: Fleet):
       observations = Observations(
         ownAge = own.state.ageByArrival(now),
         opponentAge = opponent.state.ageByArrival(now),
-        sinceOwnMove = picture.moves(self).map(move => now.since(move.sentAt)),
-        sinceOpponentMove = picture.moves(other).map(move => now.since(move.sentAt))
+        sinceOwnMove = view.moves(self).map(move => now.since(move.sentAt)),
+        sinceOpponentMove = view.moves(other).map(move => now.since(move.sentAt))
       ),
-      trueAge = picture.alignment.map(alignment =>
+      trueAge = view.alignment.map(alignment =>
         TrueAge(
           own = now.since(alignment.toController(own.state.validAt)),
           opponent = now.since(alignment.toController(opponent.state.validAt)),
@@ -73,7 +73,7 @@ private final class Rows(fleet: Fleet):
           uncertainty = alignment.uncertainty
         )
       ),
-      predicted = picture.estimates.map(estimates =>
+      predicted = view.estimates.map(estimates =>
         Predicted(
           estimates(self).predictedFor,
           here.positionNed,
@@ -95,15 +95,15 @@ private final class Rows(fleet: Fleet):
       name(decision.vehicle),
       decision.sequence,
       name(other),
-      decision.picture.readings(other).get.sequence,
-      decision.picture.estimates.map: estimates =>
+      decision.view.readings(other).get.sequence,
+      decision.view.estimates.map: estimates =>
         val expected = estimates(other).kinematics
         PredictedMotion(expected.positionNed, expected.velocityNed)
     )
 
   /** What a decision was made from of what sensors said. */
   def sensings(decision: Decision): Vector[Sensing] =
-    decision.picture.sensed(decision.vehicle).toVector.sortBy(_._1).map: (sensor, reading) =>
+    decision.view.sensed(decision.vehicle).toVector.sortBy(_._1).map: (sensor, reading) =>
       Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
 
   /** A decision as the command that it went on its way as. */

@@ -20,5 +20,5 @@ object SequentialLoop:
           Some((team.settings.period, readings))
         )
       )
-      .collect { case Right(readings) => Percept.Seen(readings, everyone) }
+      .collect { case Right(readings) => LoopEvent.Seen(readings, everyone) }
     SnapshotGraph(team, steps.via(stop.flow), stop)

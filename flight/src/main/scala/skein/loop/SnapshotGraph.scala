@@ -8,26 +8,30 @@ import scala.concurrent.Future
 /** What `sequential` and `futures` share: each snapshot that they read is decided upon at once. */
 private object SnapshotGraph:
 
-  def apply(team: Team, snapshots: Source[Percept, ?], stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
+  def apply(
+      team: Team,
+      snapshots: Source[LoopEvent, ?],
+      stop: SharedKillSwitch
+  ): RunnableGraph[Future[Done]] =
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
-      val sensed   = team.sensed(team.now)
-      val percepts = builder.add(MergePreferred[Percept](1 + sensed.size, eagerComplete = true))
-      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
-      val steered  = builder.add(Merge[Steering](team.vehicles.size))
-      val fan      = builder.add(Broadcast[Steering](3))
+      val sensed  = team.sensed(team.now)
+      val events  = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true))
+      val cast    = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
+      val steered = builder.add(Merge[Steering](team.vehicles.size))
+      val fan     = builder.add(Broadcast[Steering](3))
 
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
       for vehicle <- team.vehicles do
         cast ~> team.decide(vehicle) ~> team.newest(vehicle).via(stop.flow) ~>
           team.steer(vehicle) ~> steered.in(vehicle)
 
-      snapshots ~> percepts.in(0)
-      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(1 + sensor)
-      percepts ~> team.picture ~> cast
+      snapshots ~> events.in(0)
+      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(1 + sensor)
+      events ~> team.view ~> cast
       steered ~> fan
       fan ~> team.record
-      fan ~> team.sent ~> team.feedBack ~> percepts.preferred
+      fan ~> team.sent ~> team.feedBack ~> events.preferred
       fan ~> end
       ClosedShape
     })

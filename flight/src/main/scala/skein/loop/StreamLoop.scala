@@ -10,7 +10,7 @@ import skein.record.EventKind
 import skein.units.*
 
 /** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the latest
-  * are joined, each vehicle decides at its own pace on the newest picture and is commanded; what was commanded is fed
+  * are joined, each vehicle decides at its own pace on the newest view and is commanded; what was commanded is fed
   * back. Nothing waits for anything else.
   */
 object StreamLoop:
@@ -21,8 +21,8 @@ object StreamLoop:
       val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size))
       val start    = team.now
       val sensed   = team.sensed(start)
-      val percepts = builder.add(MergePreferred[Percept](1 + sensed.size, eagerComplete = true))
-      val cast     = builder.add(Broadcast[Sight](team.vehicles.size))
+      val events   = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true))
+      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
       val steered  = builder.add(Merge[Steering](team.vehicles.size))
       val fan      = builder.add(Broadcast[Steering](3))
 
@@ -30,12 +30,12 @@ object StreamLoop:
         sense(team, vehicle, start, stop).map((vehicle, _)) ~> readings.in(vehicle)
         cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered.in(vehicle)
 
-      readings ~> joinLatest(team) ~> percepts.in(0)
-      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> percepts.in(1 + sensor)
-      percepts ~> team.picture ~> cast
+      readings ~> joinLatest(team) ~> events.in(0)
+      for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(1 + sensor)
+      events ~> team.view ~> cast
       steered ~> fan
       fan ~> team.record
-      fan ~> team.sent ~> team.feedBack ~> percepts.preferred
+      fan ~> team.sent ~> team.feedBack ~> events.preferred
       fan ~> end
       ClosedShape
     })
@@ -66,7 +66,7 @@ object StreamLoop:
       )
       .via(stop.flow)
 
-  private[loop] def joinLatest(team: Team): Flow[(Int, Reading), Percept, ?] =
+  private[loop] def joinLatest(team: Team): Flow[(Int, Reading), LoopEvent, ?] =
     val everyone = team.vehicles.toSet
     Flow
       .fromGraph(
@@ -76,8 +76,8 @@ object StreamLoop:
             team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
         )
       )
-      .map(newest => Percept.Seen(newest.values.toVector, everyone))
+      .map(newest => LoopEvent.Seen(newest.values.toVector, everyone))
 
-  private def pacedDecisions(team: Team, vehicle: Int): Flow[Sight, Decision, ?] =
+  private def pacedDecisions(team: Team, vehicle: Int): Flow[DecisionRequest, Decision, ?] =
     if team.settings.decideThenPace then team.decide(vehicle).via(team.pace(vehicle))
-    else Flow[Sight].via(team.pace(vehicle)).via(team.decide(vehicle))
+    else Flow[DecisionRequest].via(team.pace(vehicle)).via(team.decide(vehicle))

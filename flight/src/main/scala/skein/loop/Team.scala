@@ -59,7 +59,7 @@ final class Team(
   /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles are asked a
     * quarter of a period after they were asked where they are.
     */
-  def sensed(start: Instant): Vector[Source[Percept, NotUsed]] = sensors.map: sensor =>
+  def sensed(start: Instant): Vector[Source[LoopEvent, NotUsed]] = sensors.map: sensor =>
     Sense
       .at[VehicleError, SensorReading, NotUsed](
         ticks(start + settings.period / 4),
@@ -80,7 +80,7 @@ final class Team(
             s"$ticks ticks of ${sensor.name} missed: window full"
           )
       )
-      .map(Percept.Measured(_))
+      .map(LoopEvent.Measured(_))
 
   /** Asks every sensor that a policy reads, one after the other; ends at the first error. */
   def senseAll(): Future[Either[VehicleError, Vector[SensorReading]]] =
@@ -98,42 +98,43 @@ final class Team(
           case Right(readings) => read(vehicle).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Joins percepts to pictures; emits those on which somebody shall decide. */
-  def picture: Flow[Percept, Sight, NotUsed] = pictureFrom(Picture.empty(crafts.size))
+  /** Joins events to views; emits those on which somebody shall decide. */
+  def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(TeamView.empty(crafts.size))
 
   /** The same, with all that a forecast needs. */
-  def pictureWithForecast: Flow[Percept, Sight, NotUsed] =
-    pictureFrom(
-      Picture.empty(crafts.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+  def viewWithForecast: Flow[LoopEvent, DecisionRequest, NotUsed] =
+    viewFrom(
+      TeamView.empty(crafts.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
     )
 
-  private def pictureFrom(start: Picture): Flow[Percept, Sight, NotUsed] =
-    Flow[Percept]
+  private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
+    Flow[LoopEvent]
       .statefulMap(() => start)(
-        (picture, percept) =>
-          percept match
-            case Percept.Seen(readings, deciders) =>
+        (view, event) =>
+          event match
+            case LoopEvent.Seen(readings, deciders) =>
               val seen =
-                readings.foldLeft(picture)(_.withReading(_))
-              (seen, Option.when(seen.isComplete)(Sight(seen, deciders)))
-            case Percept.Read(reading) if picture.isNews(reading) => (picture.withReading(reading), None)
-            case Percept.Read(reading)                            =>
+                readings.foldLeft(view)(_.withReading(_))
+              (seen, Option.when(seen.isComplete)(DecisionRequest(seen, deciders)))
+            case LoopEvent.Read(reading) if view.isNews(reading) => (view.withReading(reading), None)
+            case LoopEvent.Read(reading)                         =>
               log.note(EventKind.Dropped, Some(reading.vehicle), s"reading ${reading.sequence} is stale")
-              (picture, None)
-            case Percept.Measured(reading) => (picture.withSensorReading(reading), None)
-            case Percept.Moved(move)       =>
+              (view, None)
+            case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
+            case LoopEvent.Moved(move)       =>
               val command = Commanded(move.decision, setpoint(move), move.sentAt)
-              (picture.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
-            case Percept.Due(deciders) => (picture, Option.when(picture.isComplete)(Sight(picture, deciders)))
-            case Percept.Heard(evidence) => (picture.withEvidence(evidence), None)
+              (view.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
+            case LoopEvent.Due(deciders) =>
+              (view, Option.when(view.isComplete)(DecisionRequest(view, deciders)))
+            case LoopEvent.Heard(evidence) => (view.withEvidence(evidence), None)
         ,
         _ => None
       )
-      .collect { case Some(sight) => sight }
+      .collect { case Some(request) => request }
 
   /** Once a period, in the middle between two questions, everybody is due to decide. */
-  def due(start: Instant): Source[Percept, NotUsed] =
-    ticks(start + settings.period / 2).map(_ => Percept.Due(vehicles.toSet))
+  def due(start: Instant): Source[LoopEvent, NotUsed] =
+    ticks(start + settings.period / 2).map(_ => LoopEvent.Due(vehicles.toSet))
 
   /** Once a period from an instant on: how many ticks were due since the last. */
   def ticks(first: Instant): Source[Int, NotUsed] =
@@ -141,33 +142,33 @@ final class Team(
 
   def now: Instant = clock.now()
 
-  /** Carries the sights that are meant for one vehicle forward to when its command will act, and records how earlier
+  /** Carries the requests that are meant for one vehicle forward to when its command will act, and records how earlier
     * predictions turned out.
     */
-  def predict(vehicle: Int): Flow[Sight, Sight, NotUsed] =
-    Flow[Sight]
-      .collect { case sight if sight.deciders(vehicle) => sight }
+  def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
+    Flow[DecisionRequest]
+      .collect { case request if request.deciders(vehicle) => request }
       .via(predict(Vector(vehicle), lead = Span.Zero))
 
-  /** Carries sights forward to when the commands of some vehicles will act, and records how earlier predictions turned
+  /** Carries requests forward to when the commands of some vehicles will act, and records how earlier predictions turned
     * out.
     *
     * @param lead
-    *   how much later that is because of what is done with the sight
+    *   how much later that is because of what is done with the request
     */
-  def predict(deciders: Vector[Int], lead: Span): Flow[Sight, Sight, NotUsed] =
-    Flow[Sight]
-      .collect(Function.unlift(sight => sight.picture.forecast.map((sight, _))))
+  def predict(deciders: Vector[Int], lead: Span): Flow[DecisionRequest, DecisionRequest, NotUsed] =
+    Flow[DecisionRequest]
+      .collect(Function.unlift(request => request.view.forecast.map((request, _))))
       .via(Predict.whenActing(clock, vehicle => deciders.exists(verified(_)(vehicle)), lead)(outcome =>
         for decider <- deciders if verified(decider)(outcome.vehicle) do
           log.predicted(decider, outcome)
       ))
-      .map((sight, estimates) => sight.copy(picture = sight.picture.copy(estimates = Some(estimates))))
+      .map((request, estimates) => request.copy(view = request.view.copy(estimates = Some(estimates))))
 
-  /** Decides for one vehicle on the sights that are meant for it, within the deadline if there is one, and records the
+  /** Decides for one vehicle on the requests that are meant for it, within the deadline if there is one, and records the
     * decision.
     */
-  def decide(vehicle: Int): Flow[Sight, Decision, NotUsed] = settings.deadline match
+  def decide(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] = settings.deadline match
     case None           => decideAtOnce(vehicle)
     case Some(deadline) =>
       Flow
@@ -175,13 +176,13 @@ final class Team(
           given system: ActorSystem = materializer.system
           val policies              = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
           decideWithin(vehicle, deadline.within, deadline.otherwise.policy(scenario.agents(vehicle))):
-            case (memory, (picture, now)) => Future(decideAt(vehicle, memory, picture, now))(using policies)
+            case (memory, (view, now)) => Future(decideAt(vehicle, memory, view, now))(using policies)
         .mapMaterializedValue(_ => NotUsed)
 
-  private def decideAtOnce(vehicle: Int): Flow[Sight, Decision, NotUsed] =
-    Flow[Sight]
+  private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
+    Flow[DecisionRequest]
       // Not `filter`: it fetches one element ahead, which would grow old in it.
-      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+      .collect { case request if request.deciders(vehicle) => (request.view, clock.now()) }
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
         decideAt(vehicle, memory, seen._1, seen._2))
       .via(Tap(log.decided(_)))
@@ -192,23 +193,23 @@ final class Team(
     *   decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last decision); without it nothing
     *   is sent then, and the vehicle flies on under its last move for as long as that lasts
     * @param policy
-    *   from memory, picture and the time of asking
+    *   from memory, view and the time of asking
     */
   def decideWithin(
       vehicle: Int,
       deadline: Span,
       instead: Option[AgentPolicy]
   )(
-      policy: (Memory, (Picture, Instant)) => Future[(Memory, Decision)]
-  )(using ActorSystem): Flow[Sight, Decision, NotUsed] =
-    type Seen = (Picture, Instant)
+      policy: (Memory, (TeamView, Instant)) => Future[(Memory, Decision)]
+  )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
+    type Seen = (TeamView, Instant)
     val otherwise = instead.fold(Otherwise.Hold()): fallback =>
       val decider = Decider(scenario, vehicle, fallback)
       Otherwise.Ask((memory: Memory, seen: Seen) =>
         decider.decide(memory, seen._1, seen._2)
       )
-    Flow[Sight]
-      .collect { case sight if sight.deciders(vehicle) => (sight.picture, clock.now()) }
+    Flow[DecisionRequest]
+      .collect { case request if request.deciders(vehicle) => (request.view, clock.now()) }
       .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
         policy(memory, seen)
       ))
@@ -223,12 +224,12 @@ final class Team(
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(scenario, settings.planning, settings.seed)
 
-  /** Plans upon each sight for all vehicles that plan, and records the decisions and how they were planned. */
-  def plan(planning: JointPlanning)(using ActorSystem): Flow[Sight, Vector[Decision], NotUsed] =
-    type Seen = (Picture, Instant)
+  /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned. */
+  def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
+    type Seen = (TeamView, Instant)
     val vehicles = planning.vehicles
-    Flow[Sight]
-      .map(sight => (sight.picture, clock.now()))
+    Flow[DecisionRequest]
+      .map(request => (request.view, clock.now()))
       .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
         (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
         (memories, seen: Seen, parts, answer) =>
@@ -243,8 +244,8 @@ final class Team(
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
   /** The pure decision, for loops that keep their own time. */
-  def decideAt(vehicle: Int, memory: Memory, picture: Picture, now: Instant): (Memory, Decision) =
-    deciders(vehicle).decide(memory, picture, now)
+  def decideAt(vehicle: Int, memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
+    deciders(vehicle).decide(memory, view, now)
 
   /** Paces one vehicle: the newest element, at least an interval after the last. */
   def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
@@ -293,25 +294,25 @@ final class Team(
     case Steering(_, Steered.Sent(decision, at)) => decision.move(at)
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
-  def told: Flow[Steering, Percept, NotUsed] = Flow[Steering].collect(Function.unlift:
-    case Steering(_, Steered.Sent(decision, at)) => Some(Percept.Moved(decision.move(at)))
+  def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
+    case Steering(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
     case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
-      Some(Percept.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
+      Some(LoopEvent.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
     case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
     case Steering(vehicle, Steered.Ended(decision, _, _))       =>
-      Some(Percept.Heard(Evidence.Failed(vehicle, decision.sequence))))
+      Some(LoopEvent.Heard(Evidence.Failed(vehicle, decision.sequence))))
 
-  /** Carries the newest move of each vehicle back into the picture. */
-  def feedBack: Flow[Move, Percept, NotUsed] =
-    Flow[Move].map(move => (move.vehicle, move)).via(FeedBack.newest).map((_, move) => Percept.Moved(move))
+  /** Carries the newest move of each vehicle back into the view. */
+  def feedBack: Flow[Move, LoopEvent, NotUsed] =
+    Flow[Move].map(move => (move.vehicle, move)).via(FeedBack.newest).map((_, move) => LoopEvent.Moved(move))
 
-  /** Carries percepts back into the picture, the newest of each vehicle and kind. */
-  def feedBackAll: Flow[Percept, Percept, NotUsed] =
-    Flow[Percept]
+  /** Carries events back into the view, the newest of each vehicle and kind. */
+  def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
+    Flow[LoopEvent]
       .map:
-        case percept @ Percept.Moved(move)     => ((percept.ordinal, move.vehicle), percept)
-        case percept @ Percept.Heard(evidence) => ((percept.ordinal, evidence.vehicle), percept)
-        case percept                           => ((percept.ordinal, -1), percept)
+        case event @ LoopEvent.Moved(move)     => ((event.ordinal, move.vehicle), event)
+        case event @ LoopEvent.Heard(evidence) => ((event.ordinal, evidence.vehicle), event)
+        case event                             => ((event.ordinal, -1), event)
       .via(FeedBack.newest)
       .map(_._2)
 

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Fleet, GoalPolicy, TeamSight}
+import skein.policy.{Fleet, GoalPolicy, TeamObservation}
 import skein.units.*
 
 /** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
@@ -40,15 +40,15 @@ private final class TeamPlanning(
 
   def regardsTeam: Boolean = true
 
-  def pose(memory: Memory, picture: Picture, now: Instant): Part =
-    val sight  = decider.sight(memory, picture, now)
-    val own    = motion(picture.kinematics(self))
-    val wanted = Vector.tabulate(planner.steps)(step => policy.wanted(sight, (step + 1) * planner.dtS))
-    val others =
+  def pose(memory: Memory, view: TeamView, now: Instant): Part =
+    val request = decider.request(memory, view, now)
+    val own     = motion(view.kinematics(self))
+    val wanted  = Vector.tabulate(planner.steps)(step => policy.wanted(request, (step + 1) * planner.dtS))
+    val others  =
       if minimumM == 0 then Vector.empty
       else
         Planning.unplanned(scenario, but = self).map(other =>
-          straight(motion(picture.kinematics(other)), planner)
+          straight(motion(view.kinematics(other)), planner)
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))
     val alone = Situation(
@@ -63,7 +63,7 @@ private final class TeamPlanning(
     Part(
       // Other speeds than that of the place wanted are for catching up.
       objective.copy(limits = limits, cruiseSpeed = speed(along)),
-      alone.copy(suggested = suggested(sight, alone, limits)),
+      alone.copy(suggested = suggested(request, alone, limits)),
       Planning.stream(seed, self, memory)
     )
 
@@ -79,14 +79,14 @@ private final class TeamPlanning(
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
   /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better at it. */
-  private def suggested(sight: TeamSight, situation: Situation, limits: Limits): Vector[Manoeuvre] =
+  private def suggested(request: TeamObservation, situation: Situation, limits: Limits): Vector[Manoeuvre] =
     if policy.minimumM > 0 then Vector.empty
-    else Vector(PolicyManoeuvre.of(policy, sight, situation, limits, planner.steps, planner.dtS))
+    else Vector(PolicyManoeuvre.of(policy, request, situation, limits, planner.steps, planner.dtS))
 
   protected def choosesSpeed: Boolean = true
 
-  protected def byPolicy(memory: Memory, picture: Picture, now: Instant, part: Part): Action =
-    val course = policy.course(decider.sight(memory, picture, now))
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
+    val course = policy.course(decider.request(memory, view, now))
     Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
 
 private object TeamPlanning:

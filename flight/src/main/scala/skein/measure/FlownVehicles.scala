@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.identify.{Arrival, Flown, Sight}
+import skein.identify.{Arrival, Flown, Sample}
 import skein.record.*
 import skein.signal.OneWayDelays
 import skein.units.*
@@ -25,7 +25,7 @@ object FlownVehicles:
         Arrival(at.since(start).toSeconds, command.velocityNorth.value, command.velocityEast.value)
       if arrivals.nonEmpty
     yield
-      val sights = recording.readings
+      val samples = recording.readings
         .filter(_.vehicle == vehicle.name)
         .map(_.state)
         .distinctBy(_.validAt)
@@ -33,10 +33,10 @@ object FlownVehicles:
         .map: state =>
           val Vector3(x, y, _)   = state.value.positionNed
           val Vector3(vx, vy, _) = state.value.velocityNed
-          Sight(state.validAt.since(start).toSeconds, x, y, vx, vy)
+          Sample(state.validAt.since(start).toSeconds, x, y, vx, vy)
         // What it is told to do after its last command, hovering, is not recorded.
         .takeWhile(_.atS <= arrivals.last.atS)
-      Flown(s"${recording.flight.id}, ${vehicle.name}", sights, arrivals, commands.last.down.value)
+      Flown(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 
   /** Commands that arrived, and when, on the simulator's clock; none before one that was sent earlier. */
   private def arrivalsOf(

@@ -118,7 +118,8 @@ object Checks:
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
-    val each  = if seen.ordeal.scenario.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
+    val each  =
+      if seen.ordeal.scenario.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(
       Option.when(

@@ -153,7 +153,7 @@ object Ordeal:
         pick(LoopKind.Stream, LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures, LoopKind.Sequential)
       val link = pick(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
       // A loop that asks its vehicles in turn needs a round trip for each.
-      val most  = if loop == LoopKind.Sequential || loop == LoopKind.Futures then 3 else 10
+      val most         = if loop == LoopKind.Sequential || loop == LoopKind.Futures then 3 else 10
       val pairs        = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
       val cutsSegments = chance(0.5)
       val asPublished  = loop == LoopKind.Stream && chance(0.2)

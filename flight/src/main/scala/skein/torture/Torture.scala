@@ -28,7 +28,12 @@ object Torture:
     * @param onVerdict
     *   told of each as it comes, on the calling thread
     */
-  def all(seeds: Iterator[Long], duration: Span, threads: Int, scenario: Option[Scenario] = None)(onVerdict: Verdict => Unit): Unit =
+  def all(
+      seeds: Iterator[Long],
+      duration: Span,
+      threads: Int,
+      scenario: Option[Scenario] = None
+  )(onVerdict: Verdict => Unit): Unit =
     val pool                     = Executors.newFixedThreadPool(threads)
     val ended                    = ExecutorCompletionService[Verdict](pool)
     def submit(seed: Long): Unit =

@@ -119,7 +119,13 @@ private object Wiretap:
 
   /** What a vehicle is told, but for hovering. */
   private val Moves =
-    ByVelocity ++ Set("moveToPosition", "rotateToYaw", "rotateByYawRate", "moveByRollPitchYawThrottle", "land")
+    ByVelocity ++ Set(
+      "moveToPosition",
+      "rotateToYaw",
+      "rotateByYawRate",
+      "moveByRollPitchYawThrottle",
+      "land"
+    )
 
   private val Hover = "hover"
 

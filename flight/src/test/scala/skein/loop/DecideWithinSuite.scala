@@ -25,7 +25,7 @@ class DecideWithinSuite extends munit.FunSuite:
       val recorder           = MemoryRecorder(Samples.heading)
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
       val team               = Team(scenario, world.crafts, clock, recorder, LoopSettings())
-      val picture            = (0 to 1).foldLeft(Picture.empty(2)): (picture, vehicle) =>
+      val view               = (0 to 1).foldLeft(TeamView.empty(2)): (view, vehicle) =>
         val agent = scenario.agents(vehicle)
         val state = Kinematics(
           agent.startPositionNed + Vector3(0, 3 - vehicle, 0),
@@ -33,10 +33,10 @@ class DecideWithinSuite extends munit.FunSuite:
           Quaternion.Identity,
           Vector3.Zero
         )
-        picture.withReading(Reading(vehicle, 0, Stamped(state, clock.now(), clock.now(), clock.now())))
+        view.withReading(Reading(vehicle, 0, Stamped(state, clock.now(), clock.now(), clock.now())))
       var asked = -1
       Source
-        .tick(0.millis, 100.millis, Sight(picture, Set(pursuer)))
+        .tick(0.millis, 100.millis, DecisionRequest(view, Set(pursuer)))
         .take(5)
         .via(team.decideWithin(pursuer, Span.ofMillis(40), instead): (memory, seen) =>
           asked += 1

@@ -27,7 +27,7 @@ class DeciderSuite extends munit.FunSuite:
       Stamped(state, millis(validMs), millis(sentMs), millis(receivedMs))
     )
 
-  private val picture = Picture
+  private val view = TeamView
     .empty(2)
     .withReading(reading(0, 21, 4, 1010, 100, 120))
     .withReading(reading(1, 1, 2, 1040, 130, 160))
@@ -36,8 +36,8 @@ class DeciderSuite extends munit.FunSuite:
   private def row(decided: (Memory, Decision)) = Rows(scenario).decision(decided._2)
 
   test("the pursuer integrates its turn over the time since its last decision"):
-    val (first, _)  = pursuer.decide(pursuer.start, picture, millis(200))
-    val (_, second) = pursuer.decide(first, picture, millis(350))
+    val (first, _)  = pursuer.decide(pursuer.start, view, millis(200))
+    val (_, second) = pursuer.decide(first, view, millis(350))
     assertEquals(first.headingRad, 0.0)
     assertEqualsDouble(second.heading.value, 0.15, 1e-12)
     assertEquals(second.elapsed, Span.ofMillis(150))
@@ -46,15 +46,15 @@ class DeciderSuite extends munit.FunSuite:
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
     val ofEvader =
-      row(evader.decide(evader.start, picture.withMove(Move(1, 0, heading, millis(150))), millis(200)))
+      row(evader.decide(evader.start, view.withMove(Move(1, 0, heading, millis(150))), millis(200)))
     assertEqualsDouble(ofEvader.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofEvader.relativeY.value, -20, 1e-12)
-    val ofPursuer = row(pursuer.decide(pursuer.start.copy(headingRad = heading), picture, millis(200)))
+    val ofPursuer = row(pursuer.decide(pursuer.start.copy(headingRad = heading), view, millis(200)))
     assertEqualsDouble(ofPursuer.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
   test("the four observations count from arrival and from the moves sent"):
-    val moved    = picture.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
+    val moved    = view.withMove(Move(0, 0, 1, millis(150))).withMove(Move(1, 0, 1, millis(170)))
     val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
     assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
@@ -62,7 +62,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(decision.observations.sinceOpponentMove, Some(Span.ofMillis(30)))
 
   test("the true age counts from the moment of sampling, within the stated uncertainty"):
-    val decision = row(evader.decide(evader.start, picture, millis(200)))
+    val decision = row(evader.decide(evader.start, view, millis(200)))
     val age      = decision.trueAge.get
     // The offset lies in [-910, -890] by the first reading and in [-910, -880] by the second.
     val driftMs = 40 * ClockAlignment.MaxDrift
@@ -72,5 +72,5 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
 
   test("no decision is made before every vehicle was seen"):
-    assert(!Picture.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)
-    assert(picture.isComplete)
+    assert(!TeamView.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)
+    assert(view.isComplete)

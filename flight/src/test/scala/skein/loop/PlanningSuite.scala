@@ -12,13 +12,13 @@ class PlanningSuite extends munit.FunSuite:
   private val pursuer = fleet.agents.indexWhere(_.role == Role.Pursuer)
   private val now     = Instant.Epoch + Span.ofSeconds(50)
   private val places  = fleet.agents.indices.map(vehicle => Vector3(10.0 * vehicle, -vehicle.toDouble, -20))
-  private val picture = fleet.agents.indices.foldLeft(Picture.empty(fleet.agents.size)): (picture, vehicle) =>
+  private val view    = fleet.agents.indices.foldLeft(TeamView.empty(fleet.agents.size)): (view, vehicle) =>
     val state = Kinematics(places(vehicle), Vector3(1, 2, 0), Quaternion.Identity, Vector3.Zero)
-    picture.withReading(Reading(vehicle, 0, Stamped(state, now, now, now)))
+    view.withReading(Reading(vehicle, 0, Stamped(state, now, now, now)))
 
   private def part(settings: PlanSettings, decidedBefore: Option[Span] = None) =
     PursuitPlanning(fleet, pursuer, settings, seed = 3)
-      .pose(Memory(0.25, decidedBefore.map(now - _), 7), picture, now)
+      .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test(
     "vehicles that are neither planned nor the opponent are kept from where a separation is set, with a metre more"

@@ -61,9 +61,9 @@ class FlownVehiclesSuite extends munit.FunSuite:
     assertEquals(all.map(_.name), Vector("f, Red"))
     assertEquals(all.head.downM, -22.0)
     assertEquals(all.head.arrivals.map(_.atS), Vector(0.05, 0.45))
-    assertEquals(all.head.sights.map(sight => math.round(sight.atS * 10).toInt), Vector(0, 1, 2, 3, 4))
-    val sight = all.head.sights(3)
-    assertEquals((sight.x, sight.y, sight.vx, sight.vy), (3.0, -3.0, 10.0, -10.0))
+    assertEquals(all.head.samples.map(sample => math.round(sample.atS * 10).toInt), Vector(0, 1, 2, 3, 4))
+    val sample = all.head.samples(3)
+    assertEquals((sample.x, sample.y, sample.vx, sample.vy), (3.0, -3.0, 10.0, -10.0))
 
   test(
     "a command whose predecessor was answered as superseded arrived in the middle of what is over in its round trip"
@@ -107,4 +107,4 @@ class FlownVehiclesSuite extends munit.FunSuite:
     val other = decided.copy(vehicle = "Blue", decidedAt = start)
     val all   = flown("paused", decided, other, command(1, 900, decision = Some(7)), command(2, 950))
     assertEquals(all.map(_.arrivals.map(_.atS)), Vector(Vector(0.5)))
-    assertEquals(all.head.sights.size, 6)
+    assertEquals(all.head.samples.size, 6)

@@ -64,7 +64,9 @@ class PredictSuite extends munit.FunSuite:
     // The last one's moment was never read.
     assertEquals((moving.size, resting.size), (9, 9))
 
-  test("of the predictions that wait to be held against readings the newest are kept, so many of each vehicle"):
+  test(
+    "of the predictions that wait to be held against readings the newest are kept, so many of each vehicle"
+  ):
     val here     = north(Span.Zero)
     val start    = Instant.Epoch
     val estimate = Estimate(here, start, start)

@@ -30,7 +30,8 @@ class SenseSuite extends munit.FunSuite:
       def skip(answer: Either[String, Int]) = skipped :+= answer
       def miss(ticks: Int)                  = missed += ticks
       val answers                           = isNewer match
-        case None        => Sense.every(Span.ofMillis(100), Span.ofMillis(50), window, early)(() => ask())(skip, miss)
+        case None =>
+          Sense.every(Span.ofMillis(100), Span.ofMillis(50), window, early)(() => ask())(skip, miss)
         case Some(newer) =>
           val ticks = Source.tick(50.millis, 100.millis, 1).conflate(_ + _)
           Sense.at(ticks, window, early, newer)(() => ask())(skip, miss)

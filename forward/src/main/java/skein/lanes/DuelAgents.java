@@ -13,7 +13,7 @@ final class DuelAgents extends TimetableAgents {
   private final float[] effort;
   private final float startHeading;
   private final int self;
-  private final LaneSight sight;
+  private final LaneObservation sight;
 
   /**
    * @param self the vehicle's number, 0 or 1
@@ -25,7 +25,7 @@ final class DuelAgents extends TimetableAgents {
       TimetableModel model,
       LanePolicy policy,
       float[] effort,
-      LaneSight sight) {
+      LaneObservation sight) {
     super(model.vehicles(duelist));
     this.self = self;
     this.policy = policy;
@@ -51,8 +51,8 @@ final class DuelAgents extends TimetableAgents {
   @Override
   void decide(
       TimetableAgents[] all,
-      int[] pictures,
-      int picture,
+      int[] views,
+      int view,
       int known,
       int before,
       int after,
@@ -60,8 +60,8 @@ final class DuelAgents extends TimetableAgents {
       int number) {
     TimetableAgents opponent = all[1 - self];
     TimetableVehicles ours = vehicles, theirs = opponent.vehicles;
-    int ownSeen = pictures[picture + self] * WORLDS,
-        opponentSeen = pictures[picture + 1 - self] * WORLDS;
+    int ownSeen = views[view + self] * WORLDS,
+        opponentSeen = views[view + 1 - self] * WORLDS;
     difference(theirs.seenX, opponentSeen, ours.seenX, ownSeen, sight.dx);
     difference(theirs.seenY, opponentSeen, ours.seenY, ownSeen, sight.dy);
     if (policy.needsVelocity()) {

@@ -65,8 +65,8 @@ final class FuturesOffers extends LaneOffers {
   FuturesOffers(LoopTiming.Futures timing, double maxDelayS) {
     super(new LaneDelays());
     double periodS = timing.periodS(), longestS = timing.asking().timeoutS() * 4;
-    periodGrains = LanePictures.grains(periodS);
-    timeoutGrains = LanePictures.grains(timing.asking().timeoutS());
+    periodGrains = LaneViews.grains(periodS);
+    timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     // A decision waits for the answer to the command before at most.
     ahead = 1 + (int) Math.ceil((2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS()) / periodS);
     ring = ahead + (int) Math.ceil(longestS / periodS) + 4;

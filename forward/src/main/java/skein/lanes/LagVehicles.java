@@ -212,7 +212,7 @@ final class LagVehicles {
         lag = FloatVector.broadcast(SPECIES, lagS),
         minusLag = FloatVector.broadcast(SPECIES, -lagS),
         halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
-        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
         round = FloatVector.broadcast(SPECIES, ROUND),
@@ -323,7 +323,7 @@ final class LagVehicles {
 
   /** Takes commands back that had not acted when an early reading of a world was taken. */
   void lookBack(int world, int row, int sampledAt) {
-    float end = sampledAt * LanePictures.GRAIN_S;
+    float end = sampledAt * LaneViews.GRAIN_S;
     for (int number = next - 1; number >= oldest; number--) {
       int slot = number & slots - 1, from = slot * SLOT + world;
       float wait = commands[from + AT] - ageS(slot, row), acted = end - wait;

@@ -45,7 +45,7 @@ final class LaneAgents {
   private final float[] decidedBefore = new float[WORLDS];
 
   private final int[] places = new int[WORLDS], there = new int[WORLDS], back = new int[WORLDS];
-  private final LaneSight sight = new LaneSight();
+  private final LaneObservation sight = new LaneObservation();
 
   /** What was sent last and before that, what was decided last, and what is now. */
   final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
@@ -83,10 +83,10 @@ final class LaneAgents {
     this.periodS = (float) periodS;
     line = Rollout.CommandPlace() + 2 * self;
     startHeading = (float) duelist.startHeadingRad();
-    periodGrains = LanePictures.grains(periodS);
-    intervalGrains = LanePictures.grains(Math.max(intervalS, steering.minIntervalS()));
-    handoverGrains = LanePictures.grains(steering.handoverS());
-    deadGrains = LanePictures.grains(deadTimeS);
+    periodGrains = LaneViews.grains(periodS);
+    intervalGrains = LaneViews.grains(Math.max(intervalS, steering.minIntervalS()));
+    handoverGrains = LaneViews.grains(steering.handoverS());
+    deadGrains = LaneViews.grains(deadTimeS);
   }
 
   void start() {
@@ -134,7 +134,7 @@ final class LaneAgents {
   private void look(LaneAgents opponents, LaneVectors vectors, int[] joinedAt, int[] nextAt) {
     IntVector none = IntVector.broadcast(INTS, NONE);
     FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
-        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
     LaneFlights theirs = opponents.flights;
     for (int k = 0; k < vectors.count; k++) {
@@ -176,7 +176,7 @@ final class LaneAgents {
               IntVector.fromArray(INTS, decides, i)
                   .sub(IntVector.fromArray(INTS, readAt, i))
                   .convertShape(VectorOperators.I2F, SPECIES, 0))
-          .mul(LanePictures.GRAIN_S)
+          .mul(LaneViews.GRAIN_S)
           .intoArray(into, i);
   }
 
@@ -232,7 +232,7 @@ final class LaneAgents {
 
   private void remember(LaneVectors vectors, int endGrains) {
     IntVector none = IntVector.broadcast(INTS, NONE), end = IntVector.broadcast(INTS, endGrains);
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S);
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector when = IntVector.fromArray(INTS, decides, i);

@@ -52,7 +52,7 @@ final class LaneControllers {
 
   private final int[] drawn = new int[2 * LANES];
 
-  private final LaneSight sight = new LaneSight();
+  private final LaneObservation sight = new LaneObservation();
   final Directions sent = new Directions(WORLDS);
   private final Directions decided = new Directions(WORLDS);
 
@@ -76,12 +76,12 @@ final class LaneControllers {
     speedMps = (float) (duelist.speed() * model.gain());
     lagS = (float) model.lagS();
     periodS = (float) timing.periodS();
-    periodGrains = LanePictures.grains(timing.periodS());
+    periodGrains = LaneViews.grains(timing.periodS());
     intervalGrains =
-        LanePictures.grains(
+        LaneViews.grains(
             Math.max(timing.periodS() - timing.toleranceS(), timing.steering().minIntervalS()));
-    handoverGrains = LanePictures.grains(timing.steering().handoverS());
-    deadGrains = LanePictures.grains(model.deadTimeS());
+    handoverGrains = LaneViews.grains(timing.steering().handoverS());
+    deadGrains = LaneViews.grains(model.deadTimeS());
   }
 
   void start() {
@@ -93,21 +93,21 @@ final class LaneControllers {
   }
 
   /** Decide where it is their turn. */
-  void decide(LaneControllers opponents, LanePictures pictures) {
-    look(opponents.vehicles, pictures.joinedAt, pictures.nextAt);
+  void decide(LaneControllers opponents, LaneViews views) {
+    look(opponents.vehicles, views.joinedAt, views.nextAt);
     if (policy.needsVelocity()) lookAtVelocity(opponents.vehicles);
     policy.decide(sight, sent, 0, opponents.sent, 0, decided, 0);
   }
 
   /**
-   * When each decides, unless a newer picture comes before; how long it waited; and the opponent as
+   * When each decides, unless a newer view comes before; how long it waited; and the opponent as
    * the readings show it.
    */
   private void look(LagVehicles opponents, int[] joinedAt, int[] nextAt) {
     float[] ours = vehicles.state, theirs = opponents.state;
-    IntVector never = IntVector.broadcast(INTS, LanePictures.NONE);
+    IntVector never = IntVector.broadcast(INTS, LaneViews.NONE);
     FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
-        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector when =
@@ -163,7 +163,7 @@ final class LaneControllers {
         next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
         multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
         multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2),
-        never = IntVector.broadcast(INTS, LanePictures.NONE),
+        never = IntVector.broadcast(INTS, LaneViews.NONE),
         past = IntVector.broadcast(INTS, LONG_PAST),
         interval = IntVector.broadcast(INTS, intervalGrains),
         handover = IntVector.broadcast(INTS, handoverGrains),
@@ -174,7 +174,7 @@ final class LaneControllers {
         speed = FloatVector.broadcast(SPECIES, speedMps),
         doublings = FloatVector.broadcast(SPECIES, LOG2_E / lagS),
         undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
-        grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+        grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
         round = FloatVector.broadcast(SPECIES, ROUND),
@@ -259,9 +259,9 @@ final class LaneControllers {
       newCos.intoArray(sent.cos, i);
       newSin.intoArray(sent.sin, i);
     }
-    policy.rememberBefore(times, DECIDES, LanePictures.NONE);
+    policy.rememberBefore(times, DECIDES, LaneViews.NONE);
     vehicles.send(
-        soonest.reduceLanes(VectorOperators.MIN) * LanePictures.GRAIN_S,
-        latest.reduceLanes(VectorOperators.MAX) * LanePictures.GRAIN_S);
+        soonest.reduceLanes(VectorOperators.MIN) * LaneViews.GRAIN_S,
+        latest.reduceLanes(VectorOperators.MAX) * LaneViews.GRAIN_S);
   }
 }

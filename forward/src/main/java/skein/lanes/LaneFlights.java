@@ -109,7 +109,7 @@ abstract class LaneFlights {
    * @param at when, from the row's begin, in grains
    */
   final void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
     // Elsewhere the newest piece will do.
     if (vectors.count * LANES < WORLDS) Arrays.fill(until, FUTURE);
@@ -161,7 +161,7 @@ abstract class LaneFlights {
    * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
    */
   final void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LanePictures.GRAIN_S),
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
     for (int k = 0; k < vectors.count; k++) {

@@ -18,7 +18,7 @@ abstract class LaneOffers {
   static final int EVADER = 0, PURSUER = 1, BOTH = 2;
 
   /** In the place of a time: none. */
-  static final int NONE = LanePictures.NONE;
+  static final int NONE = LaneViews.NONE;
 
   final LaneDelays delays;
 

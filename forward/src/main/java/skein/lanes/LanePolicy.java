@@ -11,7 +11,7 @@ import skein.simd.LaneFunction;
  */
 class LanePolicy {
   /** Worlds that decide together. */
-  static final int WORLDS = LaneSight.WORLDS;
+  static final int WORLDS = LaneObservation.WORLDS;
 
   private final PolicyLanes form;
   private final LaneFunction function;
@@ -72,7 +72,7 @@ class LanePolicy {
    * what they differ by from the own.
    */
   void decide(
-      LaneSight sight,
+      LaneObservation sight,
       Directions own,
       int ownAt,
       Directions known,

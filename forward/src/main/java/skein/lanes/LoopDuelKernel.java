@@ -81,12 +81,12 @@ final class LoopDuelKernel extends DuelKernel {
     if (timing.periodS() + patienceS + 2 * timeoutS + 2 * maxDelayS + deadTimeS > MOST_S)
       return "a command may act later than the lanes can count";
     boolean whole =
-        LanePictures.isWhole(timing.periodS())
-            && LanePictures.isWhole(toleranceS)
-            && LanePictures.isWhole(patienceS)
-            && LanePictures.isWhole(timeoutS)
-            && LanePictures.isWhole(steering.minIntervalS())
-            && LanePictures.isWhole(steering.handoverS());
+        LaneViews.isWhole(timing.periodS())
+            && LaneViews.isWhole(toleranceS)
+            && LaneViews.isWhole(patienceS)
+            && LaneViews.isWhole(timeoutS)
+            && LaneViews.isWhole(steering.minIntervalS())
+            && LaneViews.isWhole(steering.handoverS());
     return whole ? null : "the lanes count time in grains of 4 ns, and this loop's times are none";
   }
 
@@ -197,7 +197,7 @@ final class LoopDuelKernel extends DuelKernel {
   }
 
   private void growOlder() {
-    int period = LanePictures.grains(periodS);
+    int period = LaneViews.grains(periodS);
     for (int[] each : readAt)
       for (int i = 0; i < WORLDS; i++) each[i] = Math.max(each[i] - period, Integer.MIN_VALUE / 2);
   }
@@ -212,6 +212,6 @@ final class LoopDuelKernel extends DuelKernel {
   /** From a row's begin to the end of the episode, as far as integers count. */
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * periodS;
-    return seconds < 7 ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
+    return seconds < 7 ? LaneViews.grains(seconds) : Integer.MAX_VALUE;
   }
 }

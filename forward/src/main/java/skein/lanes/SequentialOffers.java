@@ -23,7 +23,7 @@ final class SequentialOffers extends LaneOffers {
   private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
 
   /** As far as rounds are looked ahead for one that succeeds. */
-  private static final int HORIZON = LanePictures.grains(4);
+  private static final int HORIZON = LaneViews.grains(4);
 
   private final int periodGrains, timeoutGrains;
 
@@ -45,8 +45,8 @@ final class SequentialOffers extends LaneOffers {
 
   SequentialOffers(LoopTiming.Sequential timing) {
     super(new LaneDelays());
-    periodGrains = LanePictures.grains(timing.periodS());
-    timeoutGrains = LanePictures.grains(timing.asking().timeoutS());
+    periodGrains = LaneViews.grains(timing.periodS());
+    timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     joinedAt = new int[WORLDS];
     nextAt = new int[WORLDS];
     for (int v = 0; v < 2; v++) {

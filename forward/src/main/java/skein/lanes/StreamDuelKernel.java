@@ -15,7 +15,7 @@ import skein.forward.Rollout;
  * event happens at the same nanosecond in both.
  *
  * <p>All worlds go through row m, from question m to the next, together; when its events happen
- * differs by lane. What the questions bring is told by {@link LanePictures}, who decides when by
+ * differs by lane. What the questions bring is told by {@link LaneViews}, who decides when by
  * {@link LaneControllers}, where the vehicles are by {@link LagVehicles}. Nothing is allocated after
  * construction but where links need more room than any before; one instance per thread.
  */
@@ -25,7 +25,7 @@ final class StreamDuelKernel extends DuelKernel {
   private final LoopTiming.Stream timing;
   private final Reduced model;
   private final int steps, periodGrains;
-  private final LanePictures pictures;
+  private final LaneViews views;
   private final LagVehicles evaders, pursuers;
   private final LaneControllers evading, pursuing;
   private final boolean withVelocity;
@@ -60,12 +60,12 @@ final class StreamDuelKernel extends DuelKernel {
         || longest + timing.steering().minIntervalS() + maxDelayS > MOST_S)
       return "a command may act later than the lanes can count";
     boolean whole =
-        LanePictures.isWhole(timing.periodS())
-            && LanePictures.isWhole(timing.toleranceS())
-            && LanePictures.isWhole(timing.patienceS())
-            && LanePictures.isWhole(timing.asking().timeoutS())
-            && LanePictures.isWhole(timing.steering().minIntervalS())
-            && LanePictures.isWhole(timing.steering().handoverS());
+        LaneViews.isWhole(timing.periodS())
+            && LaneViews.isWhole(timing.toleranceS())
+            && LaneViews.isWhole(timing.patienceS())
+            && LaneViews.isWhole(timing.asking().timeoutS())
+            && LaneViews.isWhole(timing.steering().minIntervalS())
+            && LaneViews.isWhole(timing.steering().handoverS());
     return whole ? null : "the lanes count time in grains of 4 ns, and this loop's times are none";
   }
 
@@ -77,13 +77,13 @@ final class StreamDuelKernel extends DuelKernel {
 
   private static final int MOST_ROWS = 64;
 
-  /** From a question to a picture that it is the newest of. */
+  /** From a question to a view that it is the newest of. */
   private static double pictureS(LoopTiming.Stream timing) {
     return timing.asking().timeoutS() + timing.patienceS() + timing.periodS();
   }
 
   /**
-   * From a question to the time when the command acts that was decided on its picture: a decision
+   * From a question to the time when the command acts that was decided on its view: a decision
    * waits for the acknowledgement of the command before at most.
    */
   private static double longestS(LoopTiming.Stream timing, double maxDelayS, Reduced model) {
@@ -114,8 +114,8 @@ final class StreamDuelKernel extends DuelKernel {
     this.timing = timing;
     this.model = model;
     steps = (int) Math.round(duel.durationS() / timing.periodS());
-    periodGrains = LanePictures.grains(timing.periodS());
-    pictures = new LanePictures(timing, duel.durationS(), shortCut);
+    periodGrains = LaneViews.grains(timing.periodS());
+    views = new LaneViews(timing, duel.durationS(), shortCut);
     evaders = new LagVehicles(duel.evader(), model, timing.periodS(), MOST_ROWS, pictureS(timing));
     pursuers = new LagVehicles(duel.pursuer(), model, timing.periodS(), MOST_ROWS, pictureS(timing));
     evading =
@@ -135,26 +135,26 @@ final class StreamDuelKernel extends DuelKernel {
    * @param captureRadiusM a distance of at most this is a capture
    */
   void fly(int[] worldKeys, DelayTable[] links, float captureRadiusM) {
-    pictures.start(worldKeys, links);
+    views.start(worldKeys, links);
     evaders.start();
     pursuers.start();
     evading.start();
     pursuing.start();
     scores.start(captureRadiusM);
     for (int row = 0; row < steps; row++) {
-      pictures.startRow(row);
+      views.startRow(row);
       read(evaders, 0, row, true);
       read(pursuers, 1, row, true);
       if (row > 0) score(row);
       decide(row);
-      while (pictures.nextBeat()) {
+      while (views.nextBeat()) {
         read(evaders, 0, row, false);
         read(pursuers, 1, row, false);
         decide(row);
       }
     }
-    evaders.flyTo(steps, pictures.sampledAt[0], 0);
-    pursuers.flyTo(steps, pictures.sampledAt[1], 0);
+    evaders.flyTo(steps, views.sampledAt[0], 0);
+    pursuers.flyTo(steps, views.sampledAt[1], 0);
     score(steps);
     scores.finish();
   }
@@ -164,33 +164,33 @@ final class StreamDuelKernel extends DuelKernel {
         row, evaders.state, evaders.state, pursuers.state, pursuers.state, LagVehicles.Y);
   }
 
-  /** Flies on to a row's question, and takes the readings of the beat's pictures. */
+  /** Flies on to a row's question, and takes the readings of the beat's views. */
   private void read(LagVehicles vehicles, int role, int row, boolean isFirst) {
-    int[] sampledAt = pictures.sampledAt[role];
-    if (pictures.hasOld) vehicles.keepSeen();
-    if (isFirst && row > 0) vehicles.flyTo(row, sampledAt, pictures.latestSampleS);
-    else vehicles.lookAgain(row, sampledAt, pictures.latestSampleS);
+    int[] sampledAt = views.sampledAt[role];
+    if (views.hasOld) vehicles.keepSeen();
+    if (isFirst && row > 0) vehicles.flyTo(row, sampledAt, views.latestSampleS);
+    else vehicles.lookAgain(row, sampledAt, views.latestSampleS);
     if (withVelocity) vehicles.readVelocities();
-    for (int i = 0; i < pictures.oddCount; i++) {
-      int world = pictures.odd[i];
-      if (pictures.isFresh[role][world] == 0) vehicles.restoreSeen(world);
+    for (int i = 0; i < views.oddCount; i++) {
+      int world = views.odd[i];
+      if (views.isFresh[role][world] == 0) vehicles.restoreSeen(world);
       else if (sampledAt[world] < 0) vehicles.lookBack(world, row, sampledAt[world]);
     }
   }
 
   /** Both decide, where it is their turn. */
   private void decide(int row) {
-    pursuing.decide(evading, pictures);
-    evading.decide(pursuing, pictures);
+    pursuing.decide(evading, views);
+    evading.decide(pursuing, views);
     int end = grainsToEnd(row);
-    boolean isLast = pictures.isLastBeat();
-    pursuing.command(row, pictures.delays, COMMANDS + 2, pictures.place[1], end, isLast);
-    evading.command(row, pictures.delays, COMMANDS, pictures.place[0], end, isLast);
+    boolean isLast = views.isLastBeat();
+    pursuing.command(row, views.delays, COMMANDS + 2, views.place[1], end, isLast);
+    evading.command(row, views.delays, COMMANDS, views.place[0], end, isLast);
   }
 
   /** From a row's question to the end of the episode, as far as integers count. */
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * timing.periodS();
-    return seconds < MOST_S ? LanePictures.grains(seconds) : Integer.MAX_VALUE;
+    return seconds < MOST_S ? LaneViews.grains(seconds) : Integer.MAX_VALUE;
   }
 }

@@ -3,41 +3,41 @@ package skein.lanes;
 import skein.forward.DelayTable;
 import skein.forward.LoopTiming;
 
-/** The pictures of the {@code stream} loop, offered to both vehicles at once. */
+/** The views of the {@code stream} loop, offered to both vehicles at once. */
 final class StreamOffers extends LaneOffers {
-  private final LanePictures pictures;
+  private final LaneViews views;
   private boolean isFirst;
 
   StreamOffers(LoopTiming.Stream timing, double durationS) {
-    this(new LanePictures(timing, durationS, true));
+    this(new LaneViews(timing, durationS, true));
   }
 
-  private StreamOffers(LanePictures pictures) {
-    super(pictures.delays);
-    this.pictures = pictures;
+  private StreamOffers(LaneViews views) {
+    super(views.delays);
+    this.views = views;
   }
 
   @Override
   void start(int[] worldKeys, DelayTable[] links) {
-    pictures.start(worldKeys, links);
+    views.start(worldKeys, links);
   }
 
   @Override
   void startRow(int row) {
-    pictures.startRow(row);
+    views.startRow(row);
     isFirst = true;
   }
 
   @Override
   boolean nextBeat() {
-    if (!isFirst && !pictures.nextBeat()) return false;
+    if (!isFirst && !views.nextBeat()) return false;
     isFirst = false;
-    joinedAt = pictures.joinedAt;
-    nextAt = pictures.nextAt;
+    joinedAt = views.joinedAt;
+    nextAt = views.nextAt;
     for (int v = 0; v < 2; v++) {
-      sampledAt[v] = pictures.sampledAt[v];
-      fresh[v] = pictures.hasOld ? pictures.isFresh[v] : null;
-      place[v] = pictures.place[v];
+      sampledAt[v] = views.sampledAt[v];
+      fresh[v] = views.hasOld ? views.isFresh[v] : null;
+      place[v] = views.place[v];
     }
     return true;
   }

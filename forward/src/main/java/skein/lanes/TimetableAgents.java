@@ -2,7 +2,7 @@ package skein.lanes;
 
 /**
  * One vehicle of a {@link Timetable} in many worlds, and who decides for it. A kind of agents says
- * how decisions are made upon a picture.
+ * how decisions are made upon a view.
  */
 abstract class TimetableAgents {
   static final int WORLDS = LanePolicy.WORLDS;
@@ -33,15 +33,15 @@ abstract class TimetableAgents {
    * Decides in all worlds.
    *
    * @param all agents, by the vehicle's number
-   * @param pictures of the timetable; that which is decided upon begins at {@code picture}
+   * @param views of the timetable; that which is decided upon begins at {@code view}
    * @param known in a duel, the index of the first world's heading of the opponent, as far as known
    * @param before the same of the own heading before, and {@code after} of the decided one
    * @param times from {@code number} on, what the timetable tells of the decision
    */
   abstract void decide(
       TimetableAgents[] all,
-      int[] pictures,
-      int picture,
+      int[] views,
+      int view,
       int known,
       int before,
       int after,

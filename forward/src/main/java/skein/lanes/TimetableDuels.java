@@ -35,7 +35,7 @@ final class TimetableDuels extends DuelKernel implements TimetableScores {
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy) {
     steps = (int) Math.round(duel.durationS() / timing.periodS());
-    LaneSight sight = new LaneSight();
+    LaneObservation sight = new LaneObservation();
     DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight),
         pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight);
     evaders = evader.vehicles;
@@ -66,9 +66,9 @@ final class TimetableDuels extends DuelKernel implements TimetableScores {
   /** The distance between readings of the vehicles as they are now. */
   @Override
   public void score(
-      TimetableAgents[] agents, int[] pictures, int picture, boolean isLast, float timeS) {
+      TimetableAgents[] agents, int[] views, int view, boolean isLast, float timeS) {
     if (isLast) lastScores++;
-    int evaderSeen = pictures[picture] * WORLDS, pursuerSeen = pictures[picture + 1] * WORLDS;
+    int evaderSeen = views[view] * WORLDS, pursuerSeen = views[view + 1] * WORLDS;
     FloatVector time = constant(timeS), radius = captureRadius;
     float[] evaderX = evaders.seenX, evaderY = evaders.seenY;
     float[] pursuerX = pursuers.seenX, pursuerY = pursuers.seenY;

@@ -43,7 +43,7 @@ final class TimetableKernel {
           "a timetable of " + timetable.vehicles() + " vehicles for " + agents.length);
     for (TimetableAgents each : agents) each.start(timetable, worlds);
     scores.start();
-    int[] operations = timetable.operations(), pictures = timetable.pictures();
+    int[] operations = timetable.operations(), views = timetable.views();
     float[] times = timetable.times();
     Courses courses = timetable.courses();
     // Predictions start from velocities, whoever looks at them.
@@ -59,7 +59,7 @@ final class TimetableKernel {
         case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
         case SCORE ->
             scores.score(
-                agents, pictures, first * agents.length, operations[field + 3] != 0, times[number]);
+                agents, views, first * agents.length, operations[field + 3] != 0, times[number]);
         case PREDICT ->
             agent.vehicles.predicted.predict(
                 agent.vehicles.seenX,
@@ -77,7 +77,7 @@ final class TimetableKernel {
         default ->
             agent.decide(
                 agents,
-                pictures,
+                views,
                 first * agents.length,
                 operations[field + 3] * WORLDS,
                 operations[field + 4] * WORLDS,

@@ -9,10 +9,10 @@ interface TimetableScores {
    * Where all vehicles are now.
    *
    * @param agents by the vehicle's number
-   * @param pictures of the timetable; that which is scored begins at {@code picture}
+   * @param views of the timetable; that which is scored begins at {@code view}
    * @param isLast whether it counts for the mean of the last 10 s
    */
-  void score(TimetableAgents[] agents, int[] pictures, int picture, boolean isLast, float timeS);
+  void score(TimetableAgents[] agents, int[] views, int view, boolean isLast, float timeS);
 
   /** At the end of the episode. */
   void finish();

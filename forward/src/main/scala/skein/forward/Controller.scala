@@ -1,15 +1,15 @@
 package skein.forward
 
 import skein.forecast.Forecast
-import skein.policy.{PlanarObservation, ObservingPolicy, Policy, TeamPolicy, TeamSight}
+import skein.policy.{PlanarObservation, ObservingPolicy, Policy, TeamPolicy, TeamObservation}
 import skein.units.Instant
 
 /** What a decision is made from: a reading of each vehicle, and the headings sent to them until then. Mutable.
   *
   * @see
-  *   `skein.loop.Picture`, which the live loops hold
+  *   `skein.loop.View`, which the live loops hold
   */
-private[skein] final class DuelSight(count: Int) extends Grounds:
+private[skein] final class DuelObservation(count: Int) extends Grounds:
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
   /** Headings sent last, rad. */
@@ -27,7 +27,7 @@ private[skein] final class DuelSight(count: Int) extends Grounds:
   /** What the readings are to be replaced by when it is decided. */
   var forecast: Option[Forecast] = None
 
-  def copyFrom(other: DuelSight): Unit =
+  def copyFrom(other: DuelObservation): Unit =
     for vehicle <- 0 until count do
       x(vehicle) = other.x(vehicle); y(vehicle) = other.y(vehicle)
       vx(vehicle) = other.vx(vehicle); vy(vehicle) = other.vy(vehicle)
@@ -71,7 +71,7 @@ private[skein] final class Controller(
   private val policy     = world.agents(agent).policy
   private val minNs      = Nanos.of(steering.minIntervalS)
   private val handoverNs = Nanos.of(steering.handoverS)
-  private val held       = DuelSight(world.count)
+  private val held       = DuelObservation(world.count)
 
   private var outstanding   = 0
   private var mayCommandAt  = 0L
@@ -118,7 +118,7 @@ private[skein] final class Controller(
     made = 0; unused = 0; turned = 0
     goOn()
 
-  def offer(sight: DuelSight): Unit =
+  def offer(sight: DuelObservation): Unit =
     if holds then unused += 1
     holds = true
     held.copyFrom(sight)
@@ -150,7 +150,7 @@ private[skein] final class Controller(
   /** And how fast it is to fly, m/s. */
   def decidedSpeed: Double = speed
 
-  def decide(sight: DuelSight): Unit =
+  def decide(sight: DuelObservation): Unit =
     val now     = world.nowNs
     val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
     val before  = decided
@@ -166,7 +166,7 @@ private[skein] final class Controller(
     made += 1
     world.decided(agent, elapsed, sight)
 
-  private def heading(policy: Policy, sight: DuelSight, elapsedS: Double): Double =
+  private def heading(policy: Policy, sight: DuelObservation, elapsedS: Double): Double =
     upon = sight
     val other      = world.assignment.opponentOf(agent, distance)
     val (dx, dy)   = (sight.x(other) - sight.x(agent), sight.y(other) - sight.y(agent))
@@ -181,7 +181,7 @@ private[skein] final class Controller(
         answer.headingRad
       case _ => policy.heading(dx, dy, dvx, dvy, decided, sight.sent(other), elapsedS)
 
-  private def seen(sight: DuelSight, elapsedS: Double): TeamSight = TeamSight(
+  private def seen(sight: DuelObservation, elapsedS: Double): TeamObservation = TeamObservation(
     agent,
     IArray.from(sight.x),
     IArray.from(sight.y),
@@ -192,7 +192,7 @@ private[skein] final class Controller(
   )
 
   /** Puts where the vehicles will be in the place of where they were read. */
-  private def ahead(sight: DuelSight, forecast: Forecast): Unit =
+  private def ahead(sight: DuelObservation, forecast: Forecast): Unit =
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
     for vehicle <- 0 until world.count do
       val kinematics = estimates(vehicle).kinematics

@@ -66,7 +66,7 @@ object Duel:
   * @param decisions
   *   of both agents
   * @param skipped
-  *   pictures on which an agent did not decide because a newer one came first
+  *   views on which an agent did not decide because a newer one came first
   */
 final case class Outcome(
     minDistanceM: Double,

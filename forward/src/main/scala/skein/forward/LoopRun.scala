@@ -27,7 +27,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
 /** [[LoopTiming.Paused]]. */
 private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val sight                  = DuelSight(world.count)
+  private val sight                  = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
 
@@ -49,7 +49,7 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld
 /** [[LoopTiming.Sequential]]. */
 private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val sight                  = DuelSight(world.count)
+  private val sight                  = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -76,7 +76,7 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: D
 private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val most                   = world.count * timing.asking.window
-  private val sight                  = DuelSight(world.count)
+  private val sight                  = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 

@@ -14,8 +14,8 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   *     ([[VelocityResponse.handoverS]]). The one replaced is answered at the arrival of its successor, the newest not at
   *     all.
   *   - When a vehicle may be commanded, [[Steering]] says. What waits meanwhile is replaced by what comes newer.
-  *   - A picture holds a reading of each vehicle and the headings sent to both so far. A policy knows the opponent's
-  *     heading from the picture: what was sent to the opponent later it does not know.
+  *   - A view holds a reading of each vehicle and the headings sent to both so far. A policy knows the opponent's
+  *     heading from the view: what was sent to the opponent later it does not know.
   *
   * `skein.loop.LoopTimings` gives the timing of the live loops by their settings; `RolloutParitySimulation` holds each
   * case to its loop in virtual time.
@@ -48,15 +48,15 @@ enum LoopTiming:
   )
 
   /** Asks every vehicle once a period, while no more than `window` of its questions are under way; the newest readings
-    * are joined to a picture when each vehicle's was renewed since the last picture, or `patienceS` after the first of
+    * are joined to a view when each vehicle's was renewed since the last view, or `patienceS` after the first of
     * them was. A reading that an answer to a later question overtook, or that was sampled before the one held, is
-    * dropped. Each vehicle decides on the newest picture once an interval of `periodS − toleranceS` is over since it
-    * last did and it may be commanded; a picture that a newer one replaces before is skipped.
+    * dropped. Each vehicle decides on the newest view once an interval of `periodS − toleranceS` is over since it
+    * last did and it may be commanded; a view that a newer one replaces before is skipped.
     *
     * @param toleranceS
     *   how much less than a period may pass between two decisions; live loops take half a period
     * @param decideThenPace
-    *   decides at every picture; interval and steering then hold decisions back instead of pictures
+    *   decides at every view; interval and steering then hold decisions back instead of views
     */
   case Stream(
       periodS: Double = 0.1,

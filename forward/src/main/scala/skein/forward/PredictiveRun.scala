@@ -16,7 +16,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = false, this))
 
-  private val sight               = DuelSight(world.count)
+  private val sight               = DuelObservation(world.count)
   private val validAt, receivedAt = Array.ofDim[Long](world.count)
   private val known               = Array.ofDim[Boolean](world.count)
   private var forecast            = Forecast(Vector.empty)

@@ -13,7 +13,7 @@ private[skein] final class StreamRun(timing: LoopTiming.Stream, world: DuelWorld
     Array.tabulate(world.count)(Controller(world, _, timing.steering, interval, timing.decideThenPace, this))
 
   // What is joined, as skein.flow.JoinLatest keeps it.
-  private val sight               = DuelSight(world.count)
+  private val sight               = DuelObservation(world.count)
   private val validAt, receivedAt = Array.ofDim[Long](world.count)
   private val known, renewed      = Array.ofDim[Boolean](world.count)
   private var patienceEnds        = StreamRun.NoEnd

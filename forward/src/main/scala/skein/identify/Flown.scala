@@ -3,7 +3,7 @@ package skein.identify
 import skein.vehicle.ReducedFlight
 
 /** Where a vehicle was and how fast, horizontally: s, m, m/s. */
-final case class Sight(atS: Double, x: Double, y: Double, vx: Double, vy: Double)
+final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double)
 
 /** A commanded horizontal velocity and when it came to the vehicle: s, m/s. */
 final case class Arrival(atS: Double, vx: Double, vy: Double)
@@ -13,16 +13,16 @@ final case class Arrival(atS: Double, vx: Double, vy: Double)
   * @param downM
   *   the altitude that its commands keep, NED
   */
-final case class Flown(name: String, sights: Vector[Sight], arrivals: Vector[Arrival], downM: Double):
+final case class Flown(name: String, samples: Vector[Sample], arrivals: Vector[Arrival], downM: Double):
 
   private val times = arrivals.map(_.atS).toArray
 
-  /** Predicts from one sight over all later ones within a horizon.
+  /** Predicts from one sample over all later ones within a horizon.
     *
     * @param flight
     *   of a model with this dead time
     * @param each
-    *   told of each later sight's index, when the flight is there
+    *   told of each later sample's index, when the flight is there
     */
   def predict(
       flight: ReducedFlight,
@@ -30,38 +30,38 @@ final case class Flown(name: String, sights: Vector[Sight], arrivals: Vector[Arr
       from: Int,
       horizonS: Double
   )(each: Int => Unit): Unit =
-    val start = sights(from)
+    val start = samples(from)
     // The first command that does not act yet.
     var next     = firstAfter(start.atS - deadTimeS)
     val (ux, uy) = if next == 0 then (0.0, 0.0) else (arrivals(next - 1).vx, arrivals(next - 1).vy)
     flight.start(start.atS, start.x, start.y, start.vx, start.vy, ux, uy)
-    var sight = from + 1
-    while sight < sights.size && sights(sight).atS <= start.atS + horizonS + Flown.Rounding do
-      val atS = sights(sight).atS
+    var sample = from + 1
+    while sample < samples.size && samples(sample).atS <= start.atS + horizonS + Flown.Rounding do
+      val atS = samples(sample).atS
       while next < arrivals.size && times(next) + deadTimeS <= atS do
         flight.act(times(next) + deadTimeS, arrivals(next).vx, arrivals(next).vy)
         next += 1
       flight.advance(atS)
-      each(sight)
-      sight += 1
+      each(sample)
+      sample += 1
 
-  /** Indices of sights at least this far apart from each other, from each of which a whole horizon can be predicted. */
+  /** Indices of samples at least this far apart from each other, from each of which a whole horizon can be predicted. */
   def starts(everyS: Double, horizonS: Double): Vector[Int] =
-    val last = sights.lastOption.fold(0.0)(_.atS) - horizonS + Flown.Rounding
-    sights.indices
+    val last = samples.lastOption.fold(0.0)(_.atS) - horizonS + Flown.Rounding
+    samples.indices
       .foldLeft(Vector.empty[Int]): (chosen, index) =>
-        val atS = sights(index).atS
+        val atS = samples(index).atS
         if atS <= last && chosen.lastOption.forall(before =>
-            atS >= sights(before).atS + everyS - Flown.Rounding
+            atS >= samples(before).atS + everyS - Flown.Rounding
           )
         then chosen :+ index
         else chosen
 
-  /** Index of the sight nearest to a time, not before `from`. */
+  /** Index of the sample nearest to a time, not before `from`. */
   def nearest(timeS: Double, from: Int): Int =
     var index = from
-    while index + 1 < sights.size && math.abs(sights(index + 1).atS - timeS) <= math.abs(
-        sights(index).atS - timeS
+    while index + 1 < samples.size && math.abs(samples(index + 1).atS - timeS) <= math.abs(
+        samples(index).atS - timeS
       )
     do
       index += 1

@@ -16,7 +16,7 @@ final case class HorizonError(
 object HorizonErrors:
   val HorizonsS: Vector[Double] = Vector(1, 2, 5)
 
-  /** Of a model's predictions from a sight every half second, against the sights nearest to the horizons; horizons that
+  /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons; horizons that
     * no flight is long enough for are left out.
     */
   def of(model: ReducedModel, flights: Vector[Flown]): Vector[HorizonError] =
@@ -41,34 +41,34 @@ object HorizonErrors:
         quantile(velocity, 0.95)
       )
 
-  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first sight: the truth
-    * that a reduced model stands for. Sights each 0.1 s, at the nearest whole step.
+  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first sample: the truth
+    * that a reduced model stands for. Samples each 0.1 s, at the nearest whole step.
     */
   def reflown(flown: Flown, quadrotor: Quadrotor = Quadrotor.AirSim): Flown =
-    if flown.sights.isEmpty then flown
+    if flown.samples.isEmpty then flown
     else
-      val first              = flown.sights.head
+      val first              = flown.samples.head
       val place              = Vector3(first.x, first.y, flown.downM)
       val state              = quadrotor.hovering(place)
       var setpoint: Setpoint = Setpoint.hold(place)
       var next               = 0
-      val sights             = Vector.newBuilder[Sight]
+      val samples            = Vector.newBuilder[Sample]
       var nextSightS         = first.atS
-      val steps              = ((flown.sights.last.atS - first.atS) / quadrotor.stepS).toInt
+      val steps              = ((flown.samples.last.atS - first.atS) / quadrotor.stepS).toInt
       for step <- 0 to steps do
         val atS = first.atS + step * quadrotor.stepS
         if atS >= nextSightS - quadrotor.stepS / 2 then
-          sights += Sight(atS, state.x, state.y, state.vx, state.vy)
-          nextSightS += SightEveryS
+          samples += Sample(atS, state.x, state.y, state.vx, state.vy)
+          nextSightS += SampleEveryS
         while next < flown.arrivals.size && flown.arrivals(next).atS <= atS do
           setpoint = Setpoint.velocityZ(flown.arrivals(next).vx, flown.arrivals(next).vy, flown.downM)
           next += 1
         quadrotor.step(state, setpoint, Environment.Calm)
-      flown.copy(sights = sights.result())
+      flown.copy(samples = samples.result())
 
-  private val SightEveryS = 0.1
+  private val SampleEveryS = 0.1
 
-  /** Errors of position and velocity at the sight nearest to the horizon. */
+  /** Errors of position and velocity at the sample nearest to the horizon. */
   private def atHorizon(
       model: ReducedModel,
       flight: ReducedFlight,
@@ -76,17 +76,17 @@ object HorizonErrors:
       from: Int,
       horizonS: Double
   ): Option[(Double, Double)] =
-    val goal    = flown.sights(from).atS + horizonS
+    val goal    = flown.samples(from).atS + horizonS
     val nearest = flown.nearest(goal, from)
     Option(nearest)
-      .filter(i => i > from && math.abs(flown.sights(i).atS - goal) <= SightEveryS)
+      .filter(i => i > from && math.abs(flown.samples(i).atS - goal) <= SampleEveryS)
       .map: index =>
-        val sight = flown.sights(index)
-        // The tenth of a microsecond includes the nearest sight whatever the rounding.
-        flown.predict(flight, model.deadTimeS, from, sight.atS - flown.sights(from).atS + 1e-7)(_ => ())
+        val sample = flown.samples(index)
+        // The tenth of a microsecond includes the nearest sample whatever the rounding.
+        flown.predict(flight, model.deadTimeS, from, sample.atS - flown.samples(from).atS + 1e-7)(_ => ())
         (
-          StrictMath.hypot(flight.x - sight.x, flight.y - sight.y),
-          StrictMath.hypot(flight.vx - sight.vx, flight.vy - sight.vy)
+          StrictMath.hypot(flight.x - sample.x, flight.y - sample.y),
+          StrictMath.hypot(flight.vx - sample.vx, flight.vy - sample.vy)
         )
 
   private def quantile(sorted: Vector[Double], p: Double): Double =

@@ -13,7 +13,7 @@ final case class Fitted(name: String, value: Double, least: Double, most: Double
 /** A model fitted to flights.
   *
   * @param predictions
-  *   sights that were predicted, each from some earlier one
+  *   samples that were predicted, each from some earlier one
   * @param velocityRmsMps
   *   of one component's error over all predictions
   * @param positionRmsM
@@ -29,7 +29,7 @@ final case class Identification(
     positionRmsM: Double
 )
 
-/** Fits a [[skein.vehicle.ReducedModel]] to flights. From a sight every [[Identification.StartEveryS]] all sights within
+/** Fits a [[skein.vehicle.ReducedModel]] to flights. From a sample every [[Identification.StartEveryS]] all samples within
   * the horizon are predicted; the parameters minimise the sum of squared errors of velocity (m/s) and position (m).
   *
   * Errors of one stretch of flight hang together, so that the intervals come from the Jacobian with the sandwich
@@ -54,7 +54,7 @@ object Identification:
       for
         (flown, number) <- flights.zipWithIndex
         from            <- flown.starts(StartEveryS, horizonS)
-      yield Window(flown, from, horizonS, (number, (flown.sights(from).atS / BlockS).floor.toLong))
+      yield Window(flown, from, horizonS, (number, (flown.samples(from).atS / BlockS).floor.toLong))
     val blocks = windows.map(_.block).distinct
     if blocks.sizeIs < 2 * structure.parameters.size then
       Left(
@@ -66,34 +66,34 @@ object Identification:
     else Right(fit(windows, blocks.size, structure))
 
   private def spanS(flown: Flown): Double =
-    if flown.sights.isEmpty then 0 else flown.sights.last.atS - flown.sights.head.atS
+    if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
 
   /** @param block
     *   flight and stretch: errors within one hang together
     */
   private final case class Window(flown: Flown, from: Int, horizonS: Double, block: (Int, Long)):
     val size: Int =
-      val until = flown.sights(from).atS + horizonS + Flown.Rounding
-      flown.sights.indexWhere(_.atS > until, from) match
-        case -1    => flown.sights.size - from - 1
+      val until = flown.samples(from).atS + horizonS + Flown.Rounding
+      flown.samples.indexWhere(_.atS > until, from) match
+        case -1    => flown.samples.size - from - 1
         case index => index - from - 1
 
-  /** Per predicted sight: errors of vx, vy, x, y. */
-  private val PerSight = 4
+  /** Per predicted sample: errors of vx, vy, x, y. */
+  private val PerSample = 4
 
   private def fit(windows: Vector[Window], blocks: Int, structure: Structure): Identification =
-    val sights                                          = windows.map(_.size).sum
+    val samples                                         = windows.map(_.size).sum
     def residuals(values: Array[Double]): Array[Double] =
       val model  = structure.model(values)
       val flight = ReducedFlight(model)
-      val errors = Array.ofDim[Double](PerSight * sights)
+      val errors = Array.ofDim[Double](PerSample * samples)
       var at     = 0
       for window <- windows do
-        window.flown.predict(flight, model.deadTimeS, window.from, window.horizonS): sight =>
-          val seen = window.flown.sights(sight)
+        window.flown.predict(flight, model.deadTimeS, window.from, window.horizonS): sample =>
+          val seen = window.flown.samples(sample)
           errors(at) = flight.vx - seen.vx; errors(at + 1) = flight.vy - seen.vy
           errors(at + 2) = flight.x - seen.x; errors(at + 3) = flight.y - seen.y
-          at += PerSight
+          at += PerSample
       errors
 
     val solution  = LeastSquares.solve(structure.start, structure.least, structure.most)(residuals)
@@ -111,10 +111,10 @@ object Identification:
       )
     val squares                  = solution.residuals.map(error => error * error)
     def rms(offset: Int): Double =
-      math.sqrt((0 until sights).map(k =>
-        squares(k * PerSight + offset) + squares(k * PerSight + offset + 1)
-      ).sum / (2 * sights))
-    Identification(structure, fitted, structure.model(solution.parameters), sights, blocks, rms(0), rms(2))
+      math.sqrt((0 until samples).map(k =>
+        squares(k * PerSample + offset) + squares(k * PerSample + offset + 1)
+      ).sum / (2 * samples))
+    Identification(structure, fitted, structure.model(solution.parameters), samples, blocks, rms(0), rms(2))
 
   /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block. */
   private def standardErrors(
@@ -127,7 +127,7 @@ object Identification:
     val inverse = Array.tabulate(n)(i =>
       LeastSquares.solveLinear(normal, Array.tabulate(n)(j => if i == j then 1.0 else 0.0))
     )
-    val starts = windows.scanLeft(0)((at, window) => at + PerSight * window.size)
+    val starts = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
     val scores = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
       Array.tabulate(n): i =>
         members.iterator

@@ -62,17 +62,17 @@ private[lanes] final class LaneCall(bound: BoundFunction):
 
   def apply(): Unit = bound.function.apply(arrays, offsets, none, scratch)
 
-/** A function of what a picture shows, and of other numbers that stay where they are. */
+/** A function of what a view shows, and of other numbers that stay where they are. */
 private[lanes] final class PictureCall(bound: BoundFunction, lanes: Int => Option[(Int, Int)]):
   val call: LaneCall = LaneCall(bound)
 
-  // The function's inputs that are read from pictures, with the vehicle and the field.
+  // The function's inputs that are read from views, with the vehicle and the field.
   private val (places, vehicles, fields) =
     bound.inputs.zipWithIndex
       .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
       .unzip3
 
-  def look(all: Array[TimetableAgents], pictures: Array[Int], picture: Int): Unit =
+  def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     var i = 0
     while i < places.length do
       val vehicle = vehicles(i)
@@ -82,5 +82,5 @@ private[lanes] final class PictureCall(bound: BoundFunction, lanes: Int => Optio
         case 1 => craft.seenY
         case 2 => craft.seenVx
         case _ => craft.seenVy
-      call.input(places(i), from, pictures(picture + vehicle) * LaneFunction.COUNT)
+      call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
       i += 1

@@ -5,7 +5,7 @@ import skein.formula.{Angles, Formula, Node, Trace, Untraceable}
 import skein.scenario.{Places, Quantity}
 
 /** How quantities are computed in many worlds at once, compiled from their methods [[Quantity.of]]: several of one
-  * picture, together. Quantities of one form differ in numbers alone.
+  * view, together. Quantities of one form differ in numbers alone.
   */
 private[lanes] final class QuantityLanes private (formulas: Vector[Formula], val count: Int):
   import QuantityLanes.*

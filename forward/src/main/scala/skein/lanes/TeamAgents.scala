@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import skein.forward.Duelist
 
-/** What several vehicles of a team compute of one picture, in many worlds. Mutable. */
+/** What several vehicles of a team compute of one view, in many worlds. Mutable. */
 private[lanes] final class TeamPictures(val lanes: TeamLanes):
   private val worlds = TimetableAgents.WORLDS
   private val shown  = PictureCall(lanes.shared, lanes.reading)
@@ -14,11 +14,11 @@ private[lanes] final class TeamPictures(val lanes: TeamLanes):
 
   def start(): Unit = last = TeamPictures.Nothing
 
-  /** Computes [[values]] of a picture, unless they stand there already. */
-  def show(all: Array[TimetableAgents], pictures: Array[Int], picture: Int): Unit =
-    if lanes.shared.outputs > 0 && picture != last then
-      last = picture
-      shown.look(all, pictures, picture)
+  /** Computes [[values]] of a view, unless they stand there already. */
+  def show(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
+    if lanes.shared.outputs > 0 && view != last then
+      last = view
+      shown.look(all, views, view)
       shown.call.apply()
 
 private object TeamPictures:
@@ -69,16 +69,16 @@ private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: TimetableMod
 
   override def decide(
       all: Array[TimetableAgents],
-      pictures: Array[Int],
-      picture: Int,
+      views: Array[Int],
+      view: Int,
       known: Int,
       before: Int,
       after: Int,
       times: Array[Float],
       number: Int
   ): Unit =
-    team.show(all, pictures, picture)
-    decision.look(all, pictures, picture)
+    team.show(all, views, view)
+    decision.look(all, views, view)
     if asksCos >= 0 then decision.call.input(asksCos, cos, 0)
     if asksSin >= 0 then decision.call.input(asksSin, sin, 0)
     if asksTime >= 0 then

@@ -103,10 +103,10 @@ final class TeamBatch(
 
   /** Candidates of one form, by lanes. */
   private final class Flight(form: Form, first: TeamCandidate):
-    private val count    = form.team.count
-    private val pictures = TeamPictures(form.team)
-    private val agents   = Array.tabulate(count): self =>
-      TeamAgents(self, first.engagement.agents(self), form.vehicles, pictures)
+    private val count  = form.team.count
+    private val views  = TeamPictures(form.team)
+    private val agents = Array.tabulate(count): self =>
+      TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
     private val scores  = TeamScores(form.quantities, first.judged)
     private val kernel  = TimetableKernel(agents.map(identity[TimetableAgents]), scores)
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)

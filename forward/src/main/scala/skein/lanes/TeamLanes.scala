@@ -3,12 +3,12 @@ package skein.lanes
 import java.util.concurrent.CopyOnWriteArrayList
 import scala.collection.mutable
 import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
-import skein.policy.{TeamPolicy, TeamSight}
+import skein.policy.{TeamPolicy, TeamObservation}
 
 /** How the policies of a team decide in many worlds at once, compiled from their methods [[TeamPolicy.course]]. Teams of
   * one form differ in numbers alone.
   *
-  * What several vehicles compute of one picture is computed once for all of them: of the bearings that each pursuer wants
+  * What several vehicles compute of one view is computed once for all of them: of the bearings that each pursuer wants
   * to know, say.
   */
 private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
@@ -17,8 +17,8 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   /** How many vehicles fly. */
   val count: Int = formulas.size
 
-  private val picture = 4 * count
-  private val trace   = Trace()
+  private val view  = 4 * count
+  private val trace = Trace()
 
   private val angles: Vector[Angles] = Vector.tabulate(count): self =>
     def own(number: Int) = trace.input(ownInput(self, number))
@@ -26,10 +26,10 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
       formulas(self).trace,
       trace,
       input =>
-        if input < picture then trace.input(input)
-        else if input == picture then trace.binary(Op.Atan2, own(Own.Sin), own(Own.Cos))
+        if input < view then trace.input(input)
+        else if input == view then trace.binary(Op.Atan2, own(Own.Sin), own(Own.Cos))
         else own(Own.Elapsed),
-      input => Option.when(input == picture)((own(Own.Cos), own(Own.Sin))),
+      input => Option.when(input == view)((own(Own.Cos), own(Own.Sin))),
       number => own(Own.Parameters + number)
     )
 
@@ -42,9 +42,9 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
 
   private val derived = angles.map(_.derived)
 
-  private val common = Common.of(outputs, picture)
+  private val common = Common.of(outputs, view)
 
-  /** What is computed once of a picture; there may be nothing. */
+  /** What is computed once of a view; there may be nothing. */
   val shared: BoundFunction = BoundFunction.of(common.nodes)
 
   /** By vehicle: what it computes besides. */
@@ -55,13 +55,13 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
 
   /** A vehicle and what of its reading an input is, 0 to 3: position north and east, velocity north and east. */
   def reading(input: Int): Option[(Int, Int)] =
-    Option.when(input < picture)((input % count, input / count))
+    Option.when(input < view)((input % count, input / count))
 
   /** What another input is. */
   def source(input: Int): Source =
     if input >= FirstShared then Source.Shared(input - FirstShared)
     else
-      (input - picture) % Stride match
+      (input - view) % Stride match
         case Own.Cos     => Source.Cos
         case Own.Sin     => Source.Sin
         case Own.Elapsed => Source.Elapsed
@@ -81,7 +81,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   def fits(policies: Vector[TeamPolicy]): Boolean =
     policies.size == count && policies.indices.forall(self => formulas(self).fits(policies(self)))
 
-  private def ownInput(self: Int, number: Int) = picture + self * Stride + number
+  private def ownInput(self: Int, number: Int) = view + self * Stride + number
 
 private[lanes] object TeamLanes:
   /** Inputs that each vehicle has for itself. */
@@ -130,7 +130,7 @@ private[lanes] object TeamLanes:
     policy,
     "course",
     Seq("northM", "eastM", "northMps", "eastMps").map(field => s"seen.$field" -> count).toMap,
-    Some(Seq(classOf[TeamSight])),
+    Some(Seq(classOf[TeamObservation])),
     Map("seen.self" -> self)
   )
 

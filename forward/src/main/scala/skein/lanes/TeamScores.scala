@@ -35,13 +35,13 @@ private[lanes] final class TeamScores(lanes: QuantityLanes, judged: Vector[Judge
 
   def score(
       agents: Array[TimetableAgents],
-      pictures: Array[Int],
-      picture: Int,
+      views: Array[Int],
+      view: Int,
       isLast: Boolean,
       timeS: Float
   ): Unit =
     if judged.exists(_.counts(timeS)) then
-      shown.look(agents, pictures, picture)
+      shown.look(agents, views, view)
       shown.call.apply()
       for number <- judged.indices if judged(number).counts(timeS) do
         reductions(number).add(values, number * worlds)

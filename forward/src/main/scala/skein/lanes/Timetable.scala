@@ -31,8 +31,8 @@ import skein.vehicle.ConstantVelocity
   * @param times
   *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
   *   time since the one before, and in a duel the ages of the own and of the opponent's reading; of a score, the time; s
-  * @param pictures
-  *   what is decided and scored upon: the places of all vehicles' readings, one picture after the other
+  * @param views
+  *   what is decided and scored upon: the places of all vehicles' readings, one view after the other
   * @param courses
   *   by which readings are carried forward, in loops that predict
   * @param readings
@@ -44,7 +44,7 @@ private[skein] final class Timetable private (
     val vehicles: Int,
     val operations: Array[Int],
     val times: Array[Float],
-    val pictures: Array[Int],
+    val views: Array[Int],
     val courses: Courses,
     val readings: Int,
     val headings: Int
@@ -52,7 +52,7 @@ private[skein] final class Timetable private (
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long = 4L * (operations.length + times.length + pictures.length) + courses.bytes
+  def bytes: Long = 4L * (operations.length + times.length + views.length) + courses.bytes
 
 private[skein] object Timetable:
   val Fields: Int  = 6
@@ -116,8 +116,8 @@ private[skein] object Timetable:
       */
     var number: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `DECIDE` and `SCORE`: the picture's number. */
-    var picture: Array[Int] = Array.ofDim[Int](capacity)
+    /** `DECIDE` and `SCORE`: the view's number. */
+    var view: Array[Int] = Array.ofDim[Int](capacity)
 
     /** `DECIDE` in a duel: the number of the opponent's decision that is known. */
     var opponent: Array[Int] = Array.ofDim[Int](capacity)
@@ -136,7 +136,7 @@ private[skein] object Timetable:
     /** By vehicle: how many of them were noted. */
     private val corrected = Array.ofDim[Int](vehicles)
 
-    // What was predicted last: of which forecast, for a decision when, in which picture.
+    // What was predicted last: of which forecast, for a decision when, in which view.
     private var predictedOf: Forecast = null
     private var predictedAtNs         = 0L
     private var predicted             = 0
@@ -144,8 +144,8 @@ private[skein] object Timetable:
     /** By vehicle: how many there are, of what is predicted too. */
     val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
 
-    /** By picture, then by vehicle: the readings' numbers. */
-    val pictures: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
+    /** By view, then by vehicle: the readings' numbers. */
+    val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
 
     private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
     private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
@@ -160,7 +160,7 @@ private[skein] object Timetable:
     private def grow(): Unit =
       capacity *= 2
       kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
-      picture = picture.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
+      view = view.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
       from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
       atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
       ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
@@ -173,8 +173,8 @@ private[skein] object Timetable:
     private def pictureOf(seen: Array[Int]): Int =
       numberOf.getOrElseUpdate(
         mutable.ArraySeq.make(seen), {
-          pictures += seen
-          pictures.size - 1
+          views += seen
+          views.size - 1
         }
       )
 
@@ -216,7 +216,7 @@ private[skein] object Timetable:
     private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
       CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
 
-    /** The picture of where all vehicles will be when a command acts that is sent now. */
+    /** The view of where all vehicles will be when a command acts that is sent now. */
     private def predict(forecast: Forecast, atNs: Long): Int =
       if (forecast ne predictedOf) || atNs != predictedAtNs then
         predictedOf = forecast
@@ -236,7 +236,7 @@ private[skein] object Timetable:
         case None => pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
       note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
       decisions(vehicle) += 1
-      picture(size - 1) = seen
+      view(size - 1) = seen
       elapsedS(size - 1) = elapsed
       if vehicles == 2 then
         opponent(size - 1) = upon.sentDecision(1 - vehicle)
@@ -258,7 +258,7 @@ private[skein] object Timetable:
       placed(vehicle) = look(vehicle, timeS)
       if vehicle == vehicles - 1 then
         note(SCORE, 0, timeS, 0)
-        picture(size - 1) = pictureOf(placed.clone)
+        view(size - 1) = pictureOf(placed.clone)
 
   /** A reading in the forecast.
     *
@@ -282,11 +282,11 @@ private[skein] object Timetable:
     private val decidedUpon =
       Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
-    /** The number of each picture among those that are told, or −1. */
-    private val told     = Array.fill(notes.pictures.size)(-1)
-    private val courses  = Course.Builder()
-    private val pictures = Array.newBuilder[Int]
-    private var count    = 0
+    /** The number of each view among those that are told, or −1. */
+    private val told    = Array.fill(notes.views.size)(-1)
+    private val courses = Course.Builder()
+    private val views   = Array.newBuilder[Int]
+    private var count   = 0
 
     private val operations = Array.ofDim[Int](end * Fields)
     private val times      = Array.ofDim[Float](end * Numbers)
@@ -308,7 +308,7 @@ private[skein] object Timetable:
         vehicles,
         java.util.Arrays.copyOf(operations, size * Fields),
         java.util.Arrays.copyOf(times, size * Numbers),
-        pictures.result(),
+        views.result(),
         courses.result(),
         readings.map(_.size).max,
         headings.map(_.size).max
@@ -338,15 +338,15 @@ private[skein] object Timetable:
       val agent = notes.agent(event)
       notes.kind(event) match
         case DECIDE =>
-          usedAt(notes.picture(event), at)
-          val seen = notes.pictures(notes.picture(event))
+          usedAt(notes.view(event), at)
+          val seen = notes.views(notes.view(event))
           for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
           headings(agent).usedAt(notes.number(event), at)
           if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
         case ACT               => headings(agent).usedAt(notes.number(event), at)
-        case SCORE             => usedAt(notes.picture(event), at)
+        case SCORE             => usedAt(notes.view(event), at)
         case PREDICT | CORRECT =>
           readings(agent).usedAt(notes.from(event), at)
           decidedUpon(agent)(notes.from(event)) = true
@@ -354,22 +354,22 @@ private[skein] object Timetable:
             headings(agent).usedAt(part.decision, at)
         case LOOK => ()
 
-    private def usedAt(picture: Int, at: Int): Unit =
-      val seen = notes.pictures(picture)
+    private def usedAt(view: Int, at: Int): Unit =
+      val seen = notes.views(view)
       for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
 
-    private def releasePicture(picture: Int, at: Int): Unit =
-      val seen = notes.pictures(picture)
+    private def releasePicture(view: Int, at: Int): Unit =
+      val seen = notes.views(view)
       for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
 
     /** Its number in the timetable; its readings keep their places until it is used for the last time. */
-    private def tell(picture: Int): Int =
-      if told(picture) < 0 then
-        val seen = notes.pictures(picture)
-        for vehicle <- 0 until vehicles do pictures += readings(vehicle).place(seen(vehicle))
-        told(picture) = count
+    private def tell(view: Int): Int =
+      if told(view) < 0 then
+        val seen = notes.views(view)
+        for vehicle <- 0 until vehicles do views += readings(vehicle).place(seen(vehicle))
+        told(view) = count
         count += 1
-      told(picture)
+      told(view)
 
     private def look(event: Int): Unit =
       val vehicle = notes.agent(event)
@@ -384,13 +384,13 @@ private[skein] object Timetable:
         happens(event, acts = false)
 
     private def decide(event: Int, at: Int): Unit =
-      val agent   = notes.agent(event)
-      val own     = notes.number(event)
-      val picture = notes.picture(event)
+      val agent = notes.agent(event)
+      val own   = notes.number(event)
+      val view  = notes.view(event)
       operation(
         DECIDE,
         agent,
-        tell(picture),
+        tell(view),
         if vehicles == 2 then headings(1 - agent).place(notes.opponent(event)) else 0,
         headings(agent).place(own),
         // Taken before the one before is given back: its effort is counted from there.
@@ -399,7 +399,7 @@ private[skein] object Timetable:
       times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
       times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
       took(notes.elapsedS(event))
-      releasePicture(picture, at)
+      releasePicture(view, at)
       headings(agent).release(own, at)
       if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
       headings(agent).release(own + 1, at)
@@ -440,11 +440,11 @@ private[skein] object Timetable:
       headings(vehicle).release(notes.number(event), at)
 
     private def score(event: Int, at: Int): Unit =
-      val picture = notes.picture(event)
-      val isLast  = Rollout.isLast10s(notes.atS(event), durationS)
-      operation(SCORE, 0, tell(picture), if isLast then 1 else 0)
+      val view   = notes.view(event)
+      val isLast = Rollout.isLast10s(notes.atS(event), durationS)
+      operation(SCORE, 0, tell(view), if isLast then 1 else 0)
       took(notes.atS(event))
-      releasePicture(picture, at)
+      releasePicture(view, at)
 
     private def operation(
         kind: Int,

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.policy.{TeamPolicy, TeamSight}
+import skein.policy.{TeamPolicy, TeamObservation}
 
 /** What a vehicle's own policy would do, as a manoeuvre. */
 object PolicyManoeuvre:
@@ -15,7 +15,7 @@ object PolicyManoeuvre:
     */
   def of(
       policy: TeamPolicy,
-      sight: TeamSight,
+      sight: TeamObservation,
       situation: Situation,
       limits: Limits,
       steps: Int,

@@ -103,7 +103,7 @@ class RolloutSuite extends munit.FunSuite:
     val rollout = Rollout(Duel.paper, LoopTiming.Sequential(0.1), link, lag)
     assertEqualsDouble(rollout.fly(0).decisions / 2.0, 60 / 0.2, 1.0)
 
-  test("stream skips pictures when acknowledgements of commands take longer than two periods"):
+  test("stream skips views when acknowledgements of commands take longer than two periods"):
     val link  = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(300)))
     val flown = Rollout(Duel.paper, LoopTiming.Stream(), link, lag).fly(0)
     assert(flown.skipped > 300, flown)

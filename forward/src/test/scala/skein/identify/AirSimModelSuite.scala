@@ -58,10 +58,10 @@ class AirSimModelSuite extends munit.FunSuite:
 /** Notes what a vehicle is told. */
 private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
   private val arrivals              = Vector.newBuilder[Arrival]
-  private val sights                = Vector.newBuilder[Sight]
+  private val samples               = Vector.newBuilder[Sample]
   private var now, down, nextSightS = 0.0
 
-  def flown(name: String): Flown = Flown(name, sights.result(), arrivals.result(), down)
+  def flown(name: String): Flown = Flown(name, samples.result(), arrivals.result(), down)
 
   def start(x: Double, y: Double, z: Double): Unit =
     vehicle.start(x, y, z)
@@ -75,7 +75,7 @@ private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
     vehicle.advance(timeS)
     now = timeS
     if timeS >= nextSightS then
-      sights += Sight(timeS, x, y, vx, vy)
+      samples += Sample(timeS, x, y, vx, vy)
       nextSightS = timeS + 0.1
 
   def x: Double  = vehicle.x

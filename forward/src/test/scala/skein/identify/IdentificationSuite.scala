@@ -23,14 +23,14 @@ class IdentificationSuite extends munit.FunSuite:
       Arrival(0.05 + 0.3 * k, speed * math.cos(heading), speed * math.sin(heading))
     val flight = ReducedFlight(model)
     flight.start(0, 0, 0, 0, 0)
-    var next   = 0
-    val sights = Vector.tabulate((spanS / 0.1).toInt): k =>
+    var next    = 0
+    val samples = Vector.tabulate((spanS / 0.1).toInt): k =>
       val atS = 0.1 * k
       while next < arrivals.size && arrivals(next).atS + model.deadTimeS <= atS do
         flight.act(arrivals(next).atS + model.deadTimeS, arrivals(next).vx, arrivals(next).vy)
         next += 1
       flight.advance(atS)
-      Sight(
+      Sample(
         atS,
         flight.x + noiseMps / 10 * normal(),
         flight.y + noiseMps / 10 * normal(),
@@ -39,7 +39,7 @@ class IdentificationSuite extends munit.FunSuite:
       )
     // What the identification is told of the arrivals is off by the links' jitter.
     val told = arrivals.map(arrival => arrival.copy(atS = arrival.atS + jitterS * normal()))
-    Flown(s"synthetic $seed", sights, told.sortBy(_.atS), -20)
+    Flown(s"synthetic $seed", samples, told.sortBy(_.atS), -20)
 
   private def identified(flights: Vector[Flown], structure: Structure): Identification =
     Identification.of(flights, structure).fold(fail(_), identity)

@@ -123,7 +123,7 @@ object AgreementSuite:
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 
     override def decide(
-        sight: LaneSight,
+        sight: LaneObservation,
         own: Directions,
         ownAt: Int,
         known: Directions,

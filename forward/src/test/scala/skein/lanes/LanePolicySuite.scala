@@ -24,7 +24,7 @@ class LanePolicySuite extends munit.FunSuite:
   for (name, draw) <- families do
     test(s"$name decides by lanes as the scalar policy does"):
       val random         = SplitMix64(11)
-      val (sight, lanes) = (LaneSight(), LanePolicy.of(draw(random)))
+      val (sight, lanes) = (LaneObservation(), LanePolicy.of(draw(random)))
       val (own, known)   = (Directions(worlds), Directions(worlds))
       val into           = Directions(worlds)
       var off            = Vector.empty[Double]

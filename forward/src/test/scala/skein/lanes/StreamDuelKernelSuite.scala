@@ -120,7 +120,7 @@ class StreamDuelKernelSuite extends munit.FunSuite:
         val atThreshold = apart >= 2e-3 && (-4 to 4).exists(k => off(scalar(world, k * 5e-6)) >= 2e-3)
         assert(apart < 2e-3 || atThreshold, s"world $world: $apart apart, and at no threshold")
 
-    test(s"at $meanMs ms and $jitterMs ms of jitter telling pictures by lanes is but a short cut"):
+    test(s"at $meanMs ms and $jitterMs ms of jitter telling views by lanes is but a short cut"):
       val kernel  = kernelOf(turnRates, radii)
       val longWay = kernelOf(turnRates, radii, shortCut = false)
       for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)

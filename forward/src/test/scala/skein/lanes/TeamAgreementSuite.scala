@@ -3,7 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 import skein.forward.{DelayTable, Duelist, Engagement, LoopTiming, Reduced, Rollout}
-import skein.policy.{Course, TeamPolicy, TeamSight}
+import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Formation, Scenario, Surround}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -114,7 +114,13 @@ object TeamAgreementSuite:
               case Source.Shared(_)         => throw IllegalStateException("nothing is shared here")
 
     /** Where a decision differs by more than the bound of the way that doubles take. */
-    def difference(k: Int, seen: TeamSight, made: Made, world: Int, own: Array[Double]): Option[Difference] =
+    def difference(
+        k: Int,
+        seen: TeamObservation,
+        made: Made,
+        world: Int,
+        own: Array[Double]
+    ): Option[Difference] =
       val readings = Vector(seen.northM, seen.eastM, seen.northMps, seen.eastMps).flatMap(_.toSeq)
       val ours     = made.readings.map(_(world).toDouble)
       val doubles  = inputs(
@@ -142,8 +148,8 @@ object TeamAgreementSuite:
 
     override def decide(
         all: Array[TimetableAgents],
-        pictures: Array[Int],
-        picture: Int,
+        views: Array[Int],
+        view: Int,
         known: Int,
         before: Int,
         after: Int,
@@ -155,9 +161,9 @@ object TeamAgreementSuite:
       val fields   = Vector[TimetableVehicles => Array[Float]](_.seenX, _.seenY, _.seenVx, _.seenVy)
       val readings =
         for field <- fields; vehicle <- all.indices
-        yield copied(field(all(vehicle).vehicles), pictures(picture + vehicle) * TimetableKernel.WORLDS)
+        yield copied(field(all(vehicle).vehicles), views(view + vehicle) * TimetableKernel.WORLDS)
       val (cos, sin) = (direction._1.clone, direction._2.clone)
-      super.decide(all, pictures, picture, known, before, after, times, number)
+      super.decide(all, views, view, known, before, after, times, number)
       made += Made(
         readings,
         cos,
@@ -168,8 +174,8 @@ object TeamAgreementSuite:
 
   /** Notes what a policy sees, and answers as it does. */
   final class Log(policy: TeamPolicy) extends TeamPolicy:
-    val seen: ArrayBuffer[TeamSight]        = ArrayBuffer.empty
-    def course(observed: TeamSight): Course =
+    val seen: ArrayBuffer[TeamObservation]        = ArrayBuffer.empty
+    def course(observed: TeamObservation): Course =
       seen += observed
       policy.course(observed)
 
@@ -178,8 +184,8 @@ object TeamAgreementSuite:
     def finish(): Unit = ()
     def score(
         agents: Array[TimetableAgents],
-        pictures: Array[Int],
-        picture: Int,
+        views: Array[Int],
+        view: Int,
         isLast: Boolean,
         timeS: Float
     ): Unit = ()

@@ -48,13 +48,13 @@ class TeamLanesSuite extends munit.FunSuite:
     def finish(): Unit                               = ()
     def score(
         all: Array[TimetableAgents],
-        pictures: Array[Int],
-        picture: Int,
+        views: Array[Int],
+        view: Int,
         isLast: Boolean,
         timeS: Float
     ): Unit =
       for vehicle <- 0 until count do
-        val from = pictures(picture + vehicle) * worlds
+        val from = views(view + vehicle) * worlds
         places += Array.tabulate(worlds): world =>
           (
             all(vehicle).vehicles.seenX(from + world).toDouble,

@@ -1,12 +1,12 @@
 package skein.planning
 
-import skein.policy.{Course, TeamPolicy, TeamSight}
+import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.vehicle.ReducedModel
 
 class PolicyManoeuvreSuite extends munit.FunSuite:
   private val situation = Situation(Motion(1, 2, 3, 0), 0, 0.1, ReducedModel.airSimAt(5), Vector.empty)
   private val sight     =
-    TeamSight(0, IArray(1.0, 20.0), IArray(2.0, 0.0), IArray(3.0, 0.0), IArray(0.0, 5.0), 0, 0.1)
+    TeamObservation(0, IArray(1.0, 20.0), IArray(2.0, 0.0), IArray(3.0, 0.0), IArray(0.0, 5.0), 0, 0.1)
   private val limits = Limits(0, 6, 4)
 
   private def flown(policy: TeamPolicy): Manoeuvre =
@@ -20,7 +20,7 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
     assertEquals(manoeuvre.speeds.toSeq.distinct, Seq(6f))
 
   test("the policy sees itself where it will be and the others straight on"):
-    var seen               = Vector.empty[TeamSight]
+    var seen               = Vector.empty[TeamObservation]
     val policy: TeamPolicy = at =>
       seen :+= at
       Course(0, 3)

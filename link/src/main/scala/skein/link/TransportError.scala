@@ -13,8 +13,10 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
       extends TransportError(s"nobody listens at $at; is the program there started?")
 
   /** The host did not answer in time: it is off, elsewhere, or a firewall drops the request. */
-  case NoAnswer(at: Address, after: Span)
-      extends TransportError(s"no answer from $at after ${after.toSeconds.fixed(1)} s; is the host reachable?")
+  case NoAnswer(
+      at: Address,
+      after: Span
+  ) extends TransportError(s"no answer from $at after ${after.toSeconds.fixed(1)} s; is the host reachable?")
 
   /** The host's name has no address. */
   case UnknownHost(at: Address) extends TransportError(s"unknown host ${at.host}; check its name")

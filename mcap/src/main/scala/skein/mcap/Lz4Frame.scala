@@ -78,7 +78,7 @@ private[mcap] object Lz4Frame:
             val skipped = 8 + (view.getInt(at + 4) & 0xffffffffL)
             if has(skipped) then at += skipped.toInt
         else if number != Number then
-          throw Damaged(f"a frame that begins with 0x$number%08x, not 0x$Number%08x")
+          throw Damaged(s"a frame that begins with ${Hex.of(number)}, not ${Hex.of(Number)}")
         else if has(7) then content()
 
     private def content(): Unit =

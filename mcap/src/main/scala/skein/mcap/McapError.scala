@@ -46,7 +46,7 @@ enum McapError:
       s"$at: $what claims ${java.lang.Long.toUnsignedString(claimed)} bytes, expected at most $limit"
     case Malformed(at, expected, came)      => s"$at: expected $expected, came $came"
     case WrongCrc(at, what, expected, came) =>
-      f"$at: the CRC of $what is written as 0x$expected%08x, its bytes give 0x$came%08x"
+      s"$at: the CRC of $what is written as ${Hex.of(expected)}, its bytes give ${Hex.of(came)}"
     case NotDecompressed(at, compression, why) =>
       s"$at: expected a chunk compressed by $compression, came $why"
     case UnknownCompression(at, name) =>
@@ -55,7 +55,7 @@ enum McapError:
   override def toString: String = message
 
 object McapError:
-  private def hex(bytes: Bytes) = bytes.toArray.map(byte => f"$byte%02x").mkString(" ")
+  private def hex(bytes: Bytes) = bytes.toArray.map(Hex.ofByte(_)).mkString(" ")
 
 /** The bytes at both ends of a file. */
 private[mcap] object Magic:

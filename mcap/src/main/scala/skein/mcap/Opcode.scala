@@ -36,7 +36,7 @@ object Opcode:
     "Data End"
   )
 
-  def name(opcode: Int): String = names.lift(opcode - 1).getOrElse(f"record of kind 0x$opcode%02x")
+  def name(opcode: Int): String = names.lift(opcode - 1).getOrElse(s"record of kind 0x${Hex.ofByte(opcode)}")
 
   /** Of the specification as it stands; readers step over all others but 0x00, which there is not. */
   def isKnown(opcode: Int): Boolean = opcode >= Header && opcode <= DataEnd

@@ -65,7 +65,14 @@ object SimulatorServer:
     val lines              = CallLines[Call]()
     val work               = AtomicBoolean()
     val simulator          = system.spawnAnonymous(
-      Behaviors.withTimers(Running(Simulation(settings, clock.now(), VoxelGrid.save), clock, lines, work, behind, broken).behavior)
+      Behaviors.withTimers(Running(
+        Simulation(settings, clock.now(), VoxelGrid.save),
+        clock,
+        lines,
+        work,
+        behind,
+        broken
+      ).behavior)
     )
     def forget(event: ServerEvent): Unit = event match
       case ServerEvent.Closed(connection, _) => lines.forget(connection)
@@ -119,7 +126,8 @@ object SimulatorServer:
           // A timer is late by up to its scheduler's tick.
           if at <= now then context.self ! Message.Wake
           else timers.startSingleTimer(Message.Wake, at.since(now).toDuration)
-        if simulation.isFree && !lines.isEmpty && work.compareAndSet(false, true) then context.self ! Message.Work
+        if simulation.isFree && !lines.isEmpty && work.compareAndSet(false, true) then
+          context.self ! Message.Work
         Behaviors.same
 
       def orEnd(next: => Behavior[Message]): Behavior[Message] =
@@ -146,7 +154,7 @@ object SimulatorServer:
       var left = CallsAtOnce
       while left > 0 && simulation.isFree do
         lines.take() match
-          case None                       => left = 0
+          case None                        => left = 0
           case Some(Call(request, answer)) =>
             left -= 1
             waiting.update(nextToken, answer)

@@ -33,12 +33,12 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
       Thread.`yield`()
 
   test("calls that wait when their connection closes are not run, and counted; the others' are run"):
-    val server = start(settings.copy(overload = Overload.Workers(1)))
-    val honest = client(server)
+    val server                             = start(settings.copy(overload = Overload.Workers(1)))
+    val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)
     Await.result(call("enableApiControl", Bool(true), Str("")), 10.seconds)
     // The one worker is held by a move.
-    val move  = Seq(Float32(0), Float32(0), Float32(0), Float32(1), Int32(0), writeMsg(YawMode.Still), Str(""))
+    val move = Seq(Float32(0), Float32(0), Float32(0), Float32(1), Int32(0), writeMsg(YawMode.Still), Str(""))
     val flown = call("moveByVelocity", move*)
     until("the move is under way")(server.stats.requests == 2)
     val socket = Socket(InetAddress.getLoopbackAddress, server.address.port)
@@ -57,9 +57,10 @@ class SimulatorServerLiveSuite extends munit.FunSuite:
 
   test("a simulation that fails closes its connections and its port, and says why"):
     @volatile var broken = false
-    val clock: Clock     = () => if broken then throw IllegalStateException("no more time") else Clock.system.now()
-    val server           = start(settings, clock)
-    val caller           = client(server)
+    val clock: Clock     =
+      () => if broken then throw IllegalStateException("no more time") else Clock.system.now()
+    val server = start(settings, clock)
+    val caller = client(server)
     assertEquals(Await.result(caller.call("ping", Seq.empty), 10.seconds), Right(Bool(true)))
     assertEquals(server.failed.value, None)
     broken = true

@@ -14,16 +14,16 @@ import skein.forward.LoopTiming;
 import skein.simd.WorldRandom;
 
 /**
- * The pictures of many worlds under the {@code stream} loop, row by row: row m has the picture of
+ * The views of many worlds under the {@code stream} loop, row by row: row m has the view of
  * questions m. Nearly always both are answered before anything of the next row, which is looked
- * after here by lanes; where it is not so, the world's pictures come one by one from a {@link
- * PictureSource} until it is so again. Then a row may have no picture of a world, or several: so a
- * row has one or more beats, with at most one picture each.
+ * after here by lanes; where it is not so, the world's views come one by one from a {@link
+ * ViewSource} until it is so again. Then a row may have no view of a world, or several: so a
+ * row has one or more beats, with at most one view each.
  *
  * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and the same as in
  * {@link Rollout} to the nanosecond.
  */
-final class LanePictures {
+final class LaneViews {
   static final int WORLDS = LanePolicy.WORLDS;
   private static final int VEHICLES = 2;
 
@@ -32,7 +32,7 @@ final class LanePictures {
   /** {@link DelayTable#GrainNs} in seconds. */
   static final float GRAIN_S = GRAIN_NS * 1e-9f;
 
-  /** In the place of a time: no picture. */
+  /** In the place of a time: no view. */
   static final int NONE = Integer.MAX_VALUE;
 
   /** As late as a time counts. */
@@ -56,7 +56,7 @@ final class LanePictures {
   private boolean shortCut;
   private final int periodGrains;
   private final int patienceGrains, latestGrains;
-  private final PictureSource[] sources = new PictureSource[WORLDS];
+  private final ViewSource[] sources = new ViewSource[WORLDS];
 
   private int[] keys;
   private DelayTable[] links;
@@ -75,32 +75,32 @@ final class LanePictures {
   /** The lanes of each vector that {@link #ask} found irregular. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
 
-  // Worlds whose pictures come one by one: from which row to which; these worlds.
+  // Worlds whose views come one by one: from which row to which; these worlds.
   private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
   private final int[] irregular = new int[WORLDS];
   private int irregularCount;
 
-  /** Whether a world's source tells a picture that has not had its beat. */
+  /** Whether a world's source tells a view that has not had its beat. */
   private final boolean[] hasNext = new boolean[WORLDS];
 
-  // The beat's pictures: when each is joined, when the world's next one is; what its readings were
+  // The beat's views: when each is joined, when the world's next one is; what its readings were
   // asked as, in places from the row's; when they were taken.
   int[] joinedAt, nextAt;
   final int[][] place = new int[VEHICLES][WORLDS];
   int[][] sampledAt = new int[VEHICLES][];
 
-  /** Whether a world has no picture in this beat, or one with an old reading. */
+  /** Whether a world has no view in this beat, or one with an old reading. */
   boolean hasOld;
 
   /**
-   * Worlds with no picture in this beat, or one with a reading that is old, older than the row or
+   * Worlds with no view in this beat, or one with a reading that is old, older than the row or
    * asked as another.
    */
   final int[] odd = new int[WORLDS];
 
   int oddCount;
 
-  /** 1 where the beat's picture has a reading of the vehicle that the picture before had not. */
+  /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
   final int[][] isFresh = new int[VEHICLES][WORLDS];
 
   /** No reading of the beat is taken later, s. */
@@ -113,14 +113,14 @@ final class LanePictures {
 
   private boolean more;
 
-  LanePictures(LoopTiming.Stream timing, double durationS, boolean shortCut) {
+  LaneViews(LoopTiming.Stream timing, double durationS, boolean shortCut) {
     this.mayCut = shortCut;
     periodNs = Math.round(timing.periodS() * 1e9);
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
     latestGrains = Math.min(grains(timing.asking().timeoutS()), ahead * periodGrains - 1);
-    for (int i = 0; i < WORLDS; i++) sources[i] = new PictureSource(timing, durationS, ahead);
+    for (int i = 0; i < WORLDS; i++) sources[i] = new ViewSource(timing, durationS, ahead);
   }
 
   static int grains(double seconds) {
@@ -151,8 +151,8 @@ final class LanePictures {
 
   /**
    * When question {@code step} reaches the vehicles, and when it is answered. With that, looks for
-   * worlds whose picture of the step before is not simply that of that step's questions. An answer of
-   * this step may have come before pictures of the steps before, but not before the one of the row
+   * worlds whose view of the step before is not simply that of that step's questions. An answer of
+   * this step may have come before views of the steps before, but not before the one of the row
    * now.
    */
   private void ask(int step) {
@@ -218,7 +218,7 @@ final class LanePictures {
 
   private void makeIrregular(int world, int step) {
     if (hasNext[world]) {
-      // It was thought to be regular again behind the picture that comes next.
+      // It was thought to be regular again behind the view that comes next.
       stayIrregular(world);
     } else {
       irregular[irregularCount++] = world;
@@ -233,9 +233,9 @@ final class LanePictures {
     irregularUpTo[world] = Integer.MAX_VALUE;
   }
 
-  /** To the next picture of a world whose pictures come one by one. */
+  /** To the next view of a world whose views come one by one. */
   private void goOn(int world) {
-    PictureSource source = sources[world];
+    ViewSource source = sources[world];
     source.next();
     hasNext[world] = true;
     boolean isRegular = source.isRegular && shortCut;
@@ -296,14 +296,14 @@ final class LanePictures {
     return !more;
   }
 
-  /** Puts the beat's pictures of irregular worlds where the others' are; whether there were any. */
+  /** Puts the beat's views of irregular worlds where the others' are; whether there were any. */
   private boolean irregularBeat(boolean isFirst) {
     more = false;
     boolean any = false;
     int kept = 0;
     for (int i = 0; i < irregularCount; i++) {
       int world = irregular[i];
-      PictureSource source = sources[world];
+      ViewSource source = sources[world];
       if (source.row == row) {
         any = true;
         put(world, source);
@@ -330,7 +330,7 @@ final class LanePictures {
     return any;
   }
 
-  private void put(int world, PictureSource source) {
+  private void put(int world, ViewSource source) {
     joinedAt[world] = fromTick(source.joinedAt);
     boolean isOdd = false;
     for (int v = 0; v < VEHICLES; v++) {

@@ -3,7 +3,7 @@ package skein.lanes;
 import skein.simd.LaneFunction;
 
 /** What the policies of many worlds see at a decision: see {@code skein.policy.Policy}. */
-final class LaneSight {
+final class LaneObservation {
   /** Worlds that decide together: few enough for the first-level cache. A multiple of every lane count. */
   static final int WORLDS = LaneFunction.COUNT;
 

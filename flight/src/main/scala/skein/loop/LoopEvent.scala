@@ -2,8 +2,8 @@ package skein.loop
 
 import skein.forecast.Evidence
 
-/** What enters the picture. */
-enum Percept:
+/** What enters the view. */
+enum LoopEvent:
   /** Readings of different vehicles, and the vehicles to decide upon them. */
   case Seen(readings: Vector[Reading], deciders: Set[Int])
 
@@ -22,5 +22,5 @@ enum Percept:
   /** What a forecast is told of besides. */
   case Heard(evidence: Evidence)
 
-/** A picture and the vehicles to decide upon it. */
-final case class Sight(picture: Picture, deciders: Set[Int])
+/** A view and the vehicles to decide upon it. */
+final case class DecisionRequest(view: TeamView, deciders: Set[Int])

@@ -12,7 +12,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 /** No overtaking: what a late answer tells never takes the place of something newer. */
-class PictureSuite extends munit.FunSuite:
+class TeamViewSuite extends munit.FunSuite:
 
   private object Silent extends VehiclePort:
     def read(): Future[Either[VehicleError, Stamped[Kinematics]]]               = Future.never
@@ -34,34 +34,34 @@ class PictureSuite extends munit.FunSuite:
   private val other = reading(1, 0, 10, 0, 20)
 
   /** What is decided upon, and which readings are noted as stale. */
-  private def seen(percepts: Percept*): (Vector[Sight], Vector[String]) = VirtualTime
+  private def seen(events: LoopEvent*): (Vector[DecisionRequest], Vector[String]) = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val recorder           = MemoryRecorder(Samples.heading)
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
-      Source(percepts).via(team.picture).runWith(Sink.seq).map: sights =>
+      Source(events).via(team.view).runWith(Sink.seq).map: requests =>
         val stale = recorder.recording.events.filter(_.kind == EventKind.Dropped).map(_.detail)
-        (sights.toVector, stale)
+        (requests.toVector, stale)
     .value
 
   test("a reading is news where it tells of a later moment, or was asked for when the other had come"):
-    val picture = Picture.empty(2).withReading(later)
-    assert(Picture.empty(2).isNews(late))
-    assert(!picture.isNews(late))
-    assert(!picture.isNews(later))
-    assert(picture.isNews(reading(0, 3, 111, 90, 160)))
-    assert(picture.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
+    val view = TeamView.empty(2).withReading(later)
+    assert(TeamView.empty(2).isNews(late))
+    assert(!view.isNews(late))
+    assert(!view.isNews(later))
+    assert(view.isNews(reading(0, 3, 111, 90, 160)))
+    assert(view.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
   test("a vehicle is taken to be where it was read, or estimated, and to head where it was last told"):
-    val fleet   = PaperDuel().fleet
-    val picture = Picture.empty(2).withReading(first).withReading(other)
-    assertEquals(picture.kinematics(0), first.state.value)
-    assert(picture.isComplete && !Picture.empty(2).withReading(first).isComplete)
-    assertEquals(picture.headingRad(1, fleet), fleet.agents(1).startHeading.value)
+    val fleet = PaperDuel().fleet
+    val view  = TeamView.empty(2).withReading(first).withReading(other)
+    assertEquals(view.kinematics(0), first.state.value)
+    assert(view.isComplete && !TeamView.empty(2).withReading(first).isComplete)
+    assertEquals(view.headingRad(1, fleet), fleet.agents(1).startHeading.value)
     val estimate = skein.forecast.Estimate(later.state.value, millis(0), millis(1))
-    assertEquals(picture.copy(estimates = Some(Vector(estimate, estimate))).kinematics(0), later.state.value)
+    assertEquals(view.copy(estimates = Some(Vector(estimate, estimate))).kinematics(0), later.state.value)
 
   test("a sensor's late answer never overrides a newer one of the same sensor"):
     def sensed(sensor: String, sequence: Long, validMs: Double) = SensorReading(
@@ -71,8 +71,8 @@ class PictureSuite extends munit.FunSuite:
       Vector("x"),
       Stamped(Vector(sequence.toDouble), millis(validMs), millis(validMs - 10), millis(validMs + 10))
     )
-    val picture = Picture.empty(2).withSensorReading(sensed("gps", 2, 100))
-    val held    = picture.withSensorReading(sensed("gps", 1, 50)).withSensorReading(sensed("imu", 3, 20))
+    val view = TeamView.empty(2).withSensorReading(sensed("gps", 2, 100))
+    val held = view.withSensorReading(sensed("gps", 1, 50)).withSensorReading(sensed("imu", 3, 20))
     assertEquals(
       held.sensed(0).map((name, reading) => name -> reading.sequence),
       Map("gps" -> 2L, "imu" -> 3L)
@@ -81,21 +81,21 @@ class PictureSuite extends munit.FunSuite:
     assertEquals(held.sensed(1), Map.empty)
 
   test("a late reading is dropped and noted, and decided is upon the newer one"):
-    val (sights, stale) = seen(
-      Percept.Read(first),
-      Percept.Read(other),
-      Percept.Read(later),
-      Percept.Read(late),
-      Percept.Due(Set(0, 1))
+    val (requests, stale) = seen(
+      LoopEvent.Read(first),
+      LoopEvent.Read(other),
+      LoopEvent.Read(later),
+      LoopEvent.Read(late),
+      LoopEvent.Due(Set(0, 1))
     )
-    assertEquals(sights.map(_.picture.readings), Vector(Vector(Some(later), Some(other))))
-    assertEquals(sights.map(_.deciders), Vector(Set(0, 1)))
+    assertEquals(requests.map(_.view.readings), Vector(Vector(Some(later), Some(other))))
+    assertEquals(requests.map(_.deciders), Vector(Set(0, 1)))
     assertEquals(stale, Vector("reading 2 is stale"))
 
   test("nobody decides before everybody was seen"):
-    assertEquals(seen(Percept.Read(first), Percept.Due(Set(0, 1)))._1, Vector.empty)
-    assertEquals(seen(Percept.Seen(Vector(first), Set(0)))._1, Vector.empty)
-    assertEquals(seen(Percept.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
+    assertEquals(seen(LoopEvent.Read(first), LoopEvent.Due(Set(0, 1)))._1, Vector.empty)
+    assertEquals(seen(LoopEvent.Seen(Vector(first), Set(0)))._1, Vector.empty)
+    assertEquals(seen(LoopEvent.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
 
   test("everybody is due to decide once a period, in the middle between two questions"):
     val due = VirtualTime
@@ -108,6 +108,6 @@ class PictureSuite extends munit.FunSuite:
         val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
         team.due(
           start
-        ).map(percept => (percept, clock.now().since(start).toMillis.round)).take(3).runWith(Sink.seq)
+        ).map(event => (event, clock.now().since(start).toMillis.round)).take(3).runWith(Sink.seq)
       .value
-    assertEquals(due, Seq(50L, 150L, 250L).map(ms => (Percept.Due(Set(0, 1)), ms)))
+    assertEquals(due, Seq(50L, 150L, 250L).map(ms => (LoopEvent.Due(Set(0, 1)), ms)))

@@ -5,15 +5,15 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 
 /**
- * The pictures of one world of two vehicles under the {@code stream} loop, one after the other, with
- * all that can happen to questions: overtaken, late, failed, held back by a full window. No picture
+ * The views of one world of two vehicles under the {@code stream} loop, one after the other, with
+ * all that can happen to questions: overtaken, late, failed, held back by a full window. No view
  * depends on what is decided, so they can be told ahead. {@code StreamRun} is the reference; of
  * things that happen in the same nanosecond answers come first here.
  *
- * <p>{@link LanePictures} tells pictures in which nothing of this happens, many worlds at a time,
+ * <p>{@link LaneViews} tells views in which nothing of this happens, many worlds at a time,
  * and asks here for the others.
  */
-final class PictureSource {
+final class ViewSource {
   /** Questions of one vehicle that may be under way: more than any window allows. */
   private static final int RING = 32;
 
@@ -49,31 +49,31 @@ final class PictureSource {
   private final long[] validAt = new long[VEHICLES], receivedAt = new long[VEHICLES];
   private long patienceEnds;
 
-  // The picture told last: when, of which questions, asked at which ticks, which reached the vehicles
+  // The view told last: when, of which questions, asked at which ticks, which reached the vehicles
   // when; ns.
   long joinedAt;
   final int[] question = new int[VEHICLES], askedAtTick = new int[VEHICLES];
   final long[] sampledAt = new long[VEHICLES];
 
-  /** Whether the picture before had another reading of the vehicle. */
+  /** Whether the view before had another reading of the vehicle. */
   final boolean[] isFresh = new boolean[VEHICLES];
 
   /**
-   * Whether the picture told last is that of its row's questions, and nothing older is left behind
+   * Whether the view told last is that of its row's questions, and nothing older is left behind
    * it.
    */
   boolean isRegular;
 
   /**
-   * The later of the ticks at which the picture's questions were asked, or that of the picture
+   * The later of the ticks at which the view's questions were asked, or that of the view
    * before.
    */
   int row;
 
   /**
-   * @param ahead rows within which the questions of a regular picture are answered
+   * @param ahead rows within which the questions of a regular view are answered
    */
-  PictureSource(LoopTiming.Stream timing, double durationS, int ahead) {
+  ViewSource(LoopTiming.Stream timing, double durationS, int ahead) {
     this.ahead = ahead;
     periodNs = nanos(timing.periodS());
     timeoutNs = nanos(timing.asking().timeoutS());
@@ -112,7 +112,7 @@ final class PictureSource {
     }
   }
 
-  /** Goes on to the next picture; {@link #joinedAt} is {@link #NEVER} if the flight ends before. */
+  /** Goes on to the next view; {@link #joinedAt} is {@link #NEVER} if the flight ends before. */
   void next() {
     boolean joined = false;
     while (!joined) {

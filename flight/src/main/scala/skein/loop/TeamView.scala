@@ -29,9 +29,9 @@ final case class Move(
   * @param forecast
   *   present where the loop predicts
   * @param estimates
-  *   of every vehicle when a command decided upon this picture will act; absent where none are made
+  *   of every vehicle when a command decided upon this view will act; absent where none are made
   */
-final case class Picture(
+final case class TeamView(
     readings: Vector[Option[Reading]],
     moves: Vector[Option[Move]],
     alignment: Option[ClockAlignment],
@@ -39,21 +39,21 @@ final case class Picture(
     forecast: Option[Forecast] = None,
     estimates: Option[Vector[Estimate]] = None
 ):
-  def withReading(reading: Reading): Picture =
+  def withReading(reading: Reading): TeamView =
     copy(
       readings = readings.updated(reading.vehicle, Some(reading)),
       alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
     ).withEvidence(Evidence.Seen(reading.vehicle, reading.state))
 
   /** Nothing changes where a newer one is held already. */
-  def withSensorReading(reading: SensorReading): Picture =
+  def withSensorReading(reading: SensorReading): TeamView =
     val held = sensed(reading.vehicle)
     if held.get(reading.sensor).exists(known => !reading.values.isNewerThan(known.values)) then this
     else copy(sensed = sensed.updated(reading.vehicle, held.updated(reading.sensor, reading)))
 
-  def withMove(move: Move): Picture = copy(moves = moves.updated(move.vehicle, Some(move)))
+  def withMove(move: Move): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
 
-  def withEvidence(evidence: Evidence): Picture = copy(forecast = forecast.map(_.withEvidence(evidence)))
+  def withEvidence(evidence: Evidence): TeamView = copy(forecast = forecast.map(_.withEvidence(evidence)))
 
   /** Where a vehicle is taken to be: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =
@@ -70,6 +70,6 @@ final case class Picture(
   /** Whether every vehicle was seen at least once; only then can be decided. */
   def isComplete: Boolean = readings.forall(_.isDefined)
 
-object Picture:
-  def empty(vehicles: Int): Picture =
-    Picture(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None, Vector.fill(vehicles)(Map.empty))
+object TeamView:
+  def empty(vehicles: Int): TeamView =
+    TeamView(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None, Vector.fill(vehicles)(Map.empty))

@@ -1,0 +1,51 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+
+class NewCommandSuite extends munit.FunSuite:
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("new"),
+    folder => Using.resource(Files.walk(folder))(_.iterator.asScala.toVector.reverse.foreach(Files.delete))
+  )
+
+  private def run(words: String*): (Int, String) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(NewCommand.run(words)))
+    (status, said.toString)
+
+  folder.test("a project is written whole, with its name in it, and nothing left open"): folder =>
+    val project = folder.resolve("somewhere")
+    assertEquals(run("ridge-watch", "--out", project.toString)._1, 0)
+    val files =
+      Using.resource(Files.walk(project))(_.iterator.asScala.filter(Files.isRegularFile(_)).toVector)
+    val paths = files.map(project.relativize(_).toString).toSet
+    assertEquals(paths & NewCommandSuite.Expected, NewCommandSuite.Expected)
+    for file <- files do
+      val text = Files.readString(file)
+      assert(!"@[A-Z]+@".r.unanchored.matches(text), s"$file:\n$text")
+    assert(Files.isExecutable(project.resolve("skein")))
+    assert(Files.readString(project.resolve("build.sbt")).contains("ridge-watch"))
+
+  folder.test("a folder that is there is left alone"): folder =>
+    val (status, told) = run("ridge-watch", "--out", folder.toString)
+    assertNotEquals(status, 0)
+    assert(told.contains("expected a folder that is not there yet"), told)
+
+  test("a name that is none of a project is refused"):
+    for name <- Seq("Ridge", "../ridge", "ridge watch", "-", "") do
+      val (status, told) = run(name)
+      assertNotEquals(status, 0, name)
+      assert(told.contains("expected") && !Files.exists(Path.of("ridge")), told)
+
+object NewCommandSuite:
+  private val Expected = Set(
+    "build.sbt",
+    "skein",
+    "sbtw",
+    "README.md",
+    "src/main/scala/ridgewatch/RidgeWatch.scala",
+    "src/test/scala/ridgewatch/RidgeWatchSuite.scala"
+  )
