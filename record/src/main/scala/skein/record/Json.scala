@@ -8,7 +8,7 @@ private[record] object Json:
     text.foreach:
       case '"'                                                  => out ++= "\\\""
       case '\\'                                                 => out ++= "\\\\"
-      case other if other < ' ' || Character.isSurrogate(other) => out ++= f"\\u${other.toInt}%04x"
+      case other if other < ' ' || Character.isSurrogate(other) => out ++= s"\\u${(0x10000 | other).toHexString.drop(1)}"
       case other                                                => out += other
     out.append('"').toString
 
