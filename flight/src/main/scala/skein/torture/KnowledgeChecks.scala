@@ -70,7 +70,9 @@ private[torture] object KnowledgeChecks:
     val wrong = seen.recording.decisions.iterator.flatMap: decision =>
       val now                       = decision.decidedAt
       def arrived(reading: Reading) =
-        if seen.ordeal.loop == LoopKind.Paused then Span.Zero else now.since(reading.state.receivedAt)
+        if seen.ordeal.loop != LoopKind.Paused then now.since(reading.state.receivedAt)
+        else if isOfTwoRuns(seen, decision) then now.since(reading.state.validAt)
+        else Span.Zero
       val observed  = decision.observations
       val byArrival = Seq(
         ("its own data", observed.ownAge, arrived(decision.own)),
@@ -80,6 +82,17 @@ private[torture] object KnowledgeChecks:
           s"${where(decision)}: $whose had come ${since.toMillis.fixed(3)} ms before, told were ${told.toMillis.fixed(3)} ms"
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
+
+  /** Whether the simulator was started again while the readings of one step were asked for: they are of two clocks. */
+  private def isOfTwoRuns(seen: Evidence, decision: Decision): Boolean =
+    val answers =
+      for
+        reading <- Seq(decision.own, decision.opponent)
+        answer  <- seen.crafts(seen.vehicles.indexOf(reading.vehicle)).answers
+        if answer.question == reading.sequence
+      yield answer.state
+    val (first, last) = (answers.map(_.sentAt).reduce(_.min(_)), answers.map(_.receivedAt).reduce(_.max(_)))
+    seen.runs.exists(run => run.from >= first && run.from <= last)
 
   private def trueAgesWrong(seen: Evidence, decision: Decision): Seq[String] =
     for
