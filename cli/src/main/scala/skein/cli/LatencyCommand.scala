@@ -100,10 +100,16 @@ object LatencyCommand
   /** Measured, and beside it what the link's profile gives. */
   private def quantileTable(profile: LatencyProfile, samples: Distribution): TextTable =
     val measured = "measured, ms" +: quantiles(samples.quantile)
-    val expected = Option(profile).collect:
+    val expected = expectedOf(profile).collect:
       case LatencyProfile.Steady(name, roundTrip) if name != LatencyProfile.none.name =>
         s"$name, ms" +: quantiles(roundTrip.quantile(_).toMillis)
     TextTable("<quantile, %" +: probabilities.map(_.toString), measured +: expected.toVector)
+
+  /** What a round trip without load is drawn from. */
+  private def expectedOf(profile: LatencyProfile): Option[LatencyProfile] = profile match
+    case LatencyProfile.Limited(_, latency, _)    => expectedOf(latency)
+    case LatencyProfile.Correlated(_, latency, _) => expectedOf(latency)
+    case other                                    => Some(other)
 
   private def text(table: TextTable, samples: Distribution, failures: Seq[String]): String =
     val lines = Vector(
@@ -111,7 +117,7 @@ object LatencyCommand
       "",
       table.render
     ) ++ Option.when(table.rows.size > 1)(
-      "Each direction takes half of a round trip of the profile, drawn independently: the sums spread less than it does."
+      "Each direction takes half of a round trip of the profile, drawn independently unless the profile is correlated: independent halves spread less."
     ) ++ Vector("", TextHistogram(samples, "ms")) ++
       failures.headOption.map(first => s"\n${failures.size} pings failed, the first: $first")
     lines.mkString("\n")

@@ -4,6 +4,7 @@ import java.util.concurrent.CountDownLatch
 import mainargs.{ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.link.*
+import skein.signal.{Bandwidth, LatencyProfile}
 import skein.units.{Clock, Span}
 
 /** Options of `./skein link`. */
@@ -14,7 +15,7 @@ final case class LinkOptions(
     to: String,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
-        "lognormal:36ms,0.3 or file:PATH; times are round trips"
+        "lognormal:36ms,0.3 or file:PATH; times are round trips; correlated:250ms,PROFILE holds each for a while"
     )
     profile: String = "direct",
     @arg(name = "to-server", doc = "latency towards the server, where it differs")
@@ -27,8 +28,10 @@ final case class LinkOptions(
     stallLasts: String = "1s",
     @arg(name = "reset-every", doc = "mean time between resets of all connections, for example 5min")
     resetEvery: Option[String],
-    @arg(doc = "bytes per second in each direction of each connection; without it, unlimited")
-    bandwidth: Option[Double],
+    @arg(doc =
+      "of each direction, shared by all connections, and the queue before it: 50mbit or 50mbit/64kB; without it, unlimited"
+    )
+    rate: Option[String],
     @arg(doc = "of every random choice")
     seed: Long = 1
 )
@@ -50,17 +53,23 @@ object LinkCommand
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
     for
-      toServer   <- Arguments.latency(options.toServer.getOrElse(options.profile))
-      toClient   <- Arguments.latency(options.toClient.getOrElse(options.profile))
+      toServer   <- latency(options.toServer, options)
+      toClient   <- latency(options.toClient, options)
       stallEvery <- every(options.stallEvery).left.map("--stall-every: " + _)
       stallLasts <- Span.parse(options.stallLasts).left.map("--stall-lasts: " + _)
       resetEvery <- every(options.resetEvery).left.map("--reset-every: " + _)
-      bandwidth  <- options.bandwidth match
-        case Some(rate) if !(rate > 0) =>
-          Left(s"--bandwidth: expected more than 0 bytes per second, came $rate")
-        case other => Right(other)
       faults = Faults(stallEvery = stallEvery, stallLasts = stallLasts, resetEvery = resetEvery)
-    yield LinkProfile(toServer, toClient, faults, bandwidth)
+    yield LinkProfile(toServer, toClient, faults)
+
+  private def latency(own: Option[String], options: LinkOptions): Either[String, LatencyProfile] =
+    val profile = own.getOrElse(options.profile)
+    options.rate match
+      case None       => Arguments.latency(profile)
+      case Some(rate) =>
+        for
+          _       <- Bandwidth.parse(rate).left.map("--rate: " + _)
+          limited <- Arguments.latency(s"rate:$rate,$profile")
+        yield limited
 
   private def every(text: Option[String]): Either[String, Option[Span]] = text match
     case None       => Right(None)
@@ -89,4 +98,5 @@ object LinkCommand
 
   private def summary(counts: LinkCounts): String =
     s"${counts.connections} connections, ${counts.bytesToServer} bytes to the server, ${counts.bytesToClient} bytes " +
-      s"to the client, ${counts.bytesLost} bytes lost, ${counts.stalls} stalls, ${counts.disconnects} disconnects"
+      s"to the client, ${counts.bytesLost} bytes lost, ${counts.stalls} stalls, ${counts.disconnects} disconnects, " +
+      s"${counts.bytesHeldBack} bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent"

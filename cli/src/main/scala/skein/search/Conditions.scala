@@ -75,6 +75,10 @@ object Conditions:
         )
       case alternating: LatencyProfile.Alternating =>
         Left(s"expected a link whose latency does not come in stretches, came ${alternating.name}")
+      case other => Left(notForward(other))
+
+  private def notForward(link: LatencyProfile) =
+    s"expected a link without rate and correlation, which forward simulation does not have, came ${link.name}"
 
   /** Forward simulation keeps so much under way. */
   val LongestRoundTripS = 2.0
@@ -82,6 +86,7 @@ object Conditions:
   def delays(link: String): Either[String, Delays] = profile(link).flatMap:
     case steady: LatencyProfile.Steady           => roundTrips(link).map(_ => LinkDelays.of(steady))
     case alternating: LatencyProfile.Alternating => Right(LinkDelays.of(alternating))
+    case other                                   => Left(notForward(other))
 
   private def profile(link: String): Either[String, LatencyProfile] =
     LatencyProfile.parse(link, TextFile.read).left.map(_.message)

@@ -3,7 +3,8 @@ package skein.signal
 import skein.units.*
 
 /** How long messages take over one direction of a link, as the distribution of round trips that was measured there.
-  * One direction takes half of a sampled round trip; the two directions sample independently.
+  * One direction takes half of a sampled round trip. The two directions sample independently, so that a round trip
+  * spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]] it spreads as measured.
   */
 enum LatencyProfile:
 
@@ -21,6 +22,16 @@ enum LatencyProfile:
       quietLasts: Span
   )
 
+  /** Another profile whose delays hold for a while: the share p at which its distribution is read is drawn anew after
+    * exponentially distributed times of mean `over`, for both directions and all connections of a link at once. Every
+    * delay is distributed as before, and the correlation of p at two moments is e^(−t/over): a round trip much shorter
+    * than `over` takes as long as one that was measured.
+    */
+  case Correlated(name: String, latency: LatencyProfile, over: Span)
+
+  /** Another profile behind a line of limited rate, where bytes wait. */
+  case Limited(name: String, latency: LatencyProfile, rate: Bandwidth)
+
   /** The text that [[LatencyProfile.parse]] reads back as this profile. */
   def name: String
 
@@ -32,7 +43,7 @@ object LatencyProfile:
   /** The paper's VPN over a long time: busy in 393 of 935 samples, else like the direct link. It was measured once,
     * one stretch of each, so only the shares are its own; that a pair of stretches takes 95 s is our choice.
     */
-  val vpnMixed: LatencyProfile = Alternating(
+  val vpnMixed: Alternating = new Alternating(
     "vpn-mixed",
     busy = LatencyDistribution.Vpn,
     quiet = LatencyDistribution.Direct,
@@ -43,7 +54,8 @@ object LatencyProfile:
   /** Reads a profile from its text form: `none`, `direct`, `vpn`, `vpn-mixed`, `constant:200ms`,
     * `uniform:10ms..40ms`, `lognormal:36ms,0.3` (median, standard deviation of the logarithm), `file:PATH` (round
     * trips in ms, one a line; empty lines and lines that start with # are skipped). All times are round trips; units
-    * are `us`, `ms`, `s`.
+    * are `us`, `ms`, `s`. Before any of them may stand `correlated:250ms,` and before all that `rate:50mbit,` or
+    * `rate:50mbit/64kB,`: see [[Bandwidth.parse]].
     *
     * @param read
     *   gives the text of the file at a path, or says why it cannot
@@ -68,6 +80,25 @@ private object LatencyText:
       span(came).toRight(malformed("a time such as 200ms", came))
 
     text match
+      case s"rate:$rate,$rest" =>
+        for
+          bandwidth <- Bandwidth.parse(rate).left.map(_ => malformed(Bandwidth.form, rate))
+          latency   <- parse(rest, read)
+          _         <- latency match
+            case _: LatencyProfile.Limited => Left(malformed("one rate", rest))
+            case _                         => Right(())
+        yield LatencyProfile.Limited(text, latency, bandwidth)
+      case s"rate:$came"             => Left(malformed("a rate and a profile such as 50mbit,direct", came))
+      case s"correlated:$over,$rest" =>
+        for
+          mean    <- time(over).filterOrElse(_ > Span.Zero, malformed("more than 0", over))
+          latency <- parse(rest, read)
+          _       <- latency match
+            case _: LatencyProfile.Limited    => Left(malformed("the rate before all else", rest))
+            case _: LatencyProfile.Correlated => Left(malformed("one time constant", rest))
+            case _                            => Right(())
+        yield LatencyProfile.Correlated(text, latency, mean)
+      case s"correlated:$came"      => Left(malformed("a time and a profile such as 250ms,direct", came))
       case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
       case s"uniform:$least..$most" =>
         for

@@ -5,23 +5,48 @@ import skein.units.*
 /** Draws the delays of one direction of one connection. Holds mutable state: one per direction and connection.
   *
   * @param linkSeed
-  *   decides when the link is busy: equal for all connections and directions of one link, so that they agree
+  *   decides when the link is busy, and what delays hold for a while: equal for all connections and directions of one
+  *   link, so that they agree
   * @param lineSeed
   *   decides the delays: different for each
   */
 final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Long):
   private val random = SplitMix64(lineSeed)
 
-  private val roundTrip: Span => LatencyDistribution = profile match
-    case LatencyProfile.Steady(_, distribution)  => _ => distribution
-    case alternating: LatencyProfile.Alternating => Stretches(alternating, linkSeed).at
+  private val roundTrip: Span => LatencyDistribution = distributionOf(profile)
+  private val share: Span => Double                  = shareOf(profile)
+
+  private def distributionOf(profile: LatencyProfile): Span => LatencyDistribution = profile match
+    case LatencyProfile.Steady(_, distribution)   => _ => distribution
+    case alternating: LatencyProfile.Alternating  => Stretches(alternating, linkSeed).at
+    case LatencyProfile.Correlated(_, latency, _) => distributionOf(latency)
+    case LatencyProfile.Limited(_, latency, _)    => distributionOf(latency)
+
+  private def shareOf(profile: LatencyProfile): Span => Double = profile match
+    case LatencyProfile.Correlated(_, _, over) => HeldShare(over, SplitMix64.seedOf(linkSeed, 1)).at
+    case LatencyProfile.Limited(_, latency, _) => shareOf(latency)
+    case _                                     => _ => random.nextDouble()
 
   /** The next message's delay: half of a sampled round trip.
     *
     * @param sinceStart
     *   time since the link began; never smaller than at the call before
     */
-  def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(random.nextDouble()) / 2
+  def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(share(sinceStart)) / 2
+
+/** A number in [0, 1) that is drawn anew after exponentially distributed times. */
+private final class HeldShare(mean: Span, seed: Long):
+  private val random = SplitMix64(seed)
+  private var held   = random.nextDouble()
+  private var until  = length()
+
+  private def length(): Span = Span.ofSeconds(random.nextExponential(mean.toSeconds))
+
+  def at(sinceStart: Span): Double =
+    while sinceStart >= until do
+      held = random.nextDouble()
+      until = until + length()
+    held
 
 /** Which of the two distributions holds when. */
 private final class Stretches(profile: LatencyProfile.Alternating, seed: Long):

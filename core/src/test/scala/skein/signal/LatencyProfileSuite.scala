@@ -48,7 +48,8 @@ class LatencyProfileSuite extends munit.FunSuite:
     assertEquals(
       messageOf("dsl"),
       "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
-        "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips)"
+        "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips), " +
+        "or one of them after correlated:250ms, or rate:50mbit,"
     )
 
   test("a mistake in a form is answered with what was expected there"):
@@ -84,3 +85,30 @@ class LatencyProfileSuite extends munit.FunSuite:
       messageOf("file:empty.txt"),
       "empty.txt: expected at least one round trip in ms, one a line; the file has none"
     )
+
+  test("a profile may be correlated, and behind a rate"):
+    val direct = LatencyProfile.direct
+    val held   = LatencyProfile.Correlated("correlated:250ms,direct", direct, Span.ofMillis(250))
+    val rate   = Bandwidth(50_000_000, 64_000)
+    assertEquals(parse("correlated:250ms,direct"), Right(held))
+    assertEquals(
+      parse("rate:50mbit/64kB,direct"),
+      Right(LatencyProfile.Limited("rate:50mbit/64kB,direct", direct, rate))
+    )
+    assertEquals(
+      parse("rate:50mbit/64kB,correlated:250ms,direct"),
+      Right(LatencyProfile.Limited("rate:50mbit/64kB,correlated:250ms,direct", held, rate))
+    )
+    assert(parse("rate:1mbit,correlated:1s,lognormal:36ms,0.3").isRight)
+
+  test("a rate or correlation in the wrong place is told"):
+    for (text, expected) <- List(
+        "rate:50mb,direct"          -> s"expected ${Bandwidth.form}, got \"50mb\"",
+        "rate:50mbit"               -> "expected a rate and a profile such as 50mbit,direct, got \"50mbit\"",
+        "rate:1mbit,rate:2mbit,vpn" -> "expected one rate, got \"rate:2mbit,vpn\"",
+        "correlated:1s,rate:2mbit,vpn"    -> "expected the rate before all else, got \"rate:2mbit,vpn\"",
+        "correlated:1s,correlated:1s,vpn" -> "expected one time constant, got \"correlated:1s,vpn\"",
+        "correlated:0s,vpn"               -> "expected more than 0, got \"0s\"",
+        "correlated:vpn"                  -> "expected a time and a profile such as 250ms,direct, got \"vpn\""
+      )
+    do assertEquals(messageOf(text), s"latency profile \"$text\": $expected")

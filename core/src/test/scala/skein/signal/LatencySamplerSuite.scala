@@ -35,3 +35,47 @@ class LatencySamplerSuite extends munit.FunSuite:
     // An hour has about 76 stretches; a window that spans a change may fall on either side.
     assert(disagree < 20, s"$disagree of ${first.size} windows disagree")
     assert(changes > 30 && changes < 130, s"$changes changes in an hour")
+
+  private def roundTripsMs(profile: LatencyProfile): Vector[Double] =
+    val (there, back) = (LatencySampler(profile, 1, 2), LatencySampler(profile, 1, 3))
+    Vector.tabulate(50_000): i =>
+      val sent    = Span.ofMillis(200.0 * i)
+      val arrived = there.oneWay(sent)
+      (arrived + back.oneWay(sent + arrived)).toMillis
+
+  /** Largest difference of the distribution functions. */
+  private def distance(samplesMs: Vector[Double], profile: LatencyDistribution): Double =
+    val sorted = samplesMs.sorted
+    (0 to 100).map: percent =>
+      val ms = profile.quantile(percent / 100.0).toMillis
+      math.abs(sorted.count(_ <= ms).toDouble / sorted.size - percent / 100.0)
+    .max
+
+  test(
+    "round trips over a correlated link are distributed as measured, over an independent one they spread less"
+  ):
+    for (name, measured) <- List("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn) do
+      def profile(text: String) =
+        LatencyProfile.parse(text, _ => Left("")).fold(e => fail(e.message), identity)
+      val held   = distance(roundTripsMs(profile(s"correlated:1s,$name")), measured)
+      val halves = distance(roundTripsMs(profile(name)), measured)
+      assert(held < 0.02, s"$name: $held")
+      assert(halves > 0.08, s"$name: $halves")
+
+  test("the correlation of two delays falls by e in the stated time, and their distribution stays"):
+    val uniform = LatencyDistribution.Uniform(Span.Zero, Span.ofMillis(200))
+    val profile =
+      LatencyProfile.Correlated("", LatencyProfile.Steady("", uniform), over = Span.ofMillis(300))
+    val delays               = delaysMs(profile, 1, 2, 200_000)
+    val mean                 = delays.sum / delays.size
+    def covariance(lag: Int) =
+      delays.zip(delays.drop(lag)).map((a, b) => (a - mean) * (b - mean)).sum / (delays.size - lag)
+    assertEqualsDouble(mean, 50, 1)
+    assertEqualsDouble(covariance(0), 100.0 * 100.0 / 12, 20)
+    assertEqualsDouble(covariance(3) / covariance(0), math.exp(-1), 0.02)
+    assertEqualsDouble(covariance(6) / covariance(0), math.exp(-2), 0.02)
+
+  test("both directions and all connections of a correlated link have the same delay at the same moment"):
+    val profile = LatencyProfile.Correlated("", LatencyProfile.vpn, over = Span.ofSeconds(1))
+    assertEquals(delaysMs(profile, 1, 2, 500), delaysMs(profile, 1, 3, 500))
+    assertNotEquals(delaysMs(profile, 1, 2, 500), delaysMs(profile, 2, 2, 500))

@@ -7,7 +7,7 @@ import skein.simd.WorldRandom
 object LinkDelays:
 
   /** The delays of a link: half of a sampled round trip each. */
-  def of(profile: LatencyProfile): Delays = profile match
+  def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): Delays = profile match
     case LatencyProfile.Steady(_, roundTrip)                    => DelayTable.of(roundTrip)
     case LatencyProfile.Alternating(_, busy, quiet, lasts, not) =>
       AlternatingDelays(DelayTable.of(busy), DelayTable.of(quiet), lasts.toSeconds, not.toSeconds)

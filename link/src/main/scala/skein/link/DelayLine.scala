@@ -17,6 +17,9 @@ import skein.units.*
   * '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely takes no more
   * is not told to the sender, as with a socket: what still comes is discarded until upstream ends.
   *
+  * Where a bottleneck lies before it, bytes enter it piece by piece, as the bottleneck has room, and are as late as it
+  * makes them besides.
+  *
   * What a silence swallows is counted as lost; neither side learns of it before the link breaks.
   *
   * @param open
@@ -28,6 +31,7 @@ import skein.units.*
   */
 private[link] final class DelayLine(
     open: Span => Delivery,
+    bottleneck: Option[Bottleneck],
     sinceStart: () => Span,
     maxBytes: Int,
     broken: TransportError,
@@ -42,11 +46,14 @@ private[link] final class DelayLine(
 
   def createLogic(attributes: Attributes): GraphStageLogic =
     new TimerGraphStageLogic(shape) with InHandler with OutHandler:
-      private val delivery                        = open(sinceStart())
-      private val underWay                        = mutable.Queue.empty[Segment]
-      private var bytesUnderWay                   = 0
-      private var end: Option[End]                = None
-      private var cancellation: Option[Throwable] = None
+      private val delivery      = open(sinceStart())
+      private val underWay      = mutable.Queue.empty[Segment]
+      private val atSender      = mutable.Queue.empty[Waiting] // for the bottleneck
+      private var roomAt        = Span.Zero
+      private var bytesUnderWay = 0                            // and at the sender
+      private var ending: Option[Option[Throwable]] = None // once all bytes have left the sender
+      private var end: Option[End]                  = None
+      private var cancellation: Option[Throwable]   = None
 
       setHandlers(in, out, this)
 
@@ -58,12 +65,50 @@ private[link] final class DelayLine(
         val bytes = grab(in)
         if isClosed(out) then pull(in)
         else
-          delivery.due(sinceStart(), bytes.size) match
-            case None      => counts.bytesLost.add(bytes.size)
-            case Some(due) =>
-              underWay.enqueue(Segment(bytes, due))
-              bytesUnderWay += bytes.size
+          val now     = sinceStart()
+          val waiting = Waiting(bytes, now, delivery.delay(now))
+          bytesUnderWay += bytes.size
+          if bottleneck.isEmpty then enter(waiting, now)
+          else
+            atSender.enqueue(waiting)
+            send(held = false)
           deliver()
+
+      /** Bytes leave their sender's side. */
+      private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
+        case Some(due) => underWay.enqueue(Segment(waiting.bytes, due))
+        case None      =>
+          bytesUnderWay -= waiting.bytes.size
+          counts.bytesLost.add(waiting.bytes.size)
+
+      /** Hands the bottleneck what it has room for.
+        *
+        * @param held
+        *   whether there was no room before
+        */
+      private def send(held: Boolean): Unit =
+        for line <- bottleneck do
+          val now = sinceStart()
+          while atSender.nonEmpty && roomAt <= now do
+            val Waiting(bytes, since, delay) = atSender.dequeue()
+            val (piece, rest)                = bytes.splitAt(line.pieceBytes)
+            val sent                         = line.send(now, piece.size)
+            roomAt = sent.roomAt
+            if held then counts.bytesHeldBack.add(piece.size)
+            counts.longestWaitNs.accumulate((sent.sentAt - since).toNanos)
+            enter(Waiting(piece, since, delay), sent.sentAt)
+            if rest.nonEmpty then Waiting(rest, since, delay) +=: atSender
+          if atSender.nonEmpty && !isTimerActive(Timer.Send) then
+            scheduleOnce(Timer.Send, (roomAt - now).toDuration)
+        if atSender.isEmpty then
+          for failure <- ending do
+            ending = None
+            end = dueWithLine().map(End(failure, _))
+
+      /** When what enters now without taking time on the line comes out. */
+      private def dueWithLine(): Option[Span] =
+        val now = sinceStart()
+        delivery.due(bottleneck.fold(now)(_.free(now)), delivery.delay(now))
 
       override def onUpstreamFinish(): Unit = endWith(None)
 
@@ -73,20 +118,24 @@ private[link] final class DelayLine(
 
       override def onDownstreamFinish(cause: Throwable): Unit =
         underWay.clear()
+        atSender.clear()
         bytesUnderWay = 0
         cause match
           case _ if isClosed(in)         => completeStage()
           case _: NonFailureCancellation => pullIfIdle()
           case failure                   =>
             cancellation = Some(failure)
-            for due <- delivery.due(sinceStart(), 0) do
+            for due <- dueWithLine() do
               scheduleOnce(Timer.Cancel, (due - sinceStart()).toDuration)
             pullIfIdle()
 
       override protected def onTimer(key: Any): Unit = key match
         case Timer.Deliver => deliver()
-        case Timer.Cancel  => cancellation.foreach(cancelStage)
-        case _             =>
+        case Timer.Send    =>
+          send(held = true)
+          deliver()
+        case Timer.Cancel => cancellation.foreach(cancelStage)
+        case _            =>
           counts.bytesLost.add(bytesUnderWay)
           counts.onBreak()
           failStage(broken)
@@ -94,7 +143,8 @@ private[link] final class DelayLine(
       private def endWith(failure: Option[Throwable]): Unit =
         if isClosed(out) then completeStage()
         else
-          end = delivery.due(sinceStart(), 0).map(End(failure, _))
+          ending = Some(failure)
+          send(held = false)
           deliver()
 
       /** Hands on what is due and sees to it that it is called again when the next is. */
@@ -121,8 +171,11 @@ private[link] final class DelayLine(
 private object DelayLine:
   private final case class Segment(bytes: ByteString, due: Span)
 
+  /** Bytes that were sent at a moment and have yet to leave, with the delay that they will have then. */
+  private final case class Waiting(bytes: ByteString, since: Span, delay: Span)
+
   /** The end of sending, with its failure if it was one. */
   private final case class End(failure: Option[Throwable], due: Span)
 
   private enum Timer:
-    case Deliver, Cancel, Break
+    case Send, Deliver, Cancel, Break

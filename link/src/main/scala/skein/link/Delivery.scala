@@ -19,23 +19,27 @@ private[link] final class Delivery(
     sampler: LatencySampler,
     stalls: Iterator[(from: Span, until: Span)],
     val break: Option[TimedFault],
-    bytesPerSecond: Option[Double],
     stallsMet: LongAdder
 ):
   private val upcomingStalls = stalls.buffered
-  private var lineFree       = Span.Zero
   private var lastDue        = Span.Zero
 
-  /** When these bytes come out: in the order in which they entered, a sampled delay after the line has sent them, and
-    * never within a stall. None if they are lost.
+  /** The delay of what enters now, sampled.
     *
     * @param now
     *   never smaller than at the call before
     */
-  def due(now: Span, bytes: Int): Option[Span] =
-    lineFree = lineFree.max(now) + bytesPerSecond.fold(Span.Zero)(rate => Span.ofSeconds(bytes / rate))
-    lastDue = afterStalls(lastDue.max(lineFree + sampler.oneWay(now)))
+  def delay(now: Span): Span = sampler.oneWay(now)
+
+  /** When bytes come out that leave at a moment: in the order of the calls, a delay later, and never within a stall.
+    * None if they are lost.
+    */
+  def due(leave: Span, delay: Span): Option[Span] =
+    lastDue = afterStalls(lastDue.max(leave + delay))
     Option.unless(lossBegins.exists(_ <= lastDue))(lastDue)
+
+  /** When bytes come out that enter and leave now. */
+  def due(now: Span): Option[Span] = due(now, delay(now))
 
   /** When the connection breaks and both sides are told. */
   val breaksAt: Option[Span] = break.map:

@@ -1,6 +1,6 @@
 package skein.link
 
-import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAdder}
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAccumulator, LongAdder}
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
@@ -27,6 +27,17 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
   private val disconnects                  = LongAdder()
   private val bytesToServer, bytesToClient = LongAdder()
   private val bytesLost, stalls            = LongAdder()
+  private val bytesHeldBack                = LongAdder()
+  private val longestWaitNs                = LongAccumulator(math.max(_, _), 0)
+
+  private val toServer = Direction(profile.toServer, bytesToServer)
+  private val toClient = Direction(profile.toClient, bytesToClient)
+
+  /** What all connections share of one direction. */
+  private final class Direction(val latency: LatencyProfile, val delivered: LongAdder):
+    val bottleneck: Option[Bottleneck] = latency match
+      case LatencyProfile.Limited(_, _, rate) => Some(Bottleneck(rate))
+      case _                                  => None
 
   def counts: LinkCounts = LinkCounts(
     connections.get,
@@ -34,7 +45,9 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     bytesToClient.sum,
     bytesLost.sum,
     stalls.sum,
-    disconnects.sum
+    disconnects.sum,
+    bytesHeldBack.sum,
+    Span.ofNanos(longestWaitNs.get)
   )
 
   /** A new connection over this link; its first side is the client's, its second the server's. To be materialised
@@ -44,18 +57,20 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     *   the error that both sides get when the link breaks the connection
     */
   def connection(broken: TransportError): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
-    val index        = 2 * connections.getAndIncrement()
-    val whole        = AtomicBoolean(true)
-    def countBreak() = if whole.getAndSet(false) then disconnects.increment()
-    def line(latency: LatencyProfile, index: Long, delivered: LongAdder) =
-      val counters = LineCounters(delivered, bytesLost, () => countBreak())
-      val open     = delivery(latency, SplitMix64.seedOf(lineSeed, index))
-      val delayed  =
-        Flow.fromGraph(DelayLine(open, () => sinceStart, profile.maxBytesInFlight, broken, counters))
+    val index                                   = 2 * connections.getAndIncrement()
+    val whole                                   = AtomicBoolean(true)
+    def countBreak()                            = if whole.getAndSet(false) then disconnects.increment()
+    def line(direction: Direction, index: Long) =
+      val counters =
+        LineCounters(direction.delivered, bytesLost, bytesHeldBack, longestWaitNs, () => countBreak())
+      val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index))
+      val delayed = Flow.fromGraph(
+        DelayLine(open, direction.bottleneck, () => sinceStart, profile.maxBytesInFlight, broken, counters)
+      )
       if profile.cutsSegments then delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index))) else delayed
     BidiFlow.fromFlows(
-      line(profile.toServer, index, bytesToServer),
-      line(profile.toClient, index + 1, bytesToClient)
+      line(toServer, index),
+      line(toClient, index + 1)
     )
 
   /** How long it takes until a client that connects now is heard of at the server's side, and from then until the
@@ -66,9 +81,10 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     val now       = sinceStart
     val asking    = delivery(profile.toServer, SplitMix64.seedOf(attemptSeed, index))(now)
     val answering = delivery(profile.toClient, SplitMix64.seedOf(attemptSeed, index + 1))(now)
+    def leave(direction: Direction, at: Span) = direction.bottleneck.fold(at)(_.free(at))
     for
-      heard    <- asking.due(now, 0)
-      answered <- answering.due(heard, 0)
+      heard    <- asking.due(leave(toServer, now), asking.delay(now))
+      answered <- answering.due(leave(toClient, heard), answering.delay(heard))
     yield (toServer = heard - now, toClient = answered - heard)
 
   private def sinceStart: Span = clock.now().since(start)
@@ -77,6 +93,5 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     LatencySampler(latency, stateSeed, seed),
     profile.faults.stalls(faultSeed),
     profile.faults.breakOf(opened, faultSeed),
-    profile.bytesPerSecond,
     stalls
   )

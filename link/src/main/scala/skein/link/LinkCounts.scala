@@ -1,6 +1,7 @@
 package skein.link
 
-import java.util.concurrent.atomic.LongAdder
+import java.util.concurrent.atomic.{LongAccumulator, LongAdder}
+import skein.units.*
 
 /** What a link has done so far.
   *
@@ -16,6 +17,10 @@ import java.util.concurrent.atomic.LongAdder
   *   a stall counts once for each direction of each connection that it held up
   * @param disconnects
   *   connections that the link broke
+  * @param bytesHeldBack
+  *   that waited at their senders, because the queue of a line with a rate was full
+  * @param longestWait
+  *   of any bytes, from their sending until a line with a rate had sent them
   */
 final case class LinkCounts(
     connections: Long,
@@ -23,12 +28,16 @@ final case class LinkCounts(
     bytesToClient: Long,
     bytesLost: Long,
     stalls: Long,
-    disconnects: Long
+    disconnects: Long,
+    bytesHeldBack: Long,
+    longestWait: Span
 )
 
 /** Where the lines of a link count. */
 private[link] final class LineCounters(
     val bytesDelivered: LongAdder,
     val bytesLost: LongAdder,
+    val bytesHeldBack: LongAdder,
+    val longestWaitNs: LongAccumulator,
     val onBreak: () => Unit
 )

@@ -4,8 +4,11 @@ import skein.signal.LatencyProfile
 
 /** Everything that a link does to what crosses it.
   *
-  * @param bytesPerSecond
-  *   bandwidth of each direction of each connection; none is unlimited
+  * @param toServer
+  *   delays towards the server; the rate that it may name ([[LatencyProfile.Limited]]) is that of a line which all
+  *   connections share
+  * @param toClient
+  *   the same on the way back, where a line of its own lies
   * @param maxBytesInFlight
   *   what one direction of a connection holds at most (besides the segment that exceeds it); then the sender waits, as
   *   with TCP's window
@@ -16,14 +19,9 @@ final case class LinkProfile(
     toServer: LatencyProfile,
     toClient: LatencyProfile,
     faults: Faults = Faults.none,
-    bytesPerSecond: Option[Double] = None,
     maxBytesInFlight: Int = 4 * 1024 * 1024,
     cutsSegments: Boolean = false
 ):
-  require(
-    bytesPerSecond.forall(_ > 0),
-    s"a link's bandwidth is above zero, got ${bytesPerSecond.get} bytes/s"
-  )
   require(maxBytesInFlight > 0, s"a link holds at least one byte, got $maxBytesInFlight")
 
 object LinkProfile:

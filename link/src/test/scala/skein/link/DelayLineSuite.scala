@@ -1,6 +1,6 @@
 package skein.link
 
-import java.util.concurrent.atomic.LongAdder
+import java.util.concurrent.atomic.{LongAccumulator, LongAdder}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
@@ -40,11 +40,11 @@ class DelayLineSuite extends munit.FunSuite:
           LatencySampler(latency, 1, 2),
           faults.stalls(3),
           faults.breakOf(opened, 3),
-          None,
           LongAdder()
         )
-      val counts = LineCounters(LongAdder(), LongAdder(), () => ())
-      val line   = Flow.fromGraph(DelayLine(open, () => sinceStart, maxBytes, lost, counts))
+      val counts =
+        LineCounters(LongAdder(), LongAdder(), LongAdder(), LongAccumulator(math.max(_, _), 0), () => ())
+      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts))
       body(Line(line, () => sinceStart.toMillis, counts))
     .value
 
@@ -156,3 +156,62 @@ class DelayLineSuite extends munit.FunSuite:
       ended(every(100, 20).watchTermination()(Keep.right).via(line.flow).to(Sink.head).run(), line)
     assertEquals(result, util.Success(Done))
     assertEquals(at, 1900.0)
+
+  /** An image each 400 ms and a byte each 10 ms over lines of 50 Mbit/s: the longest delay of a byte, ms. */
+  private def longestDelayMs(image: Int, apart: Boolean): Double =
+    VirtualTime.run(1): system =>
+      given ActorSystem = system
+      val clock         = VirtualClock(system)
+      val start         = clock.now()
+      def ms            = clock.now().since(start).toMillis
+      val bottleneck    = Bottleneck(Bandwidth.ofBitsPerSecond(50_000_000))
+      val counts        =
+        LineCounters(LongAdder(), LongAdder(), LongAdder(), LongAccumulator(math.max(_, _), 0), () => ())
+      def line = DelayLine(
+        _ => Delivery(LatencySampler(constant(20), 1, 2), Iterator.empty, None, LongAdder()),
+        Some(bottleneck),
+        () => clock.now().since(start),
+        4 << 20,
+        lost,
+        counts
+      )
+      val images   = Source.tick(5.millis, 400.millis, ByteString(new Array[Byte](image))).take(5)
+      val commands = Source.tick(0.millis, 10.millis, ByteString(1)).take(200)
+      val arrived  = Flow[ByteString].mapConcat(_.filter(_ == 1)).map(_ => ms).toMat(Sink.seq)(Keep.right)
+      val times    =
+        if apart then
+          val _ = images.via(line).to(Sink.ignore).run()
+          commands.via(line).toMat(arrived)(Keep.right).run()
+        else images.merge(commands).via(line).toMat(arrived)(Keep.right).run()
+      times.map(_.zipWithIndex.map((at, i) => at - 10 * i).max)
+    .value
+
+  test(
+    "over a line with a rate, a command waits for an image on its own connection, and hardly for one on another"
+  ):
+    val image = 1280 * 720 * 3 // 442 ms at 50 Mbit/s
+    assertEqualsDouble(longestDelayMs(0, apart = false), 10, 0.01)
+    assert(longestDelayMs(image, apart = false) > 400)
+    assert(longestDelayMs(image, apart = true) < 10 + 5 + 1)
+
+  test("behind a rate no byte is lost or moved, and the end comes last"):
+    val text = (0 until 2000).map(i => s"$i;").mkString
+    val came = VirtualTime.run(1): system =>
+      given ActorSystem = system
+      val clock         = VirtualClock(system)
+      val start         = clock.now()
+      val narrow        = LatencyProfile.Limited("", constant(20), Bandwidth(1_000_000, 100))
+      val link          = EmulatedLink(LinkProfile.symmetric(narrow), 1, clock)
+      Source
+        .single(ByteString(text))
+        .via(link.connection(lost).join(Flow[ByteString]))
+        .runFold("")(_ + _.utf8String)
+        .map(came => (came, clock.now().since(start).toMillis, link.counts))
+    .value
+    assertEquals(came._1, text)
+    // There and back again, each at 125 bytes a ms: the last piece goes back when all has arrived.
+    assertEqualsDouble(came._2, 20 + text.length / 125.0 + 1500 / 125.0, 1500 / 125.0)
+    assert(
+      came._3.bytesHeldBack > 0 && came._3.longestWait >= Span.ofMillis(text.length / 125.0 - 1),
+      came._3
+    )

@@ -13,7 +13,6 @@ class DeliverySuite extends munit.FunSuite:
   private def delivery(
       latency: LatencyProfile = halfSecondEachWay,
       faults: Faults = Faults.none,
-      bytesPerSecond: Option[Double] = None,
       opened: Span = Span.Zero,
       stalls: LongAdder = LongAdder()
   ): Delivery =
@@ -21,14 +20,13 @@ class DeliverySuite extends munit.FunSuite:
       LatencySampler(latency, 1, 2),
       faults.stalls(3),
       faults.breakOf(opened, 3),
-      bytesPerSecond,
       stalls
     )
 
   private def stall(at: Double, lasts: Double) = TimedFault(ms(at), Fault.Stall(ms(lasts)))
 
   test("bytes come out after half of the round trip"):
-    assertEquals(delivery().due(ms(20), 1), Some(ms(520)))
+    assertEquals(delivery().due(ms(20)), Some(ms(520)))
 
   test("no bytes overtake older ones, and each waits no longer than its own delay or the one before"):
     val line    = delivery(LatencyProfile.vpn)
@@ -36,36 +34,30 @@ class DeliverySuite extends munit.FunSuite:
     var before  = Span.Zero
     for i <- 0 until 1000 do
       val now = ms(i * 10.0)
-      val due = line.due(now, 100).get
+      val due = line.due(now).get
       assertEquals(due, before.max(now + sampler.oneWay(now)))
       before = due
 
   test("what is due within a stall comes out at its end, what is due before or after is untouched"):
     val stalls = LongAdder()
     val line   = delivery(faults = Faults(List(stall(1000, 200))), stalls = stalls)
-    val dues   = List(400, 500, 650, 699, 700, 900).map(now => line.due(ms(now), 1).get)
+    val dues   = List(400, 500, 650, 699, 700, 900).map(now => line.due(ms(now)).get)
     assertEquals(dues, List(900, 1200, 1200, 1200, 1200, 1400).map(ms(_)))
     assertEquals(stalls.sum, 1L)
 
   test("stalls that overlap or follow one another hold back until the last has ended"):
     val line = delivery(faults = Faults(List(stall(1000, 200), stall(1100, 50), stall(1200, 100))))
-    assertEquals(line.due(ms(600), 1), Some(ms(1300)))
-
-  test("a limited bandwidth spaces segments by the time they take on the line"):
-    val line = delivery(bytesPerSecond = Some(1000))
-    assertEquals(line.due(ms(0), 100), Some(ms(600)))
-    assertEquals(line.due(ms(0), 200), Some(ms(800)))
-    assertEquals(line.due(ms(1000), 100), Some(ms(1600)))
+    assertEquals(line.due(ms(600)), Some(ms(1300)))
 
   test("what is not out when the link resets is lost, and the connection breaks then"):
     val line = delivery(faults = Faults(List(TimedFault(ms(1000), Fault.Reset))))
-    assertEquals(line.due(ms(499), 1), Some(ms(999)))
-    assertEquals(line.due(ms(500), 1), None)
+    assertEquals(line.due(ms(499)), Some(ms(999)))
+    assertEquals(line.due(ms(500)), None)
     assertEquals(line.breaksAt, Some(ms(1000)))
 
   test("a silence swallows at once and breaks the connection at its end"):
     val line = delivery(faults = Faults(List(TimedFault(ms(1000), Fault.Silence(ms(300))))))
-    assertEquals(line.due(ms(600), 1), None)
+    assertEquals(line.due(ms(600)), None)
     assertEquals(line.breaksAt, Some(ms(1300)))
 
   test("a connection opened after a reset lives until the next"):
@@ -77,7 +69,7 @@ class DeliverySuite extends munit.FunSuite:
   test("a connection opened within a silence is lost until it ends"):
     val faults = Faults(List(TimedFault(ms(1000), Fault.Silence(ms(300))), TimedFault(ms(2000), Fault.Reset)))
     val line   = delivery(faults = faults, opened = ms(1100))
-    assertEquals(line.due(ms(1100), 1), None)
+    assertEquals(line.due(ms(1100)), None)
     assertEquals(line.breaksAt, Some(ms(1300)))
     assertEquals(delivery(faults = faults, opened = ms(1300)).breaksAt, Some(ms(2000)))
 

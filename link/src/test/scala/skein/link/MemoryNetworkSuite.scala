@@ -250,8 +250,10 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assert(sizes.distinct.sizeIs > 5, sizes)
 
   test("a limited bandwidth delays what is large"):
-    val narrow = slow.copy(bytesPerSecond = Some(10_000))
-    val at     = in(over(narrow)): world =>
+    val narrow = LinkProfile.symmetric(
+      LatencyProfile.Limited("narrow", slow.toServer, Bandwidth.ofBitsPerSecond(80_000))
+    )
+    val at = in(over(narrow)): world =>
       for
         _      <- world.serve(Flow[ByteString].fold(0)(_ + _.size).map(size => ByteString(s"$size")))
         answer <- world.ask(ByteString(Array.fill[Byte](5_000)(0)))

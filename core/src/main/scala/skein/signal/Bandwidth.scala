@@ -1,0 +1,52 @@
+package skein.signal
+
+import skein.units.*
+
+/** What one direction of a line lets through, and how much may wait before it.
+  *
+  * @param bitsPerSecond
+  *   of payload; the headers of a network's own layers are not counted
+  * @param queueBytes
+  *   what waits before the line at most, first in, first out; what does not fit waits at its sender
+  */
+final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
+  require(bitsPerSecond > 0 && queueBytes > 0, s"a line has a rate and a queue above zero: $this")
+
+  /** How long the line takes to send so many bytes. */
+  def timeOf(bytes: Long): Span = Span.ofSeconds(bytes * 8.0 / bitsPerSecond)
+
+object Bandwidth:
+  /** Two Ethernet frames. */
+  private val LeastQueueBytes = 3000
+
+  /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289, section 4.3),
+    * and of 3,000 bytes at least.
+    */
+  def ofBitsPerSecond(bitsPerSecond: Long): Bandwidth =
+    Bandwidth(bitsPerSecond, (bitsPerSecond / 8 / 200).max(LeastQueueBytes).min(Int.MaxValue).toInt)
+
+  val form: String =
+    "a rate from 1kbit to 100gbit such as 50mbit, or with a queue up to 1GB such as 50mbit/64kB"
+
+  /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B, kB, MB or
+    * GB, from 1 byte to 1 GB. The error says what was expected and what came.
+    */
+  def parse(text: String): Either[String, Bandwidth] =
+    val bandwidth = text match
+      case s"$rate/$queue" =>
+        for
+          bits  <- amount(rate, bitUnits).filter(inRange)
+          bytes <- amount(queue, byteUnits).filter(bytes => bytes >= 1 && bytes <= 1_000_000_000L)
+        yield Bandwidth(bits, bytes.toInt)
+      case rate => amount(rate, bitUnits).filter(inRange).map(ofBitsPerSecond)
+    bandwidth.toRight(s"expected $form, came '$text'")
+
+  private def inRange(bits: Long) = bits >= 1000 && bits <= 100_000_000_000L
+
+  private val bitUnits  = Map("bit" -> 1L, "kbit" -> 1000L, "mbit" -> 1_000_000L, "gbit" -> 1_000_000_000L)
+  private val byteUnits = Map("B" -> 1L, "kB" -> 1000L, "MB" -> 1_000_000L, "GB" -> 1_000_000_000L)
+  private val quantity  = """(\d{1,12}(?:\.\d{1,9})?)([a-zA-Z]+)""".r
+
+  private def amount(text: String, units: Map[String, Long]): Option[Long] = text match
+    case quantity(number, unit) => units.get(unit).map(size => math.round(number.toDouble * size))
+    case _                      => None

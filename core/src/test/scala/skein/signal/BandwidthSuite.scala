@@ -1,0 +1,36 @@
+package skein.signal
+
+import skein.units.*
+
+class BandwidthSuite extends munit.FunSuite:
+
+  test("a rate is read with its unit, and its queue is what it sends in 5 ms"):
+    assertEquals(Bandwidth.parse("50mbit"), Right(Bandwidth(50_000_000, 31_250)))
+    assertEquals(Bandwidth.parse("2.5gbit"), Right(Bandwidth(2_500_000_000L, 1_562_500)))
+    assertEquals(Bandwidth.parse("9600bit"), Right(Bandwidth(9600, 3000)))
+
+  test("a queue may be stated"):
+    assertEquals(Bandwidth.parse("50mbit/64kB"), Right(Bandwidth(50_000_000, 64_000)))
+    assertEquals(Bandwidth.parse("1mbit/1B"), Right(Bandwidth(1_000_000, 1)))
+
+  test("what is no rate is refused with what came"):
+    for text <- List(
+        "",
+        "50",
+        "50mb",
+        "mbit",
+        "-1mbit",
+        "0mbit",
+        "1bit",
+        "200gbit",
+        "1mbit/",
+        "1mbit/0B",
+        "1mbit/2GB",
+        "1mbit/1kb",
+        "1e9mbit"
+      )
+    do
+      assertEquals(Bandwidth.parse(text), Left(s"expected ${Bandwidth.form}, came '$text'"))
+
+  test("bytes take the time of their bits"):
+    assertEquals(Bandwidth.ofBitsPerSecond(50_000_000).timeOf(6250), Span.ofMillis(1))
