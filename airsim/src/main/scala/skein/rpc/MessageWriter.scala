@@ -1,5 +1,6 @@
 package skein.rpc
 
+import java.nio.ByteBuffer
 import java.nio.charset.StandardCharsets.UTF_8
 import org.apache.pekko.util.ByteString
 import upack.{Arr, Binary, Ext, False, Float32, Float64, Int32, Int64, Msg, Null, Obj, Str, True, UInt64}
@@ -34,7 +35,7 @@ final class MessageWriter:
     params.foreach(value)
 
   /** A reply: `Left` fills the error slot, `Right` the result. */
-  def reply(id: Long, outcome: Either[String, Msg]): Unit =
+  def reply(id: Long, outcome: Either[String, Msg | Encoded]): Unit =
     byte(0x94)
     byte(1)
     integer(id)
@@ -42,9 +43,12 @@ final class MessageWriter:
       case Left(error) =>
         string(error)
         byte(0xc0)
-      case Right(result) =>
+      case Right(result: Msg) =>
         byte(0xc0)
         value(result)
+      case Right(Encoded(result)) =>
+        byte(0xc0)
+        inPlace(result)
 
   /** Everything encoded since the last call. */
   def take(): ByteString =
@@ -64,7 +68,38 @@ final class MessageWriter:
       used = 0
       if buffer.length > KeptCapacity then buffer = new Array[Byte](InitialCapacity)
 
-  private def value(msg: Msg): Unit = msg match
+  /** The header of a map; its keys and values follow. */
+  def map(size: Int): Unit = sized(size, 0x80, 16, -1, 0xde, 0xdf)
+
+  /** The header of an array; its elements follow. */
+  def array(length: Int): Unit = sized(length, 0x90, 16, -1, 0xdc, 0xdd)
+
+  /** An array of 32-bit floats, five bytes each. */
+  def floats(values: Array[Float]): Unit =
+    array(values.length)
+    numbers(values.length, 5): (encoded, i) =>
+      encoded.put(0xca.toByte).putFloat(values(i)): Unit
+
+  /** An array of integers, five bytes each. */
+  def integers(values: Array[Int]): Unit =
+    array(values.length)
+    numbers(values.length, 5): (encoded, i) =>
+      encoded.put(0xd2.toByte).putInt(values(i)): Unit
+
+  private inline def numbers(length: Int, bytesEach: Int)(inline put: (ByteBuffer, Int) => Unit): Unit =
+    val encoded = ByteBuffer.allocate(Math.multiplyExact(length, bytesEach))
+    var i       = 0
+    while i < length do
+      put(encoded, i)
+      i += 1
+    inPlace(ByteString.fromArrayUnsafe(encoded.array))
+
+  private def inPlace(encoded: ByteString): Unit =
+    flush()
+    finished = finished ++ encoded
+
+  /** A value of any kind. */
+  def value(msg: Msg): Unit = msg match
     case Null        => byte(0xc0)
     case False       => byte(0xc2)
     case True        => byte(0xc3)
@@ -83,7 +118,7 @@ final class MessageWriter:
         value(items(i))
         i += 1
     case Obj(entries) =>
-      sized(entries.size, 0x80, 16, -1, 0xde, 0xdf)
+      map(entries.size)
       for (key, item) <- entries do
         value(key)
         value(item)
@@ -105,14 +140,10 @@ final class MessageWriter:
     sized(encoded.length, 0xa0, 32, 0xd9, 0xda, 0xdb)
     bytes(encoded)
 
-  private def array(length: Int): Unit = sized(length, 0x90, 16, -1, 0xdc, 0xdd)
-
   private def binary(v: Array[Byte]): Unit =
     sized(v.length, 0, 0, 0xc4, 0xc5, 0xc6)
     if v.length < SentInPlace then bytes(v)
-    else
-      flush()
-      finished = finished ++ ByteString.fromArrayUnsafe(v)
+    else inPlace(ByteString.fromArrayUnsafe(v))
 
   private def extended(tag: Byte, v: Array[Byte]): Unit =
     v.length match
@@ -157,7 +188,13 @@ final class MessageWriter:
     if used + more > buffer.length then
       buffer = java.util.Arrays.copyOf(buffer, math.max(used + more, 2 * buffer.length))
 
-private object MessageWriter:
+object MessageWriter:
   private val InitialCapacity = 4096
   private val KeptCapacity    = 256 << 10
   private val SentInPlace     = 32 << 10
+
+  /** What `write` tells the writer, which has to be exactly one value. */
+  def encode(write: MessageWriter => Unit): Encoded =
+    val writer = MessageWriter()
+    write(writer)
+    Encoded(writer.take())

@@ -29,4 +29,4 @@ enum ServerEvent:
 /** Answers one request: `Left` is the text of the reply's error slot, `Right` the result. Replies leave in the order
   * in which the futures complete. It must not block.
   */
-type RpcHandler = RpcRequest => Future[Either[String, Msg]]
+type RpcHandler = RpcRequest => Future[Either[String, Msg | Encoded]]

@@ -269,5 +269,5 @@ private object ServerConnection:
       id: Long,
       request: RpcRequest,
       bytes: Long,
-      result: Try[Either[String, Msg]]
+      result: Try[Either[String, Msg | Encoded]]
   )

@@ -1,13 +1,14 @@
 package skein.simulator
 
 import scala.util.control.NonFatal
+import skein.rpc.Encoded
 import skein.units.Span
 import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
 /** What a call leads to. */
 private[simulator] enum Outcome:
-  case Answered(result: Msg)
+  case Answered(result: Msg | Encoded)
 
   /** The function throws; `text` is the exception's. */
   case Threw(text: String)

@@ -2,6 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.VehicleSettings
+import skein.rpc.Encoded
 import skein.units.*
 import upack.{Bool, Msg}
 
@@ -9,7 +10,7 @@ import upack.{Bool, Msg}
 final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
 
 /** What a call is answered: its result, or the text of its error. */
-final case class SimulatorAnswer(token: Long, result: Either[String, Msg])
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded])
 
 /** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
   * ends. A pure function of what it is told; equal calls at equal times give equal answers.

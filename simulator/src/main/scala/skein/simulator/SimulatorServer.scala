@@ -10,7 +10,7 @@ import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.link.{Address, Transport}
-import skein.rpc.{CallLines, RpcRequest, RpcServer, ServerEvent, ServerStats}
+import skein.rpc.{CallLines, Encoded, RpcRequest, RpcServer, ServerEvent, ServerStats}
 import skein.units.*
 import upack.Msg
 
@@ -78,7 +78,7 @@ object SimulatorServer:
       case ServerEvent.Closed(connection, _) => lines.forget(connection)
       case _                                 => ()
     val bound = RpcServer.bind(transport, settings.address, settings.limits, observer = forget): request =>
-      val answer = Promise[Either[String, Msg]]()
+      val answer = Promise[Either[String, Msg | Encoded]]()
       lines.put(request.connection, Call(request, answer))
       if work.compareAndSet(false, true) then simulator ! Message.Work
       answer.future
@@ -94,7 +94,7 @@ object SimulatorServer:
     case Wake
     case Stop
 
-  final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg]])
+  final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg | Encoded]])
 
   /** Calls run before other work of the process has its turn: some 0.5 ms. */
   private val CallsAtOnce = 32
@@ -110,7 +110,7 @@ object SimulatorServer:
       behind: AtomicLong,
       broken: Promise[Throwable]
   ):
-    private val waiting   = mutable.LongMap.empty[Promise[Either[String, Msg]]]
+    private val waiting   = mutable.LongMap.empty[Promise[Either[String, Msg | Encoded]]]
     private var nextToken = 0L
     private var wakeAt    = Option.empty[Instant]
 

@@ -1,5 +1,6 @@
 package skein.simulator
 
+import skein.rpc.Encoded
 import skein.airsim.wire.*
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.units.*
@@ -142,7 +143,13 @@ final private[skein] class Bench(
   def real(value: Double): Msg = Float32(value.toFloat)
 
   private def collect(): Unit =
-    simulation.takeAnswers().foreach(answer => answers(answer.token) = (elapsedS, answer.result))
+    for SimulatorAnswer(token, result) <- simulation.takeAnswers() do
+      answers(token) = (
+        elapsedS,
+        result.map:
+          case Encoded(bytes) => upack.read(bytes.toArray)
+          case value: Msg     => value
+      )
 
 private[skein] object Bench:
   def of(vehicles: VehicleSettings*): Bench = Bench(vehicles.map(_.name), vehicles)

@@ -3,9 +3,10 @@ package skein.airsim.wire
 import org.msgpack.core.MessagePack
 import org.msgpack.value.{MapValue, Value}
 import scala.jdk.CollectionConverters.*
-import skein.rpc.MessageWriter
+import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
 import upack.{Int32, Obj, Str, UInt64}
+import upack.Binary
 import upickle.default.{Writer, readBinary, writeMsg}
 
 /** Our bytes, read by another library. */
@@ -95,3 +96,67 @@ class WireSuite extends munit.FunSuite:
 
   test("a name is read from str and from bin"):
     assertEquals(readBinary[Text](upack.Binary("Evader".getBytes)), Text("Evader"))
+
+  private def sent(value: Encoded): Array[Byte] =
+    val writer = new MessageWriter
+    writer.reply(0, Right(value))
+    writer.take().drop(4).toArray
+
+  private val pixels = Array.tabulate[Byte](40_000)(i => (i * 7).toByte)
+  private val images = Seq(
+    ImageResponse(
+      pixels,
+      camera_name = "front_center",
+      time_stamp = at,
+      width = 100,
+      height = 133,
+      compress = false
+    ),
+    ImageResponse(image_data_float = Array(1.5f, 65504f, 0.1f), pixels_as_float = true, width = 3, height = 1)
+  )
+
+  test("pictures come in AirSim's shape: bytes are binary, floats an array of 32-bit ones, either is empty"):
+    val maps = MessagePack.newDefaultUnpacker(sent(ImageResponse.encode(images))).unpackValue().asArrayValue
+    val rgb  = maps.get(0).asMapValue.entrySet.asScala.toSeq
+    assertEquals(
+      rgb.map(_.getKey.asStringValue.asString),
+      Seq("image_data_uint8", "image_data_float", "camera_position", "camera_name", "camera_orientation") ++
+        Seq("time_stamp", "message", "pixels_as_float", "compress", "width", "height", "image_type")
+    )
+    val first = fields(maps.get(0))
+    assertEquals(first("image_data_uint8").asBinaryValue.asByteArray.toSeq, pixels.toSeq)
+    assertEquals(first("image_data_float").asArrayValue.size, 0)
+    assertEquals(first("time_stamp").asIntegerValue.asLong, at.toNanos)
+    assertEquals(
+      (first("width").asIntegerValue.asInt, first("compress").asBooleanValue.getBoolean),
+      (100, false)
+    )
+    val second = fields(maps.get(1))
+    assertEquals(second("image_data_uint8").asBinaryValue.asByteArray.length, 0)
+    assertEquals(
+      second("image_data_float").asArrayValue.asScala.map(_.asFloatValue.toFloat).toSeq,
+      Seq(1.5f, 65504f, 0.1f)
+    )
+
+  test("a client of ours reads pictures and scans back, also where keys are missing or more"):
+    val read = readBinary[Seq[ImageResponse]](sent(ImageResponse.encode(images)))
+    assertEquals(read.map(_.image_data_uint8.toSeq), images.map(_.image_data_uint8.toSeq))
+    assertEquals(read.map(_.image_data_float.toSeq), images.map(_.image_data_float.toSeq))
+    assertEquals(read.map(_.camera_name), images.map(_.camera_name))
+    val cosys = Obj(Str("groundtruth") -> upack.Arr(Str("Tree")), Str("point_cloud") -> upack.Arr(Int32(1)))
+    assertEquals(readBinary[LidarData](cosys).point_cloud.toSeq, Seq(1f))
+    assertEquals(readBinary[ImageResponse](Obj(Str("image_data_uint8") -> Binary(pixels))).width, 0)
+
+  test("a scan has AirSim's keys, with one id for each point"):
+    val scan = LidarData(at, Array(1f, -2f, 3f), Pose(vector, rotation), Array(42))
+    val keys = fields(MessagePack.newDefaultUnpacker(sent(LidarData.encode(scan))).unpackValue())
+    assertEquals(keys.keySet, Set("time_stamp", "point_cloud", "pose", "segmentation"))
+    val back = readBinary[LidarData](sent(LidarData.encode(scan)))
+    assertEquals((back.time_stamp, back.pose), (scan.time_stamp, scan.pose))
+    assertEquals((back.point_cloud.toSeq, back.segmentation.toSeq), (Seq(1f, -2f, 3f), Seq(42)))
+
+  test("a picture is sent from the array it stands in, without a copy"):
+    val drawn   = pixels.clone
+    val encoded = ImageResponse.encode(Seq(ImageResponse(drawn, width = 100, height = 133))).bytes
+    drawn(20_000) = 99
+    assert(encoded.toArray.containsSlice(drawn.slice(19_990, 20_010)))

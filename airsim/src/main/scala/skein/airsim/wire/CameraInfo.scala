@@ -10,11 +10,3 @@ final private[skein] case class CameraInfo(pose: Pose, fov: Float, proj_mat: Pro
 
 /** Four rows of four. */
 final private[skein] case class ProjectionMatrix(matrix: Seq[Seq[Float]]) derives ReadWriter
-
-/** What a picture is asked for; `image_type` 0 is the scene, 5 the segmentation. */
-final private[skein] case class ImageRequest(
-    camera_name: String,
-    image_type: Int,
-    pixels_as_float: Boolean,
-    compress: Boolean
-) derives ReadWriter

@@ -1,0 +1,24 @@
+package skein.airsim.wire
+
+import upickle.default.ReadWriter
+
+/** An object that a camera sees.
+  *
+  * @param box2D
+  *   around it in the picture, pixels from the upper left corner
+  * @param box3D
+  *   around it in its own frame, m
+  * @param relative_pose
+  *   in the camera's frame: front, right, down
+  */
+final private[skein] case class DetectionInfo(
+    name: String,
+    geo_point: GeoPoint,
+    box2D: Box2D,
+    box3D: Box3D,
+    relative_pose: Pose
+) derives ReadWriter
+
+final private[skein] case class Vector2r(x_val: Float, y_val: Float) derives ReadWriter
+final private[skein] case class Box2D(min: Vector2r, max: Vector2r) derives ReadWriter
+final private[skein] case class Box3D(min: Vector3r, max: Vector3r) derives ReadWriter

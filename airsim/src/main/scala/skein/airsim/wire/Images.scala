@@ -1,0 +1,86 @@
+package skein.airsim.wire
+
+import skein.rpc.{Encoded, MessageWriter}
+import skein.units.Instant
+import upack.{Binary, Str}
+import upickle.default.{ReadWriter, writeMsg}
+import upickle.implicits.serializeDefaults
+
+/** What a picture is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key nothing is
+  * asked, and its server does without.
+  */
+final private[skein] case class ImageRequest(
+    camera_name: String,
+    image_type: Int,
+    pixels_as_float: Boolean,
+    compress: Boolean
+) derives ReadWriter
+
+/** Kinds of pictures by AirSim's numbers. */
+private[skein] enum ImageType:
+  case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
+    Infrared,
+    OpticalFlow, OpticalFlowVis
+
+/** A picture.
+  *
+  * @param image_data_uint8
+  *   a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from the top, without gaps; empty if
+  *   `pixels_as_float`
+  * @param image_data_float
+  *   one number a pixel, rows from the top; empty unless `pixels_as_float`
+  * @param camera_position
+  *   in the frame of the camera's vehicle, NED, m
+  * @param time_stamp
+  *   of the exposure, on the simulator's clock
+  */
+@serializeDefaults(true)
+final private[skein] case class ImageResponse(
+    image_data_uint8: Array[Byte] = Array.emptyByteArray,
+    image_data_float: Array[Float] = Array.emptyFloatArray,
+    camera_position: Vector3r = Vector3r.Zero,
+    camera_name: String = "",
+    camera_orientation: Quaternionr = Quaternionr(1, 0, 0, 0),
+    time_stamp: Instant = Instant.Epoch,
+    message: String = "",
+    pixels_as_float: Boolean = false,
+    compress: Boolean = true,
+    width: Int = 0,
+    height: Int = 0,
+    image_type: Int = 0
+) derives ReadWriter
+
+private[skein] object ImageResponse:
+
+  /** The answer to `simGetImages`, keys in AirSim's order. Bytes are sent from the arrays they stand in. */
+  def encode(images: Seq[ImageResponse]): Encoded = MessageWriter.encode: out =>
+    out.array(images.size)
+    images.foreach(write(out, _))
+
+  private def write(out: MessageWriter, image: ImageResponse): Unit =
+    def key(name: String): Unit = out.value(Str(name))
+    out.map(12)
+    key("image_data_uint8")
+    out.value(Binary(image.image_data_uint8))
+    key("image_data_float")
+    out.floats(image.image_data_float)
+    key("camera_position")
+    out.value(writeMsg(image.camera_position))
+    key("camera_name")
+    out.value(Str(image.camera_name))
+    key("camera_orientation")
+    out.value(writeMsg(image.camera_orientation))
+    key("time_stamp")
+    out.value(writeMsg(image.time_stamp))
+    key("message")
+    out.value(Str(image.message))
+    key("pixels_as_float")
+    out.value(writeMsg(image.pixels_as_float))
+    key("compress")
+    out.value(writeMsg(image.compress))
+    key("width")
+    out.value(writeMsg(image.width))
+    key("height")
+    out.value(writeMsg(image.height))
+    key("image_type")
+    out.value(writeMsg(image.image_type))

@@ -1,0 +1,48 @@
+package skein.airsim.wire
+
+import skein.rpc.{Encoded, MessageWriter}
+import skein.units.Instant
+import upack.Str
+import upickle.default.{ReadWriter, writeMsg}
+import upickle.implicits.serializeDefaults
+
+/** One scan.
+  *
+  * @param time_stamp
+  *   when it was taken, on the simulator's clock
+  * @param point_cloud
+  *   x, y, z of each point, m, in the frame that the lidar's settings name
+  * @param pose
+  *   of the lidar, in its vehicle's frame
+  * @param segmentation
+  *   one id for each point; Cosys-AirSim sends names instead, which are passed over
+  */
+@serializeDefaults(true)
+final private[skein] case class LidarData(
+    time_stamp: Instant = Instant.Epoch,
+    point_cloud: Array[Float] = Array.emptyFloatArray,
+    pose: Pose = Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)),
+    segmentation: Array[Int] = Array.emptyIntArray
+) derives ReadWriter
+
+private[skein] object LidarData:
+  /** The answer to `getLidarData`, keys in AirSim's order. */
+  def encode(scan: LidarData): Encoded = MessageWriter.encode: out =>
+    out.map(4)
+    out.value(Str("time_stamp"))
+    out.value(writeMsg(scan.time_stamp))
+    out.value(Str("point_cloud"))
+    out.floats(scan.point_cloud)
+    out.value(Str("pose"))
+    out.value(writeMsg(scan.pose))
+    out.value(Str("segmentation"))
+    out.integers(scan.segmentation)
+
+/** Distances in m; `relative_pose` is the sensor's, on its vehicle. */
+final private[skein] case class DistanceSensorData(
+    time_stamp: Instant,
+    distance: Float,
+    min_distance: Float,
+    max_distance: Float,
+    relative_pose: Pose
+) derives ReadWriter
