@@ -1,0 +1,80 @@
+package skein.fusion
+
+import skein.units.*
+
+/** How measurements of a vehicle are joined.
+  *
+  * @param acceleration
+  *   how much the vehicle's velocity wanders: spectral density of its acceleration, m²/s³. A vehicle that accelerates
+  *   with a (m/s²) for about τ (s) at a time has about a²τ
+  * @param topSpeed
+  *   standard deviation of a velocity that nobody has measured yet
+  * @param history
+  *   how much older than the newest one a measurement may be
+  * @param mostMeasurements
+  *   that are remembered, whatever the time
+  */
+final case class FusionSettings(
+    acceleration: Double = 10,
+    topSpeed: MetresPerSecond = MetresPerSecond(10),
+    history: Span = Span.ofSeconds(2),
+    mostMeasurements: Int = 256
+):
+  require(
+    acceleration > 0 && topSpeed.value > 0 && history > Span.Zero && mostMeasurements > 0,
+    s"fusion needs settings above zero: $this"
+  )
+
+/** What is believed of one vehicle from measurements that come in any order: each enters at the moment of which it tells,
+  * and all later ones are joined again behind it. So the belief is that of a filter which was given all of them in order.
+  * Of equally old ones the one that came first is joined first.
+  *
+  * Immutable. Costs one step of the filter for each measurement that is newer than the one that comes.
+  */
+final class Fusion private (
+    settings: FusionSettings,
+    before: Option[Belief], // all that is forgotten
+    remembered: Vector[Fusion.Step]
+):
+  import Fusion.*
+
+  /** After the newest measurement; none before the first. */
+  def belief: Option[Belief] = remembered.lastOption.map(_.after).orElse(before)
+
+  /** What is believed of a moment, the newest measurement's or a later one. */
+  def at(later: Instant): Option[Belief] =
+    belief.filter(_.at <= later).map(_.carriedTo(later, settings.acceleration))
+
+  /** With one measurement more. None if it is too old: older than all that is remembered. */
+  def including(measured: Measurement): Option[Fusion] =
+    val isTooOld = before.exists(_.at > measured.validAt) ||
+      belief.exists(_.at.since(measured.validAt) > settings.history)
+    Option.unless(isTooOld):
+      val (older, newer) =
+        remembered.splitAt(remembered.lastIndexWhere(_.measured.validAt <= measured.validAt) + 1)
+      val replayed = (measured +: newer.map(_.measured)).foldLeft(older): (steps, next) =>
+        steps :+ Step(next, step(steps.lastOption.map(_.after).orElse(before), next))
+      val oldest = replayed.last.measured.validAt - settings.history
+      val kept   = replayed.dropWhile(_.measured.validAt < oldest).takeRight(settings.mostMeasurements)
+      val gone   = replayed.dropRight(kept.size).lastOption.map(_.after)
+      new Fusion(settings, gone.orElse(before), kept)
+
+  private def step(last: Option[Belief], measured: Measurement): Belief = last match
+    case Some(belief) => belief.carriedTo(measured.validAt, settings.acceleration).joined(measured)
+    case None         =>
+      val speed = settings.topSpeed.value
+      val moved =
+        measured.velocity.getOrElse((ned = Vector3.Zero, covariance = Matrix3.diagonal(speed * speed)))
+      Belief(
+        measured.validAt,
+        measured.positionNed,
+        moved.ned,
+        measured.covariance,
+        Matrix3.Zero,
+        moved.covariance
+      )
+
+object Fusion:
+  def apply(settings: FusionSettings): Fusion = new Fusion(settings, None, Vector.empty)
+
+  private final case class Step(measured: Measurement, after: Belief)

@@ -1,0 +1,110 @@
+package skein.fusion
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Where a vehicle was at a moment, as something measured it: a reading of its own, or a detection by somebody's camera
+  * or LIDAR.
+  *
+  * @param validAt
+  *   when it was so: physics sampled, the image exposed; all of one vehicle on one clock
+  * @param positionNed
+  *   m
+  * @param covariance
+  *   of the position, NED, m²
+  * @param velocity
+  *   if it was measured too: NED, m/s, with its covariance, m²/s²
+  */
+final case class Measurement(
+    validAt: Instant,
+    positionNed: Vector3,
+    covariance: Matrix3,
+    velocity: Option[(ned: Vector3, covariance: Matrix3)] = None
+):
+  require(
+    covariance.determinant > 0 && velocity.forall(_.covariance.determinant > 0),
+    s"a measurement's covariance is positive: $this"
+  )
+
+object Measurement:
+
+  /** A reading of a vehicle's own state with the same standard deviation along all axes. */
+  def ofReading(
+      validAt: Instant,
+      state: Kinematics,
+      position: Metres,
+      velocity: MetresPerSecond
+  ): Measurement =
+    def variance(sd: Double) = Matrix3.diagonal(sd * sd)
+    Measurement(
+      validAt,
+      state.positionNed,
+      variance(position.value),
+      Some((ned = state.velocityNed, covariance = variance(velocity.value)))
+    )
+
+/** What a camera or a LIDAR tells of something it found, in its own frame (front, right, down).
+  *
+  * @param azimuth
+  *   to the right of straight ahead
+  * @param elevation
+  *   above straight ahead
+  * @param range
+  *   along the line of sight
+  * @param deviation
+  *   standard deviations of the three, independent of one another
+  */
+final case class Sighting(
+    azimuth: Radians,
+    elevation: Radians,
+    range: Metres,
+    deviation: (azimuth: Radians, elevation: Radians, range: Metres)
+):
+
+  /** Where it was, given where its observer was at the exposure. To first order about what was measured ("converted
+    * measurement"), which is good to where range · angle² is small beside the range's own deviation: Lerro and
+    * Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29 (1993), 1015.
+    *
+    * @param positionNed
+    *   of the sensor, m
+    * @param orientation
+    *   from the sensor's frame to world NED
+    */
+  def seenFrom(validAt: Instant, positionNed: Vector3, orientation: Quaternion): Measurement =
+    import StrictMath.{cos, sin}
+    val (az, el, r)                             = (azimuth.value, elevation.value, range.value)
+    def turned(x: Double, y: Double, z: Double) = Sighting.turned(Vector3(x, y, z), orientation)
+    val ahead                                   = turned(cos(el) * cos(az), cos(el) * sin(az), -sin(el))
+    val right                                   = turned(-cos(el) * sin(az), cos(el) * cos(az), 0) * r
+    val upwards                                 = turned(-sin(el) * cos(az), -sin(el) * sin(az), -cos(el)) * r
+    Measurement(
+      validAt,
+      positionNed + ahead * r,
+      Matrix3.along(ahead * deviation.range.value) +
+        Matrix3.along(right * deviation.azimuth.value) +
+        Matrix3.along(upwards * deviation.elevation.value)
+    )
+
+object Sighting:
+
+  /** The sighting of a point in the sensor's frame (front, right, down), m. */
+  def of(
+      pointFrd: Vector3,
+      deviation: (azimuth: Radians, elevation: Radians, range: Metres)
+  ): Sighting =
+    val flat = StrictMath.hypot(pointFrd.x, pointFrd.y)
+    Sighting(
+      Radians(StrictMath.atan2(pointFrd.y, pointFrd.x)),
+      Radians(StrictMath.atan2(-pointFrd.z, flat)),
+      Metres(pointFrd.norm),
+      deviation
+    )
+
+  /** v in world NED. */
+  private def turned(v: Vector3, q: Quaternion): Vector3 =
+    val (ux, uy, uz) = (
+      q.y * v.z - q.z * v.y + q.w * v.x,
+      q.z * v.x - q.x * v.z + q.w * v.y,
+      q.x * v.y - q.y * v.x + q.w * v.z
+    )
+    v + Vector3(q.y * uz - q.z * uy, q.z * ux - q.x * uz, q.x * uy - q.y * ux) * 2

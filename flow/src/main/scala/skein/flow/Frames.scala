@@ -1,0 +1,71 @@
+package skein.flow
+
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
+import scala.concurrent.Future
+import skein.signal.Stamped
+
+/** A camera or a LIDAR as a source of frames, each with the moment of its exposure. */
+object Frames:
+
+  /** Why a frame was not emitted. */
+  enum Skipped[+E, +A]:
+    /** So many were due while `inFlight` had not come. */
+    case Missed(frames: Int)
+
+    /** It did not come. */
+    case Failed(error: E)
+
+    /** One exposed later has come before it. */
+    case Overtaken(frame: Stamped[A])
+
+    /** The sensor gave the exposure that it had given before. */
+    case Repeated(frame: Stamped[A])
+
+    /** A newer one came before downstream took it. */
+    case Replaced(frame: Stamped[A])
+
+  /** Asks for a frame at each element of `ticks`, which says how many were due since the last one, as [[Metronome]] does.
+    * A frame's `validAt` is its exposure; every emitted frame is newer than the one before. One that fails never stops the
+    * source.
+    *
+    * '''Emits when''' a frame has come that is newer than all before and downstream demands.
+    * '''Backpressures when''' never: while downstream is slow, the newest frame replaces the one that waits.
+    * '''Completes when''' `ticks` has completed and all that was asked for has come.
+    * '''Cancels when''' downstream cancels.
+    *
+    * @param inFlight
+    *   frames asked for that have not come, at most
+    * @param ask
+    *   must end by itself, within its own timeout
+    * @param onSkip
+    *   told of every frame that was due and is not emitted
+    */
+  def at[E, A, M](ticks: Source[Int, M], inFlight: Int = 2)(
+      ask: () => Future[Either[E, Stamped[A]]]
+  )(onSkip: Skipped[E, A] => Unit): Source[Stamped[A], M] =
+    Sense
+      .at(ticks, inFlight, isNewer = (frame: Stamped[A], held: Stamped[A]) => frame.isNewerThan(held))(ask)(
+        {
+          case Left(error)  => onSkip(Skipped.Failed(error))
+          case Right(frame) => onSkip(Skipped.Overtaken(frame))
+        },
+        missed => onSkip(Skipped.Missed(missed))
+      )
+      .via(newerOnly(frame => onSkip(Skipped.Repeated(frame)), frame => onSkip(Skipped.Overtaken(frame))))
+      .via(Newest(frame => onSkip(Skipped.Replaced(frame))))
+
+  private def newerOnly[A](onRepeated: Stamped[A] => Unit, onOlder: Stamped[A] => Unit) =
+    Flow[Stamped[A]]
+      .statefulMap(() => Option.empty[Stamped[A]])(
+        (last, frame) =>
+          if last.exists(_.validAt == frame.validAt) then
+            onRepeated(frame)
+            (last, None)
+          else if last.forall(frame.isNewerThan) then (Some(frame), Some(frame))
+          else
+            onOlder(frame)
+            (last, None)
+        ,
+        _ => None
+      )
+      .collect { case Some(frame) => frame }

@@ -1,0 +1,106 @@
+package skein.flow
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.*
+import scala.concurrent.Future
+import scala.concurrent.duration.*
+import skein.signal.{SplitMix64, Stamped}
+import skein.units.*
+import skein.vtime.VirtualTime
+
+class RecogniseSuite extends munit.FunSuite:
+  private final case class Run(
+      emitted: Seq[(frame: Int, ageMs: Double)],
+      skipped: Vector[String],
+      replaced: Int,
+      mostAtOnce: Int
+  )
+
+  /** Frames as often as a camera takes them, the newest of which waits; each takes as long as `tookMs` says. */
+  private def run(
+      perSecond: Int,
+      count: Int,
+      workers: Int,
+      deadlineMs: Double = 1000,
+      newestFirst: Boolean = false
+  )(
+      tookMs: Int => Double
+  ): Run =
+    var skipped        = Vector.empty[String]
+    var replaced       = 0
+    var (atOnce, most) = (0, 0)
+    var busy           = Set.empty[Int]
+    val emitted        = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock                                                    = Clock.ofNanos(VirtualTime.clock(system))
+      def recognise(worker: Int, frame: Stamped[Int]): Future[Int] =
+        assert(!busy(worker), s"worker $worker has two frames")
+        busy += worker
+        atOnce += 1
+        most = most.max(atOnce)
+        val took = tookMs(frame.value)
+        after(Span.ofMillis(took.abs).toDuration)(Future.unit).map: _ =>
+          busy -= worker
+          atOnce -= 1
+          if took < 0 then sys.error("blurred") else frame.value
+      def skip(what: Unrecognised[Int]) = skipped :+= (what match
+        case Unrecognised.Late(frame)          => s"late ${frame.value}"
+        case Unrecognised.Failed(frame, cause) => s"${cause.getMessage} ${frame.value}"
+        case Unrecognised.Overtaken(frame)     => s"overtaken ${frame.value}")
+      Source
+        .tick(Duration.Zero, Span.ofSeconds(1.0 / perSecond).toDuration, ())
+        .take(count)
+        .zipWithIndex
+        .map: (_, i) =>
+          val now = clock.now()
+          Stamped(i.toInt, now, now, now)
+        .via(Newest(_ => replaced += 1))
+        .via(Recognise(workers, Span.ofMillis(deadlineMs), clock, newestFirst)(recognise)(skip))
+        .map: result =>
+          assertEqualsDouble(result.took.toMillis, tookMs(result.found.value), 1e-5)
+          (frame = result.found.value, ageMs = clock.now().since(result.found.validAt).toMillis)
+        .runWith(Sink.seq)
+    .value
+    Run(emitted, skipped, replaced, most)
+
+  test("recognition of 20 ms on two workers keeps 90 frames a second, all of them, in order, 20 ms old"):
+    val two = run(perSecond = 90, count = 900, workers = 2)(_ => 20)
+    assertEquals(two.emitted.map(_.frame), 0 until 900)
+    assert(two.emitted.forall(_.ageMs < 20.001), two.emitted.map(_.ageMs).max)
+    assertEquals((two.skipped, two.replaced, two.mostAtOnce), (Vector.empty, 0, 2))
+
+  test("on one worker half of them are kept, the newest each time, and the rest is counted"):
+    val one = run(perSecond = 90, count = 900, workers = 1)(_ => 20)
+    assertEquals(one.emitted.size + one.replaced, 900)
+    assertEqualsDouble(one.emitted.size, 500, 2)
+    assert(one.emitted.forall(_.ageMs < 20 + 1000.0 / 90 + 0.01), one.emitted.map(_.ageMs).max)
+
+  test("results come in the order of exposure however long each takes"):
+    val random = SplitMix64(1)
+    val tookMs = Vector.fill(300)(5 + 80 * random.nextDouble())
+    val mixed  = run(perSecond = 60, count = 300, workers = 3)(tookMs)
+    assertEquals(mixed.emitted.map(_.frame), mixed.emitted.map(_.frame).sorted)
+    assertEquals(mixed.emitted.size + mixed.replaced, 300)
+    assertEquals(mixed.mostAtOnce, 3)
+
+  test("the newest first: a result is emitted when it is there, and older ones no more"):
+    val newest = run(perSecond = 100, count = 4, workers = 4, newestFirst = true)(Vector(50, 5, 45, 5))
+    assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
+    assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
+    assert(newest.emitted.forall(_.ageMs < 5.001))
+
+  test(
+    "late and failed frames are told at once and stop nothing, and a late worker gets nothing until it ends"
+  ):
+    val tookMs = Vector(10.0, 500.0, -10.0) ++ Vector.fill(20)(10.0)
+    val faulty = run(perSecond = 50, count = 20, workers = 2, deadlineMs = 60)(tookMs)
+    assertEquals(faulty.emitted.map(_.frame), 0 +: (3 until 20))
+    assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
+    assertEquals(faulty.mostAtOnce, 2)
+
+  test("a flow that ends waits for what is under way, until its deadline"):
+    val ending = run(perSecond = 100, count = 2, workers = 2, deadlineMs = 40)(Vector(10, 5000))
+    assertEquals(ending.emitted.map(_.frame), Seq(0))
+    assertEquals(ending.skipped, Vector("late 1"))
