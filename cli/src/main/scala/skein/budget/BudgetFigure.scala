@@ -12,16 +12,21 @@ object BudgetFigure:
   private val limit  = Stroke(Colour(0x111111), 1.8)
   private val empty  = Colour(0xf0f0f0)
 
+  /** Drawn where the objective never came to a number. */
+  private val Most = 1e6
+
   /** @param maps
     *   of the same question at several periods
     */
   def apply(maps: Vector[BudgetMap]): Drawing =
-    val most  = maps.map(largest).max
-    val scale = ColourScale.aroundZero(most)
-    val cells = maps.map(panel(_, scale))
-    val title = s"${maps.head.policy}: ${maps.head.objective}, per cent off the paused truth"
-    val grid  = Drawing.grid(cells, columns = cells.size.min(3))
-    val head  = Drawing(
+    val (_, unit) = maps.head.tolerance.shown(maps.head.unit)
+    val most      = maps.map(largest).max
+    val scale     = ColourScale.aroundZero(most)
+    val cells     = maps.map(panel(_, scale))
+    val title     =
+      s"${maps.head.policy}: ${maps.head.objective}, how far off the paused truth, $unit".stripSuffix(", ")
+    val grid = Drawing.grid(cells, columns = cells.size.min(3))
+    val head = Drawing(
       grid.width,
       62,
       Vector(
@@ -30,20 +35,23 @@ object BudgetFigure:
       ) ++
         Legend(
           62,
-          Legend.line(s"${brief(maps.head.tolerance * 100)} % off the truth", limit),
+          Legend.line(s"${maps.head.tolerance.text(maps.head.unit)} off the truth", limit),
           Legend.box("no such link: jitter without latency", empty)
         ).shapes.map(_.moved(0, 40))
     )
     Drawing.stacked(head, grid)
 
   private def panel(map: BudgetMap, scale: ColourScale): Drawing =
-    val per    = map.legs.perRoundTrip
-    val budget = map.budget
-    val heat   = HeatMap(
+    val per            = map.legs.perRoundTrip
+    val (factor, unit) = map.tolerance.shown(map.unit)
+    val budget         = map.budget
+    val heat           = HeatMap(
       budget.meansMs.map(_ / per),
       budget.jittersMs.map(_ / per),
       budget.jittersMs.indices.toVector.map: i =>
-        budget.meansMs.indices.toVector.map(j => budget.deviation(i, j).map(_ * 100))
+        budget.meansMs.indices.toVector.map(j =>
+          budget.deviation(i, j).map(off => (off * factor).max(-Most).min(Most))
+        )
     )
     val panel = Panel(
       Axis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
@@ -55,7 +63,7 @@ object BudgetFigure:
     )
     val contours =
       for
-        level  <- Vector(-1, 1).map(_ * map.tolerance * 100)
+        level  <- Vector(-1, 1).map(_ * map.tolerance.value * factor)
         (a, b) <- heat.contour(level)
       yield Shape.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
     val marks = map.marks.flatMap: link =>
@@ -71,20 +79,28 @@ object BudgetFigure:
       panel.right + 110,
       panel.bottom + 44,
       Vector(
-        panel.title(s"${map.loop} every ${brief(map.periodMs)} ms, truth ${brief(budget.truth)} ${map.unit}"),
+        panel.title(
+          s"${map.loop} every ${brief(map.periodMs)} ms, truth ${brief(budget.truth)} ${map.unit}".trim
+        ),
         Shape.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++
-        scale.bar(panel.right + 20, panel.top, panel.bottom, "off, %") ++ panel.xAxis ++ panel.yAxis
+        scale.bar(
+          panel.right + 20,
+          panel.top,
+          panel.bottom,
+          s"off, $unit".stripSuffix(", ")
+        ) ++ panel.xAxis ++ panel.yAxis
     )
 
-  /** In per cent, the largest deviation of most cells: a few wild ones shall not make the others pale. */
+  /** The largest deviation of most cells: a few wild ones shall not make the others pale. */
   private def largest(map: BudgetMap): Double =
-    val sizes =
+    val (factor, _) = map.tolerance.shown(map.unit)
+    val sizes       =
       for
         i   <- map.budget.jittersMs.indices
         j   <- map.budget.meansMs.indices
-        off <- map.budget.deviation(i, j)
-      yield off.abs * 100
-    sizes.sorted.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(2 * map.tolerance * 100)
+        off <- map.budget.deviation(i, j) if off.isFinite
+      yield off.abs * factor
+    sizes.sorted.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(2 * map.tolerance.value * factor)
 
   private def brief(value: Double): String = skein.settings.PolicyFile.brief(value)

@@ -8,8 +8,8 @@ import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with what is said of it.
   *
-  * @param tolerance
-  *   a share of the truth
+  * @param policy
+  *   or scenario
   * @param marks
   *   named links with what was flown over them as they were measured
   */
@@ -20,7 +20,7 @@ final case class BudgetMap(
     unit: String,
     vehicles: String,
     policy: String,
-    tolerance: Double,
+    tolerance: Tolerance,
     episodes: Int,
     budget: LatencyBudget,
     marks: Vector[BudgetMark],
@@ -32,9 +32,9 @@ final case class BudgetMap(
     val row    = budget.jittersMs.indices.minBy(i => (budget.jittersMs(i) - atJitterMs).abs)
     val jitter = s"${ms(budget.jittersMs(row))} ms jitter"
     val truth  = s"the truth, ${number(budget.truth)}${if unit.isEmpty then "" else s" $unit"},"
-    val within = s"within ${number(tolerance * 100)} % of $truth"
+    val within = s"within ${tolerance.text(unit)} of $truth"
     val end    = s"(${legs.text}; $loop every ${number(periodMs)} ms)"
-    budget.holdsUpTo(row, tolerance) match
+    budget.holdsUpTo(row, tolerance.value) match
       case Bound.At(mean)     => s"holds $within up to ${ms(mean)} ms mean at $jitter $end"
       case Bound.Beyond(mean) => s"holds $within as far as the map goes, ${ms(mean)} ms mean, at $jitter $end"
       case Bound.Below(mean)  => s"does not hold $within even at ${ms(mean)} ms mean and $jitter $end"
@@ -42,9 +42,13 @@ final case class BudgetMap(
 
   /** A line per marked link. */
   def markLines: Vector[String] = marks.map: mark =>
-    val off = 100 * (mark.tally.mean - budget.truth) / budget.truth.abs
+    val (factor, offUnit) = tolerance.shown(unit)
+    val off               = factor * (mark.tally.mean - budget.truth) / budget.per
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
-      s"$objective = ${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)} $unit, ${signed(off)} % off the truth"
+      s"$objective = ${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)} $unit, ${signed(off)} $offUnit off the truth".replaceAll(
+        " +",
+        " "
+      )
 
   /** One row per cell. */
   def csvRows: Vector[String] =
@@ -99,6 +103,7 @@ object BudgetMap:
       latencies: String,
       jitter: String,
       tolerance: Double,
+      deviation: String,
       truth: Double,
       episodesPerCell: Int,
       cells: Vector[Cell]
@@ -117,7 +122,11 @@ object BudgetMap:
       map.unit,
       map.legs.text,
       "p99 - p50",
-      map.tolerance,
+      map.tolerance.value,
+      map.tolerance match
+        case Tolerance.Share(_)  => "share of the truth"
+        case Tolerance.Within(_) => "distance from the truth"
+      ,
       map.budget.truth,
       map.episodes,
       for

@@ -1,107 +1,59 @@
 package skein.budget
 
-import skein.forward.DelayTable
-import skein.lanes.DuelWorlds
-import skein.optimise.{LatencyBudget, Objective, Tally}
-import skein.policy.{Policy, Role}
-import skein.search.{Conditions, Effort}
-import skein.settings.PolicyFile
+import skein.optimise.{LatencyBudget, Tally}
 import skein.signal.LatencyDistribution
-import skein.simd.WorldRandom
 
-/** Flies a policy over links of many latencies and jitters, and once over none while the world waits.
+/** Flies something over links of many latencies and jitters, and once over none while the world waits.
   *
-  * @param flown
-  *   loop, period, vehicles
-  * @param policy
-  *   that is judged
   * @param asked
   *   episodes of each cell, where they were asked for
   */
-final class BudgetSweep(
-    flown: Conditions.Resolved,
-    policy: PolicyFile,
-    opponent: PolicyFile,
-    objective: Objective,
-    axes: BudgetAxes,
-    asked: Option[Int],
-    seed: Long,
-    threads: Int
-):
-  private val durationS         = flown.duel.durationS
-  private val batch             = flown.batch(threads)
-  private val (pursuer, evader) =
-    if policy.role == Role.Pursuer then (policy.policy, opponent.policy) else (opponent.policy, policy.policy)
-
-  /** The paused loop waits for every answer, so that no delay, and no chance, enters. */
-  def truth: Double =
-    val paused = flown.paused.batch(1).fly(Worlds(Vector(DelayTable.none), 1), objective.captureRadiusM)
-    objective.value(paused, 0, policy.role, durationS)
-
-  /** Of each cell: as many as were asked for, or as the engine flies in seconds. */
-  lazy val episodes: Int = asked.getOrElse:
-    val isFast = batch.fliesByLanes(pursuer, evader, shareEpisodes = false, links.flatten.flatten)
-    Effort.of(isFast, isFast, flown.vehicle).cellEpisodes
-
+final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
   /** Of the map's cells, row by row. */
-  private val links: Vector[Vector[Option[DelayTable]]] =
-    axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter).map(DelayTable.of)))
+  private val links: Vector[Vector[Option[LatencyDistribution]]] =
+    axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter)))
+
+  private val known = links.flatten.flatten
+
+  /** Of each cell: as many as were asked for, or as are flown in seconds. */
+  lazy val episodes: Int = asked.getOrElse(swept.cellEpisodes(known))
 
   /** What flies the cells, in a line for the user. */
-  def engine: String = batch.engine(pursuer, evader, shareEpisodes = false, links.flatten.flatten)
+  def engine: String = swept.engine(known)
 
   /** Over a link with these round trips. */
-  def over(roundTrip: LatencyDistribution): Tally =
-    tallies(Vector(DelayTable.of(roundTrip)), _ => (), () => false).get.head
+  def over(roundTrip: LatencyDistribution): Either[String, Tally] =
+    swept.tallies(Vector(roundTrip), episodes, _ => (), () => false).map(_.head)
 
   /** The whole map, row by row.
     *
     * @param onProgress
     *   told how many episodes are flown
     * @return
-    *   none if it was cancelled
+    *   or why there is none
     */
-  def map(onProgress: Long => Unit, isCancelled: () => Boolean): Option[LatencyBudget] =
-    val truthNow = truth
-    val rows     = links.scanLeft((0L, Option(Vector.empty[Option[Tally]]))):
-      case ((before, Some(_)), row) =>
-        val known = row.flatten
-        val own   = tallies(known, done => onProgress(before + done), isCancelled)
-        (before + known.size.toLong * episodes, own.map(spread(row, _)))
-      case (cancelled, _) => cancelled
-    .tail.map(_._2)
-    Option.when(rows.forall(_.isDefined))(LatencyBudget(axes.meansMs, axes.jittersMs, rows.flatten, truthNow))
+  def map(onProgress: Long => Unit, isCancelled: () => Boolean): Either[String, LatencyBudget] =
+    for
+      truth <- swept.truth
+      per   <- tolerance.per(truth).left.map(mistake => s"${swept.formula}: $mistake")
+      rows  <- links.foldLeft[Either[String, Vector[Vector[Option[Tally]]]]](Right(Vector.empty)):
+        (before, row) =>
+          before.flatMap: above =>
+            val flown = above.flatten.flatten.size.toLong * episodes
+            swept
+              .tallies(row.flatten, episodes, done => onProgress(flown + done), isCancelled)
+              .map(tallies => above :+ spread(row, tallies))
+    yield LatencyBudget(axes.meansMs, axes.jittersMs, rows, truth, per)
 
   /** Episodes of the map. */
-  def expected: Long = links.flatten.flatten.size.toLong * episodes
+  def expected: Long = known.size.toLong * episodes
 
-  private def spread(row: Vector[Option[DelayTable]], tallies: Vector[Tally]): Vector[Option[Tally]] =
+  private def spread(
+      row: Vector[Option[LatencyDistribution]],
+      tallies: Vector[Tally]
+  ): Vector[Option[Tally]] =
     val next = tallies.iterator
     row.map(_.map(_ => next.next()))
-
-  private def tallies(
-      links: Vector[DelayTable],
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Option[Vector[Tally]] =
-    val worlds   = Worlds(links, episodes)
-    val outcomes = batch.fly(worlds, objective.captureRadiusM, done => onProgress(done), isCancelled)
-    Option.when(outcomes.flown == worlds.size):
-      Vector.tabulate(links.size): link =>
-        Tally.of(episodes)(episode =>
-          objective.value(outcomes, link * episodes + episode, policy.role, durationS)
-        )
-
-  /** All links meet the same random numbers. */
-  private final class Worlds(links: Vector[DelayTable], each: Int) extends DuelWorlds:
-    private val tables = links.toArray
-    private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
-
-    def size: Int                    = tables.length * each
-    def key(world: Int): Int         = keys(world % each)
-    def link(world: Int): DelayTable = tables(world / each)
-    def pursuer(world: Int): Policy  = BudgetSweep.this.pursuer
-    def evader(world: Int): Policy   = BudgetSweep.this.evader
 
 /** Where the cells lie: round trips' means and jitters, ms, from 0 in even steps. */
 final case class BudgetAxes(meansMs: Vector[Double], jittersMs: Vector[Double])

@@ -8,7 +8,8 @@ import skein.optimise.Objective
 import skein.plot.{Png, Svg}
 import skein.policy.PolicyFamily
 import skein.record.LoopKind
-import skein.search.Conditions
+import skein.scenario.Scenarios
+import skein.search.TeamQuestion
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
 import skein.units.Span
@@ -17,6 +18,12 @@ import skein.units.Span
 final case class BudgetOptions(
     @arg(doc = "a policy file, or the name of a family (default: paper-pursuer)")
     policy: Option[String],
+    @arg(doc =
+      "judges this scenario by --objective, a sum of its measures (default: its first), in the place of a duel's policy"
+    )
+    scenario: Option[String],
+    @arg(doc = "NAME=VALUE: a setting of the scenario, for example vehicles=8; may be given several times")
+    set: Seq[String],
     forward: ForwardOptions,
     @arg(doc = "between decisions for one vehicle; several give a map each (default: 100ms)")
     period: Seq[String],
@@ -24,14 +31,18 @@ final case class BudgetOptions(
     mostMean: Option[String],
     @arg(name = "most-jitter", doc = "jitter at which the map ends (default: 100ms)")
     mostJitter: Option[String],
-    @arg(doc = "cells along the latency")
-    means: Int = 40,
-    @arg(doc = "cells along the jitter")
-    jitters: Int = 20,
+    @arg(doc = "cells along the latency (default: 40; of a scenario 10)")
+    means: Option[Int],
+    @arg(doc = "cells along the jitter (default: 20; of a scenario 5)")
+    jitters: Option[Int],
     @arg(doc = "of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)")
     episodes: Option[Int],
-    @arg(doc = "share of the truth that counts as holding, in per cent")
-    tolerance: Double = 5,
+    @arg(doc = "share of the truth that counts as holding, in per cent (default: 5)")
+    tolerance: Option[Double],
+    @arg(doc =
+      "in the place of --tolerance, how far off the truth counts as holding, in the objective's unit"
+    )
+    within: Option[Double],
     @arg(name = "at-jitter", doc = "jitter of which the sentence speaks (default: 20ms)")
     atJitter: Option[String],
     @arg(name = "one-way", doc = "all latencies are of one direction, instead of round trips")
@@ -42,48 +53,98 @@ final case class BudgetOptions(
     json: Flag
 )
 
-object BudgetCommand
+final class BudgetCommand(using scenarios: Scenarios)
     extends OptionsCommand[BudgetOptions](
       "budget",
-      "tells how much latency and jitter a policy bears, and draws the map",
+      "tells how much latency and jitter a policy or a scenario bears, and draws the map",
       ParserForClass[BudgetOptions]
     ):
   private val MostCells    = 10_000
   private val MostEpisodes = 100_000
 
   protected def execute(options: BudgetOptions): Either[String, Unit] =
+    val legs = if options.oneWay.value then Legs.OneWay else Legs.RoundTrip
     for
-      threads   <- options.forward.threadCount
-      policy    <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
-      other     <- options.forward.opponentOf(policy.role)
-      objective <- Objective
-        .parse(options.forward.objective.getOrElse("last10s"), policy.role)
-        .left
-        .map("--objective: " + _)
-      legs = if options.oneWay.value then Legs.OneWay else Legs.RoundTrip
-      axes       <- axesOf(options, legs)
+      tolerance  <- toleranceOf(options)
       atJitterMs <- milliseconds("--at-jitter", options.atJitter, 20, legs)
+      axes       <- axesOf(options, legs)
       _          <- Either.cond(
-        options.tolerance > 0 && options.tolerance <= 1000,
-        (),
-        s"--tolerance: expected more than 0 %, came ${options.tolerance}"
-      )
-      _ <- Either.cond(
         options.episodes.forall(count => count >= 1 && count <= MostEpisodes),
         (),
         s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
       )
-      flown  <- conditions(options)
+      periods <- Arguments.all(if options.period.isEmpty then Seq("100ms") else options.period)(
+        Span.parse(_).left.map("--period: " + _)
+      )
+      swept <- Arguments.all(periods)(period =>
+        scenario(options).fold(duel(options, period))(team(options, _, period))
+      )
+      _ <- Either.cond(
+        swept.forall(_.loop != LoopKind.Paused.label),
+        (),
+        "--loop: the paused loop is the truth and feels no latency; expected another"
+      )
       folder <- OutFolder.made("--out", options.out)
-      maps   <- fly(options, flown, policy, other, objective, axes, legs, threads)
+      maps   <- fly(options, swept.toVector, tolerance, axes, legs)
       files  <- write(maps, folder)
     yield
       val shown = Shown(options.json.value)
       if options.json.value then Console.out.println(BudgetMap.json(maps))
       for map <- maps do
-        shown.say(s"${policy.label}: ${map.sentence(atJitterMs)}")
+        shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
         map.markLines.foreach(line => shown.say(s"  $line"))
       shown.say(s"written: ${files.mkString(", ")}")
+
+  private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutDuel)
+
+  private def toleranceOf(options: BudgetOptions): Either[String, Tolerance] =
+    (options.tolerance, options.within) match
+      case (None, Some(within)) =>
+        Either.cond(within > 0, Tolerance.Within(within), s"--within: expected more than 0, came $within")
+      case (share, None) =>
+        val percent = share.getOrElse(5.0)
+        Either.cond(
+          percent > 0 && percent <= 1000,
+          Tolerance.Share(percent / 100),
+          s"--tolerance: expected more than 0 %, came $percent"
+        )
+      case _ => Left("--tolerance, --within: expected one of them")
+
+  private def duel(options: BudgetOptions, period: Span): Either[String, Swept] =
+    import options.forward
+    for
+      _ <- Either.cond(options.set.isEmpty, (), "--set: expected with --scenario, whose settings they are")
+      threads   <- forward.threadCount
+      policy    <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
+      other     <- forward.opponentOf(policy.role)
+      objective <- Objective
+        .parse(forward.objective.getOrElse("last10s"), policy.role)
+        .left
+        .map("--objective: " + _)
+      named <- forward.conditions(period)
+      flown <- named.resolved
+    yield DuelSwept(named, flown, policy, other, objective, forward.seed.getOrElse(1), threads)
+
+  private def team(options: BudgetOptions, name: String, period: Span): Either[String, Swept] =
+    import options.forward
+    for
+      _          <- ForwardOptions.ofDuels("--policy" -> options.policy)(forward)
+      threads    <- forward.threadCount
+      kind       <- scenarios.kind(name).left.map("--scenario: " + _)
+      set        <- Arguments.settings(options.set)
+      scenario   <- TeamQuestion.read(kind, set.toMap).left.map("--set: " + _)
+      conditions <- forward.conditions(period, scenario.duration)
+      swept      <- ScenarioQuestion
+        .of(
+          scenario,
+          forward.objective,
+          // Teams fly low, where the model of three parameters does not hold.
+          conditions.copy(plant = forward.plant.getOrElse("drag")),
+          forward.seed.getOrElse(1),
+          threads
+        )
+        .flatMap(_.swept(plantIsTold = forward.plant.isDefined))
+    yield swept
 
   private def policyOf(text: String): Either[String, PolicyFile] =
     PolicyFamily.parse(text).toOption match
@@ -101,97 +162,59 @@ object BudgetCommand
     for
       mean   <- milliseconds("--most-mean", options.mostMean, 200 / legs.perRoundTrip, legs)
       jitter <- milliseconds("--most-jitter", options.mostJitter, 100 / legs.perRoundTrip, legs)
-      _      <- Either.cond(
-        options.means >= 2 && options.jitters >= 2 && options.means.toLong * options.jitters <= MostCells,
+      (means, jitters) = scenario(options).fold((40, 20))(_ => (10, 5)) match
+        case (means, jitters) => (options.means.getOrElse(means), options.jitters.getOrElse(jitters))
+      _ <- Either.cond(
+        means >= 2 && jitters >= 2 && means.toLong * jitters <= MostCells,
         (),
-        s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came ${options.means} and ${options.jitters}"
+        s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came $means and $jitters"
       )
       _ <- Either.cond(
         mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500,
         (),
         s"--most-mean, --most-jitter: expected round trips of more than 0 and up to 500 ms, came $mean and $jitter ms"
       )
-    yield BudgetAxes.of(mean, options.means, jitter, options.jitters)
-
-  private def conditions(options: BudgetOptions): Either[String, Vector[(Conditions, Conditions.Resolved)]] =
-    val periods = if options.period.isEmpty then Vector("100ms") else options.period.toVector
-    periods.foldLeft[Either[String, Vector[(Conditions, Conditions.Resolved)]]](Right(Vector.empty)):
-      (before, text) =>
-        for
-          read     <- before
-          period   <- Span.parse(text).left.map("--period: " + _)
-          named    <- options.forward.conditions(period)
-          resolved <- named.resolved
-          _        <- Either.cond(
-            named.loop != LoopKind.Paused.label,
-            (),
-            "--loop: the paused loop is the truth and feels no latency; expected sequential, futures, stream or predictive"
-          )
-        yield read :+ (named, resolved)
+    yield BudgetAxes.of(mean, means, jitter, jitters)
 
   private def fly(
       options: BudgetOptions,
-      flown: Vector[(Conditions, Conditions.Resolved)],
-      policy: PolicyFile,
-      opponent: PolicyFile,
-      objective: Objective,
+      flown: Vector[Swept],
+      tolerance: Tolerance,
       axes: BudgetAxes,
-      legs: Legs,
-      threads: Int
+      legs: Legs
   ): Either[String, Vector[BudgetMap]] =
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
-      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, asked) =>
-        val (named, resolved) = asked
-        val sweep             = BudgetSweep(
-          resolved,
-          policy,
-          opponent,
-          objective,
-          axes,
-          options.episodes,
-          options.forward.seed.getOrElse(1),
-          threads
-        )
-        def map(): Either[String, BudgetMap] =
-          shown.say(
-            s"${named.loop} every ${PolicyFile.brief(named.periodMs)} ms, ${resolved.vehicle.description}\n" +
-              s"${sweep.episodes} episodes of ${PolicyFile.brief(named.durationS)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
+      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, swept) =>
+        for
+          maps <- before
+          sweep = BudgetSweep(swept, axes, tolerance, options.episodes)
+          _     = shown.say(
+            s"${swept.loop} every ${PolicyFile.brief(swept.periodMs)} ms, ${swept.vehicles}\n" +
+              s"${sweep.episodes} episodes of ${PolicyFile.brief(swept.durationS)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
           )
-          val startedAt = System.nanoTime()
-          val line      = ProgressLine(sweep.expected, Console.err)
-          val truth     = sweep.truth
-          for
-            _ <- Either.cond(
-              truth != 0 && truth.isFinite,
-              (),
-              s"--objective: ${objective.formula} of the paused truth is $truth, so no share of it can be told; choose another"
-            )
-            budget <- sweep.map(
-              done => line.show(done, ""),
-              () => stopped
-            ).toRight("stopped before the map was whole")
-          yield
-            line.end()
-            val seconds = (System.nanoTime() - startedAt) * 1e-9
-            shown.say(f"${sweep.expected}%,d episodes in $seconds%.1f s")
-            BudgetMap(
-              named.loop,
-              named.periodMs,
-              objective.formula,
-              objective.unit,
-              resolved.vehicle.description,
-              policy.label,
-              options.tolerance / 100,
-              sweep.episodes,
-              budget,
-              Vector("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn).map:
-                (name, roundTrip) => BudgetMark(name, roundTrip, sweep.over(roundTrip))
-              ,
-              legs
-            )
-        before.flatMap(maps => map().map(maps :+ _))
+          startedAt = System.nanoTime()
+          line      = ProgressLine(sweep.expected, Console.err)
+          budget <- sweep.map(done => line.show(done, ""), () => stopped)
+          _ = line.end()
+          _ = shown.say(f"${sweep.expected}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s")
+          marks <-
+            Arguments.all(Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)):
+              (name, roundTrip) => sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
+        yield maps :+ BudgetMap(
+          swept.loop,
+          swept.periodMs,
+          swept.formula,
+          swept.unit,
+          swept.vehicles,
+          swept.label,
+          tolerance,
+          sweep.episodes,
+          budget,
+          marks.toVector,
+          legs
+        )
 
   private def write(maps: Vector[BudgetMap], folder: Path): Either[String, Vector[Path]] =
     val drawing                 = BudgetFigure(maps)

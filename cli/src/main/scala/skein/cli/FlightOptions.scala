@@ -102,12 +102,9 @@ final case class FlightOptions(
     ).collect { case (key, (flag, Some(value))) => (flag, key, value.toString) }
     for
       kind <- ScenarioSettings.kind(merged)
-      told <- FlightOptions.collected(set): text =>
-        text.split("=", 2) match
-          case Array(name, value) if name.nonEmpty => Right(("--set", ConfigKeys.ofField(name), value))
-          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+      told <- Arguments.settings(set).map(_.map((key, value) => ("--set", key, value)))
       keys = kind.settings.map(ConfigKeys.ofField)
-      known <- FlightOptions.collected(short ++ told): (flag, key, value) =>
+      known <- Arguments.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),
           s"${kind.name}.$key" -> value,
@@ -129,11 +126,6 @@ object FlightOptions:
     values.foldLeft(ConfigFactory.empty):
       case (config, (key, value)) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
-
-  /** All, or every mistake. */
-  private def collected[A, B](all: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
-    val (wrong, right) = all.map(one).partitionMap(identity)
-    Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
 
   private def resolved(config: Config): Either[String, Config] =
     try Right(config.resolve())

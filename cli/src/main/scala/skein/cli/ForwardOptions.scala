@@ -35,8 +35,11 @@ final case class ForwardOptions(
 ):
   def isEmpty: Boolean = Seq(objective, loop, plant, altitude, opponent, duration, seed).forall(_.isEmpty)
 
-  def conditions(period: Span): Either[String, Conditions] =
-    for duration <- Span.parse(duration.getOrElse("60s")).left.map("--duration: " + _)
+  /** @param otherwise
+    *   how long an episode is, unless it is told
+    */
+  def conditions(period: Span, otherwise: Span = Span.ofSeconds(60)): Either[String, Conditions] =
+    for duration <- duration.fold(Right(otherwise))(Span.parse).left.map("--duration: " + _)
     yield Conditions(
       loop.getOrElse("stream"),
       plant.getOrElse("reduced"),
@@ -58,6 +61,16 @@ final case class ForwardOptions(
 
 object ForwardOptions:
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
+
+  /** Options that are a duel's, and were given. */
+  def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =
+    val told = (others ++ Seq("--opponent" -> options.opponent, "--altitude" -> options.altitude))
+      .collect { case (flag, Some(_)) => flag }
+    Either.cond(
+      told.isEmpty,
+      (),
+      s"--scenario: expected settings of the scenario, came ${told.mkString(", ")}, which is a duel's"
+    )
 
   /** A policy file, or a family with its defaults. */
   def policy(option: String, text: String, role: Role): Either[String, PolicyFile] =

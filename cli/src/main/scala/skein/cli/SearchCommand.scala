@@ -11,7 +11,7 @@ import skein.plot.{Png, Svg}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
 import skein.search.*
-import skein.settings.{ConfigKeys, PolicyFile}
+import skein.settings.PolicyFile
 import skein.simd.LaneFunction
 import skein.units.Span
 
@@ -107,33 +107,20 @@ final class SearchCommand(using scenarios: Scenarios)
 
   private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
     import options.forward
-    val others = Seq(
-      "--family"   -> options.family,
-      "--role"     -> options.role,
-      "--opponent" -> forward.opponent,
-      "--altitude" -> forward.altitude
-    ).collect { case (flag, Some(_)) => flag }
     for
-      _ <- Either.cond(
-        others.isEmpty,
-        (),
-        s"--scenario: expected settings of the scenario by --set and --vary, came ${others.mkString(", ")}, which is a duel's"
-      )
+      _         <- ForwardOptions.ofDuels("--family" -> options.family, "--role" -> options.role)(forward)
       objective <- forward.objective.toRight(
         "--objective: expected with a scenario: a sum of its measures, for example off-ring"
       )
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       conditions <- forward.conditions(period)
-      set        <- each(options.set): text =>
-        text.split("=", 2) match
-          case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
-          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
-      vary <- each(options.vary)(Varied.parse(_).left.map("--vary: " + _))
+      set        <- Arguments.settings(options.set)
+      vary       <- Arguments.all(options.vary)(Varied.parse(_).left.map("--vary: " + _))
       candidates = options.candidates.getOrElse(1000)
       question   = TeamQuestion(
         scenario,
         set.toMap,
-        vary,
+        vary.toVector,
         objective,
         options.method.getOrElse("cma-es"),
         // Teams fly low, where the model of three parameters does not hold.
@@ -147,11 +134,6 @@ final class SearchCommand(using scenarios: Scenarios)
       )
       _ <- question.setup
     yield question
-
-  private def each[A](texts: Seq[String])(read: String => Either[String, A]): Either[String, Vector[A]] =
-    texts.foldLeft[Either[String, Vector[A]]](Right(Vector.empty))((before, text) =>
-      before.flatMap(all => read(text).map(all :+ _))
-    )
 
   private def duel(options: SearchOptions): Either[String, SearchQuestion] =
     import options.forward

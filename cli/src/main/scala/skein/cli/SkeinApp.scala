@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
-import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
+import skein.scenario.{ScenarioKind, Scenarios}
 
 /** A program with all of Skein's commands, for scenarios of one's own:
   *
@@ -25,7 +25,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     FlyCommand(),
     SpreadCommand(),
     SearchCommand(),
-    ofDuels(BudgetCommand),
+    BudgetCommand(),
     ServeCommand,
     LinkCommand,
     LatencyCommand,
@@ -40,16 +40,6 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     NewCommand,
     CompletionCommand(commands)
   )
-
-  /** Budgets fly the duel forward, and nothing else. */
-  private def ofDuels(command: Command): Command =
-    if scenarios.names.contains(PaperDuel.Name) then command
-    else
-      Refused(
-        command,
-        s"expected a program with the scenario ${PaperDuel.Name}, came one with ${scenarios.names.mkString(", ")}: " +
-          "forward simulation judges policies of a pursuer and an evader; spread flies any scenario many times in virtual time"
-      )
 
   final def main(arguments: Array[String]): Unit =
     val status = run(arguments.toSeq)
@@ -103,13 +93,3 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
        |${lines.mkString("\n")}
        |
        |./skein COMMAND --help tells a command's options.""".stripMargin
-
-/** A command that a program cannot have, and why. */
-private final class Refused(of: Command, reason: String) extends Command(of.name, of.summary):
-  def help: String = s"${of.help}\n$reason"
-
-  private[cli] def options: Seq[CommandOption] = of.options
-
-  def run(arguments: Seq[String]): Int =
-    Console.err.println(s"skein ${of.name}: $reason")
-    1

@@ -24,8 +24,8 @@ final case class Conditions(
     altitudeM: Double = PaperDuel.AltitudeM
 ) derives ReadWriter:
 
-  /** @return or what was expected and came */
-  def resolved: Either[String, Conditions.Resolved] =
+  /** @return the loop, or what was expected and came */
+  def checked: Either[String, LoopKind] =
     for
       kind <- LoopKind.parse(loop).left.map("--loop: " + _)
       _    <- Either.cond(
@@ -33,8 +33,7 @@ final case class Conditions(
         (),
         s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, came $altitudeM"
       )
-      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
-      _       <- Either.cond(
+      _ <- Either.cond(
         periodMs >= 1 && periodMs <= 10_000,
         (),
         s"--period: expected 1 ms to 10 s, came $periodMs ms"
@@ -44,7 +43,14 @@ final case class Conditions(
         (),
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
       )
-      timing <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
+    yield kind
+
+  /** @return or what was expected and came */
+  def resolved: Either[String, Conditions.Resolved] =
+    for
+      kind    <- checked
+      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
+      timing  <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
     yield Conditions.Resolved(timing, vehicle, Duel.paperAt(altitudeM, durationS))
 
 object Conditions:

@@ -4,7 +4,7 @@ import skein.forward.{Delays, Engagement}
 import skein.lanes.{Judged, TeamBatch, TeamCandidate}
 import skein.optimise.{Direction, Evaluator, Search, SearchMethod, TeamEvaluator, WeightedSum}
 import skein.policy.{Axis, SearchSpace}
-import skein.scenario.{Measure, Nearest, OverFlight, Scenario, ScenarioKind, Scenarios, Window}
+import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
 import upickle.default.ReadWriter
 
@@ -114,7 +114,20 @@ object TeamQuestion:
     )
 
   /** `off ring` as `off-ring`. */
-  private def keyOf(measure: Measure) = measure.name.replace(' ', '-')
+  def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
+
+  /** What measures of a quantity judge an episode by. */
+  def judged(measures: Vector[Measure], durationS: Double, periodS: Double): Vector[Judged] =
+    measures.map(_.reduced.get).map(by =>
+      Judged(
+        by.quantity,
+        by.reduction,
+        by.over match
+          case Window.Whole          => 0
+          case Window.After(seconds) => seconds
+          case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
+      )
+    )
 
   /** Settings by key, with those of a candidate. */
   def settings(set: Map[String, String], space: SearchSpace, candidate: Vector[Double]): Map[String, String] =
@@ -204,20 +217,11 @@ final case class TeamSetup(
     val measures = TeamQuestion.measures(own).values.map(measure => measure.name -> measure).toMap
     TeamCandidate(
       Engagement.of(own.fleet, durationS),
-      terms.map((_, measure) => judged(measures(measure.name).reduced.get))
+      TeamQuestion.judged(terms.map((_, measure) => measures(measure.name)), durationS, periodS)
     )
 
-  private def judged(by: OverFlight): Judged = Judged(
-    by.quantity,
-    by.reduction,
-    by.over match
-      case Window.Whole          => 0
-      case Window.After(seconds) => seconds
-      case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
-  )
-
   /** As users write it, without the direction. */
-  def formula: String = WeightedSum.formula(terms)((measure: Measure) => measure.name.replace(' ', '-'))
+  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
 
   def text: String = s"${direction.text} $formula"
 

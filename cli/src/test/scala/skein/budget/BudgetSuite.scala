@@ -9,18 +9,26 @@ import skein.settings.PolicyFile
 class BudgetSuite extends munit.FunSuite:
   private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
-  private def sweep(loop: String, episodes: Int, threads: Int = 2, durationS: Double = 60) = BudgetSweep(
-    Conditions(loop, "reduced", 100, durationS).resolved.fold(mistake => fail(mistake), identity),
-    paper,
-    SearchQuestion.paperOpponent(Role.Pursuer),
-    Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
-    BudgetAxes.of(200, 5, 60, 3),
-    Some(episodes),
-    seed = 1,
-    threads
-  )
+  private val axes = BudgetAxes.of(200, 5, 60, 3)
 
-  private def map(of: BudgetSweep): LatencyBudget = of.map(_ => (), () => false).get
+  private def sweep(loop: String, episodes: Int, threads: Int = 2, durationS: Double = 60) =
+    val named = Conditions(loop, "reduced", 100, durationS)
+    BudgetSweep(
+      DuelSwept(
+        named,
+        named.resolved.fold(fail(_), identity),
+        paper,
+        SearchQuestion.paperOpponent(Role.Pursuer),
+        Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
+        seed = 1,
+        threads
+      ),
+      axes,
+      Tolerance.Share(0.05),
+      Some(episodes)
+    )
+
+  private def map(of: BudgetSweep): LatencyBudget = of.map(_ => (), () => false).fold(fail(_), identity)
 
   test("without latency the map shows the paused truth, and more latency is worse for the paper's pursuer"):
     val budget = map(sweep("stream", 16))
@@ -36,11 +44,11 @@ class BudgetSuite extends munit.FunSuite:
   test("a loop without a kernel has a map too, and progress counts its episodes"):
     var done   = 0L
     val flying = sweep("sequential", 2, durationS = 12)
-    assert(flying.map(count => done = count, () => false).isDefined)
+    assert(flying.map(count => done = count, () => false).isRight)
     assertEquals(done, flying.expected)
 
   test("a cancelled map is none"):
-    assertEquals(sweep("stream", 5).map(_ => (), () => true), None)
+    assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(Swept.Stopped))
 
   private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
     "stream",
@@ -49,13 +57,14 @@ class BudgetSuite extends munit.FunSuite:
     "m",
     "ideal",
     "paper-pursuer",
-    0.05,
+    Tolerance.Share(0.05),
     1,
     LatencyBudget(
       Vector(0.0, 50.0, 100.0),
       Vector(0.0, 20.0),
       Vector.fill(2)(bound.map(value => Some(skein.optimise.Tally(1, value, 0)))),
-      truth = 8
+      truth = 8,
+      per = 8
     ),
     Vector.empty,
     legs

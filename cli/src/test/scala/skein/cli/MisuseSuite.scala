@@ -21,10 +21,10 @@ class MisuseSuite extends munit.FunSuite:
           Seq("--candidates", "x"),
           "--candidates: expected a whole number that is not too large, came 'x'"
         ),
-        (BudgetCommand, Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
+        (BudgetCommand(), Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
         (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
         (SpreadCommand(), Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
-        (BudgetCommand, Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
+        (BudgetCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
         (SearchCommand(), Seq("--seed"), "--seed: expected a value behind it"),
         (SearchCommand(), Seq("--seed", "1", "--seed", "2"), "--seed: expected once, came 1 and 2"),
         (SearchCommand(), Seq("--sed", "1", "--period", "1s"), "--sed: no such option or argument")

@@ -83,8 +83,10 @@ object VirtualFlights:
             case Right(rig)   => rig.landed.map(landed => Right(VirtualLanding(landed, recorder)))
       .value
 
-  /** What one flight of a scenario comes to, for tests. Flies on the calling thread.
+  /** What one flight of a scenario comes to, by itself. Flies on the calling thread.
     *
+    * @param duration
+    *   at most; 0 for the scenario's own
     * @return
     *   or why it could not be flown to its end, or its vehicles were not all seen
     */
@@ -93,9 +95,11 @@ object VirtualFlights:
       loop: LoopKind,
       link: LatencyProfile,
       seed: Long,
-      period: Span = Span.ofMillis(100)
+      period: Span = Span.ofMillis(100),
+      duration: Span = Span.Zero
   ): Either[String, Result] =
-    val settings = FlySettings(List(loop), List(link), scenario.duration, period, seed, scenario)
+    val most     = if duration == Span.Zero then scenario.duration else duration
+    val settings = FlySettings(List(loop), List(link), most, period, seed, scenario)
     for
       flown <- fly(settings, FlightPlan(s"${loop.label}-${link.name}", loop, link, seed))
       _     <- flown.landed.outcome match

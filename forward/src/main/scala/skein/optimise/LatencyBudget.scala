@@ -13,24 +13,30 @@ import skein.units.*
   *   `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
   * @param truth
   *   of the paused loop with the same vehicles
+  * @param per
+  *   what deviations are told by: the truth's size, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(
     meansMs: Vector[Double],
     jittersMs: Vector[Double],
     cells: Vector[Vector[Option[Tally]]],
-    truth: Double
+    truth: Double,
+    per: Double
 ):
-  require(truth != 0 && truth.isFinite, s"the truth must be a number other than 0, got $truth")
+  require(
+    truth.isFinite && per > 0,
+    s"the truth must be a number, and deviations by more than 0, got $truth, $per"
+  )
 
-  /** How far a cell is off the truth, as a share of it: 0.05 is 5 % more. */
+  /** How far a cell is off the truth: by the truth's size, 0.05 is 5 % more. */
   def deviation(jitter: Int, mean: Int): Option[Double] =
-    cells(jitter)(mean).map(tally => (tally.mean - truth) / truth.abs)
+    cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
   /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight lines between
     * the cells' deviations.
     *
     * @param tolerance
-    *   a share of the truth, for example 0.05
+    *   of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound =
     val known = meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector

@@ -19,7 +19,8 @@ class LatencyBudgetSuite extends munit.FunSuite:
     Vector(0.0, 20.0, 40.0, 60.0),
     Vector(0.0),
     Vector(values.map(_.map(Tally(1, _, 0)))),
-    truth = 10
+    truth = 10,
+    per = 10
   )
 
   test("the bound lies where the straight line between two cells leaves the tolerance"):

@@ -1,0 +1,239 @@
+package skein.budget
+
+import java.util.concurrent.Executors
+import java.util.concurrent.atomic.AtomicLong
+import skein.flight.VirtualFlights
+import skein.forward.*
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.loop.LoopKind
+import skein.optimise.{Tally, WeightedSum}
+import skein.scenario.{Measure, Scenario, Track, Tracks}
+import skein.search.{Conditions, TeamQuestion}
+import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.simd.WorldRandom
+import skein.units.*
+
+/** What is asked of a scenario: a sum of its measures, under a loop. */
+final case class ScenarioQuestion(
+    scenario: Scenario,
+    terms: Vector[(Double, Measure)],
+    conditions: Conditions,
+    seed: Long,
+    threads: Int
+):
+  /** As users write it. */
+  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
+
+  /** Of the sum, where all terms agree. */
+  def unit: String = if terms.map(_._2.unit).distinct.size == 1 then terms.head._2.unit else ""
+
+  /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and measures, else in
+    * flights in virtual time.
+    *
+    * @return
+    *   or what was expected, what came, and in which option
+    */
+  def swept(plantIsTold: Boolean): Either[String, Swept] =
+    engagement match
+      case Left(reason) if plantIsTold =>
+        Left(
+          s"--plant: expected none, since this scenario flies in virtual time by the simulator's quadrotor: $reason"
+        )
+      case Left(reason) => conditions.checked.map(FlownSwept.virtual(this, _, reason))
+      case Right(plane) =>
+        for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
+        yield
+          if terms.forall(_._2.reduced.nonEmpty) then TeamSwept(this, plane, flown)
+          else FlownSwept.forward(this, plane, flown)
+
+  private def engagement: Either[String, Engagement] =
+    try
+      val plane = Engagement.of(scenario.fleet, conditions.durationS)
+      Either.cond(plane.agents.map(_.altitudeDownM).distinct.size == 1, plane, "not all fly at one altitude")
+    catch
+      case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
+
+object ScenarioQuestion:
+
+  /** @param objective
+    *   a sum of measures by their keys; without it, the first
+    */
+  def of(
+      scenario: Scenario,
+      objective: Option[String],
+      conditions: Conditions,
+      seed: Long,
+      threads: Int
+  ): Either[String, ScenarioQuestion] =
+    val measures = scenario.measures.map(measure => TeamQuestion.keyOf(measure) -> measure)
+    val known    = measures.map(_._1).mkString(", ")
+    for
+      first <-
+        measures.headOption.toRight(s"--scenario: expected one with measures; ${scenario.name} has none")
+      sum <- WeightedSum
+        .parse(objective.getOrElse(first._1), known, hyphened = true): (name, arguments) =>
+          measures
+            .collectFirst { case (`name`, measure) if arguments.isEmpty => measure }
+            .toRight(s"expected one of $known, came '$name${arguments.fold("")(a => s"($a)")}'")
+        .left
+        .map("--objective: " + _)
+    yield ScenarioQuestion(scenario, sum.terms, conditions, seed, threads)
+
+/** In the plane, by measures that are of a quantity. */
+final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
+    extends ScenarioSwept(question, flown.vehicle.description):
+  private val candidate =
+    TeamCandidate(plane, TeamQuestion.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
+
+  private def fly(timing: LoopTiming, links: Vector[DelayTable], episodes: Int, isCancelled: () => Boolean) =
+    val worlds = new TeamWorlds:
+      def size: Int                            = links.size * episodes
+      def key(world: Int): Int                 = WorldRandom.key(question.seed, 0, world % episodes)
+      def link(world: Int): Delays             = links(world / episodes)
+      def candidate(world: Int): TeamCandidate = TeamSwept.this.candidate
+    val outcomes = TeamBatch(timing, flown.vehicle.response, question.threads).fly(worlds, isCancelled)
+    Either.cond(
+      outcomes.flown == worlds.size,
+      Vector.tabulate(links.size): link =>
+        Tally.of(episodes): episode =>
+          question.terms.indices.map(term =>
+            question.terms(term)._1 * outcomes.values(term)(link * episodes + episode)
+          ).sum,
+      Swept.Stopped
+    )
+
+  def truth: Either[String, Double] =
+    fly(flown.paused.timing, Vector(DelayTable.none), 1, () => false).map(_.head.mean)
+
+  def engine(links: Vector[LatencyDistribution]): String =
+    val batch = TeamBatch(flown.timing, flown.vehicle.response, question.threads)
+    if batch.fliesByLanes(candidate) then
+      "SIMD; every episode has delays of its own, and a timetable made for it"
+    else batch.engine(candidate)
+
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = 10
+
+  def tallies(
+      links: Vector[LatencyDistribution],
+      episodes: Int,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Either[String, Vector[Tally]] =
+    links.zipWithIndex.foldLeft[Either[String, Vector[Tally]]](Right(Vector.empty)):
+      case (before, (link, number)) =>
+        before.flatMap: all =>
+          onProgress(number.toLong * episodes)
+          fly(flown.timing, Vector(DelayTable.of(link)), episodes, isCancelled).map(all ++ _)
+
+/** Whatever its measures are: each is taken of a whole flight.
+  *
+  * @param fly
+  *   one episode over a link by its round trips, or with a world that waits; on the calling thread
+  */
+final class FlownSwept private (
+    question: ScenarioQuestion,
+    vehicles: String,
+    told: String,
+    val each: Int,
+    fly: (Option[LatencyDistribution], Int) => Either[String, Tracks]
+) extends ScenarioSwept(question, vehicles):
+
+  def engine(links: Vector[LatencyDistribution]): String = told
+
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = each
+
+  def truth: Either[String, Double] = value(None, 0)
+
+  /** Infinite where a flight never came to it: further off than anything. */
+  private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Double] =
+    fly(link, episode).map: tracks =>
+      question.terms.map((weight, measure) =>
+        measure.of(tracks).fold(Double.PositiveInfinity)(weight * _)
+      ).sum
+
+  def tallies(
+      links: Vector[LatencyDistribution],
+      episodes: Int,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Either[String, Vector[Tally]] =
+    val pool = Executors.newFixedThreadPool(question.threads)
+    val done = AtomicLong()
+    try
+      val flying = links.map: link =>
+        Vector.tabulate(episodes): episode =>
+          pool.submit: () =>
+            if isCancelled() then Left(Swept.Stopped)
+            else
+              val came = value(Some(link), episode)
+              onProgress(done.incrementAndGet())
+              came
+      val (missing, flown) = flying.map(_.map(_.get).partitionMap(identity)).unzip
+      missing.flatten.headOption.toLeft(flown.map(values => Tally.of(values.size)(values)))
+    finally pool.shutdown()
+
+object FlownSwept:
+
+  /** By forward simulation, world by world. */
+  def forward(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved): FlownSwept =
+    val agents                                                 = question.scenario.agents
+    def tracks(timing: LoopTiming, link: Delays, episode: Int) =
+      val samples = agents.map(agent =>
+        Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
+      )
+      val observer = new LoopObserver:
+        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+          samples(vehicle) += ((
+            Instant.ofNanos(0) + Span.ofSeconds(timeS),
+            Vector3(x, y, agents(vehicle).startPositionNed.z)
+          )): Unit
+      Rollout(plane, timing, link, flown.vehicle.response)
+        .fly(WorldRandom.key(question.seed, 0, episode), observer = observer): Unit
+      Tracks
+        .of(agents.zip(samples).map((agent, places) =>
+          Track.ofPositions(agent.name, agent.role.name, places.result())
+        ))
+        .toRight("its vehicles were not all seen")
+    val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamQuestion.keyOf)
+    FlownSwept(
+      question,
+      flown.vehicle.description,
+      s"scalar: ${plain.mkString(", ")} is of whole flights, not of a quantity by itself",
+      each = 4,
+      (link, episode) =>
+        link.fold(tracks(flown.paused.timing, DelayTable.none, episode))(roundTrip =>
+          tracks(flown.timing, DelayTable.of(roundTrip), episode)
+        )
+    )
+
+  /** By flights in virtual time: simulator, link, client and loop as they are. */
+  def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSwept =
+    FlownSwept(
+      question,
+      "the simulator's quadrotor",
+      s"flights in virtual time: $reason",
+      each = 2,
+      (link, episode) =>
+        VirtualFlights
+          .result(
+            question.scenario,
+            if link.isEmpty then LoopKind.Paused else loop,
+            link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
+            question.seed + episode,
+            Span.ofMillis(question.conditions.periodMs),
+            Span.ofSeconds(question.conditions.durationS)
+          )
+          .map(_.tracks)
+    )
+
+/** A scenario. */
+sealed abstract class ScenarioSwept(question: ScenarioQuestion, vehicles: String)
+    extends Swept(
+      question.conditions.loop,
+      question.conditions.periodMs,
+      question.conditions.durationS,
+      vehicles,
+      question.scenario.title,
+      question.formula,
+      question.unit
+    )

@@ -1,0 +1,117 @@
+package skein.budget
+
+import skein.forward.DelayTable
+import skein.lanes.DuelWorlds
+import skein.optimise.{Objective, Tally}
+import skein.policy.{Policy, Role}
+import skein.search.{Conditions, Effort}
+import skein.settings.PolicyFile
+import skein.signal.LatencyDistribution
+import skein.simd.WorldRandom
+
+/** What a budget is of: something that is flown over links and comes to a number.
+  *
+  * @param loop
+  *   by its name
+  * @param vehicles
+  *   what flies, in a line
+  * @param label
+  *   of the policy, or of the scenario
+  * @param formula
+  *   of the number, in `unit`, which may be empty
+  */
+trait Swept(
+    val loop: String,
+    val periodMs: Double,
+    val durationS: Double,
+    val vehicles: String,
+    val label: String,
+    val formula: String,
+    val unit: String
+):
+  /** The number where the world waits for the controller; or why there is none. */
+  def truth: Either[String, Double]
+
+  /** What flies, in a line for the user. */
+  def engine(links: Vector[LatencyDistribution]): String
+
+  /** Episodes of a cell that are flown in seconds. */
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int
+
+  /** Of each link, by its round trips; all links meet the same random numbers.
+    *
+    * @param onProgress
+    *   told how many episodes are flown
+    * @return
+    *   or why not
+    */
+  def tallies(
+      links: Vector[LatencyDistribution],
+      episodes: Int,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Either[String, Vector[Tally]]
+
+object Swept:
+  val Stopped = "stopped before the map was whole"
+
+/** A policy in the paper's duel. */
+final class DuelSwept(
+    named: Conditions,
+    flown: Conditions.Resolved,
+    policy: PolicyFile,
+    opponent: PolicyFile,
+    objective: Objective,
+    seed: Long,
+    threads: Int
+) extends Swept(
+      named.loop,
+      named.periodMs,
+      named.durationS,
+      flown.vehicle.description,
+      policy.label,
+      objective.formula,
+      objective.unit
+    ):
+  private val batch             = flown.batch(threads)
+  private val (pursuer, evader) =
+    if policy.role == Role.Pursuer then (policy.policy, opponent.policy) else (opponent.policy, policy.policy)
+
+  /** The paused loop waits for every answer, so that no delay, and no chance, enters. */
+  def truth: Either[String, Double] =
+    val paused = flown.paused.batch(1).fly(Worlds(Vector(DelayTable.none), 1), objective.captureRadiusM)
+    Right(objective.value(paused, 0, policy.role, durationS))
+
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int =
+    val isFast = batch.fliesByLanes(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
+    Effort.of(isFast, isFast, flown.vehicle).cellEpisodes
+
+  def engine(links: Vector[LatencyDistribution]): String =
+    batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
+
+  def tallies(
+      links: Vector[LatencyDistribution],
+      episodes: Int,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Either[String, Vector[Tally]] =
+    val worlds   = Worlds(links.map(DelayTable.of), episodes)
+    val outcomes = batch.fly(worlds, objective.captureRadiusM, done => onProgress(done), isCancelled)
+    Either.cond(
+      outcomes.flown == worlds.size,
+      Vector.tabulate(links.size): link =>
+        Tally.of(episodes)(episode =>
+          objective.value(outcomes, link * episodes + episode, policy.role, durationS)
+        ),
+      Swept.Stopped
+    )
+
+  private final class Worlds(links: Vector[DelayTable], each: Int) extends DuelWorlds:
+    private val tables = links.toArray
+    private val keys   = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
+
+    def size: Int                    = tables.length * each
+    def key(world: Int): Int         = keys(world % each)
+    def link(world: Int): DelayTable = tables(world / each)
+    def pursuer(world: Int): Policy  = DuelSwept.this.pursuer
+    def evader(world: Int): Policy   = DuelSwept.this.evader

@@ -1,0 +1,35 @@
+package skein.budget
+
+import skein.settings.PolicyFile
+
+/** How far off the truth still counts as holding. */
+enum Tolerance:
+  /** A share of the truth, for example 0.05. */
+  case Share(share: Double)
+
+  /** In the objective's unit: for what may be 0. */
+  case Within(distance: Double)
+
+  /** In what deviations are told. */
+  def value: Double = this match
+    case Share(share)     => share
+    case Within(distance) => distance
+
+  /** What deviations are told by; or why they cannot be. */
+  def per(truth: Double): Either[String, Double] = this match
+    case Share(_) if truth == 0 =>
+      Left(
+        "it is 0 where the world waits, so no share of it can be told; --within takes a distance in its place"
+      )
+    case _ if !truth.isFinite => Left("it comes to no number where the world waits; choose another objective")
+    case Share(_)             => Right(truth.abs)
+    case Within(_)            => Right(1)
+
+  /** By which deviations are multiplied for people, and the unit that they have then. */
+  def shown(unit: String): (Double, String) = this match
+    case Share(_)  => (100, "%")
+    case Within(_) => (1, unit)
+
+  def text(unit: String): String =
+    val (factor, shownUnit) = shown(unit)
+    s"${PolicyFile.brief(value * factor)} $shownUnit".trim

@@ -1,0 +1,103 @@
+package skein.budget
+
+import skein.scenario.*
+import skein.search.Conditions
+import skein.signal.LatencyDistribution
+import skein.units.*
+
+class ScenarioSweptSuite extends munit.FunSuite:
+  private val surround = Surround(vehicles = 4)
+
+  private def question(scenario: Scenario, objective: Option[String], conditions: Conditions, threads: Int) =
+    ScenarioQuestion.of(scenario, objective, conditions, seed = 1, threads)
+
+  private def swept(
+      scenario: Scenario,
+      objective: Option[String] = None,
+      conditions: Conditions = Conditions("stream", "drag", 100, 20),
+      threads: Int = 2
+  ): Swept =
+    question(scenario, objective, conditions, threads).flatMap(_.swept(plantIsTold =
+      false
+    )).fold(fail(_), identity)
+
+  private def at(of: Swept, roundTripMs: Double) = of
+    .tallies(Vector(LatencyDistribution.Constant(Span.ofMillis(roundTripMs))), 2, _ => (), () => false)
+    .fold(fail(_), _.head.mean)
+
+  test(
+    "a measure of a quantity comes to the same by lanes and, with the whole flight's tracks, by the scalar engine"
+  ):
+    val lanes = swept(surround)
+    assert(lanes.engine(Vector.empty).startsWith("SIMD"), lanes.engine(Vector.empty))
+    assertEquals((lanes.formula, lanes.unit), ("off-ring", "m"))
+    val both   = swept(surround, Some("off-ring + 0*surrounded-after"))
+    val scalar = both.engine(Vector.empty)
+    assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
+    for latencyMs <- Seq(0.0, 200.0) do
+      // Tracks are judged every 20 ms, on lines between the places of each period; lanes once a period.
+      assertEqualsDouble(at(lanes, latencyMs), at(both, latencyMs), 0.1 * at(lanes, latencyMs))
+
+  test("without latency the truth is met, and more latency is further off it"):
+    val lanes = swept(surround)
+    val truth = lanes.truth.fold(fail(_), identity)
+    val off   = Seq(0.0, 200.0, 400.0).map(at(lanes, _) - truth).map(_.abs)
+    assert(off(0) < 0.02 * truth && off(1) > off(0) && off(2) > off(1), s"$off off $truth")
+
+  test("any measure is judged: vehicles that cross come to their goals later over a slow link"):
+    val crossing = swept(Crossing(vehicles = 4), Some("to-goal"))
+    val truth    = crossing.truth.fold(fail(_), identity)
+    assertEqualsDouble(at(crossing, 0), truth, 0.1)
+    assert(at(crossing, 400) > truth + 0.1, s"$truth")
+
+  test("policies in three dimensions are flown in virtual time, with what ends the flight"):
+    val drifting = swept(Drift(), conditions = Conditions("stream", "drag", 100, 10))
+    assert(drifting.engine(Vector.empty).startsWith("flights in virtual time: vehicle Lone"))
+    val truth = drifting.truth.fold(fail(_), identity)
+    assert(at(drifting, 400) > truth, s"$truth")
+
+  test("a measure that a flight never comes to is further off than anything"):
+    val never = swept(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
+    assertEquals(at(never, 0), Double.PositiveInfinity)
+    assert(BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1)).map(
+      _ => (),
+      () => false
+    ).isLeft)
+
+  test("a truth of 0 has no shares, but distances"):
+    assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))
+    assertEquals(Tolerance.Within(2).per(0), Right(1.0))
+    assertEquals((Tolerance.Within(2).text("m"), Tolerance.Share(0.05).text("m")), ("2 m", "5 %"))
+
+  test("what cannot be swept is told in a line"):
+    assertEquals(
+      question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.formula),
+      Left(
+        "--objective: objective 'speed', at character 1: expected one of off-ring, ring, nearest, gap, surrounded-after, came 'speed'"
+      )
+    )
+    assert(
+      question(Drift(), None, Conditions("stream", "quadrotor", 100, 20), 1)
+        .flatMap(_.swept(plantIsTold = true))
+        .left
+        .exists(_.startsWith("--plant: expected none"))
+    )
+
+/** Flies north until it is far enough, climbing: late commands overshoot. */
+final case class Drift(toM: Double = 12) extends Scenario:
+  import skein.policy.*
+  def agents: Vector[Agent] =
+    Vector(Agent("Lone", Role("Lone"), MetresPerSecond(6), Vector3(0, 0, -10), Radians(0), Northward(toM)))
+
+  private val north = Series("north", "m")(tracks => instant => tracks.northM(0)(instant))
+
+  override def measures: Vector[Measure] =
+    Vector(north.most("furthest"), north.firstWhere("arrives")(_ > toM))
+
+final case class Northward(toM: Double) extends skein.policy.AgentPolicy:
+  import skein.policy.*
+  type Memory = Unit
+  def start: Unit                                             = ()
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val north = if seen.own.kinematics.positionNed.x < toM then 6.0 else 0.0
+    (Action.Velocity(Vector3(north, 0, -0.5)), ())
