@@ -42,13 +42,12 @@ final case class BudgetMap(
 
   /** A line per marked link. */
   def markLines: Vector[String] = marks.map: mark =>
-    val (factor, offUnit) = tolerance.shown(unit)
-    val off               = factor * (mark.tally.mean - budget.truth) / budget.per
+    val (factor, offUnit)                = tolerance.shown(unit)
+    val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
+    def told(text: String, unit: String) = s"$text $unit".trim
+    val value                            = s"${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)}"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
-      s"$objective = ${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)} $unit, ${signed(off)} $offUnit off the truth".replaceAll(
-        " +",
-        " "
-      )
+      s"$objective = ${told(value, unit)}, ${told(signed(off), offUnit)} off the truth"
 
   /** One row per cell. */
   def csvRows: Vector[String] =

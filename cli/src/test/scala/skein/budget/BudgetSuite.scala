@@ -1,5 +1,6 @@
 package skein.budget
 
+import scala.concurrent.duration.*
 import skein.optimise.{Direction, LatencyBudget, Measure, Objective}
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
@@ -7,6 +8,8 @@ import skein.search.{Conditions, SearchQuestion}
 import skein.settings.PolicyFile
 
 class BudgetSuite extends munit.FunSuite:
+  override def munitTimeout: Duration = 2.minutes
+
   private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
   private val axes = BudgetAxes.of(200, 5, 60, 3)

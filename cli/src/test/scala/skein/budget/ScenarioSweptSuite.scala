@@ -1,11 +1,14 @@
 package skein.budget
 
+import scala.concurrent.duration.*
 import skein.scenario.*
 import skein.search.Conditions
 import skein.signal.LatencyDistribution
 import skein.units.*
 
 class ScenarioSweptSuite extends munit.FunSuite:
+  override def munitTimeout: Duration = 2.minutes
+
   private val surround = Surround(vehicles = 4)
 
   private def question(scenario: Scenario, objective: Option[String], conditions: Conditions, threads: Int) =

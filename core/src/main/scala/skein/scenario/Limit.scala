@@ -8,6 +8,8 @@ import skein.units.*
   *   what is broken, for example `separation`
   * @param groups
   *   whose quantity it is: of so many vehicles in the fleet, every group of places that it holds for
+  * @param kept
+  *   what plans keep of it, if they do
   * @param quantity
   *   of a group, by instant
   */
@@ -17,6 +19,7 @@ final class Limit private (
     val value: Double,
     val isLeast: Boolean,
     groups: Range => Vector[Vector[Int]],
+    val kept: Option[Kept],
     quantity: (Tracks, Vector[Int]) => Int => Double
 ):
   /** For example `separation of at least 5 m`. */
@@ -53,6 +56,7 @@ object Limit:
       least.value,
       true,
       pairs,
+      Some(Kept.Apart(least.value)),
       (tracks, two) => tracks.separationM(two(0), two(1), _)
     )
 
@@ -64,6 +68,7 @@ object Limit:
       least.value,
       true,
       pairs,
+      Some(Kept.Apart(least.value)),
       (tracks, two) => tracks.distanceM(two(0), two(1), _)
     )
 
@@ -81,9 +86,13 @@ object Limit:
 
   /** Every vehicle stays in a circle, seen from above. */
   def geofence(north: Metres, east: Metres, radius: Metres): Limit =
-    most("distance from the geofence's middle", "m", radius.value)((tracks, vehicle) =>
-      tracks.distanceM(vehicle, north.value, east.value, _)
-    )
+    single(
+      "distance from the geofence's middle",
+      "m",
+      radius.value,
+      false,
+      Some(Kept.Inside(Fence.Circle(north.value, east.value, radius.value)))
+    )((tracks, vehicle) => tracks.distanceM(vehicle, north.value, east.value, _))
 
   /** Every vehicle stays in a polygon, seen from above; the quantity is how far it is outside.
     *
@@ -92,20 +101,31 @@ object Limit:
     */
   def geofence(corners: Vector[(Metres, Metres)]): Limit =
     require(corners.sizeIs >= 3, s"a geofence has at least three corners, came ${corners.size}")
-    val fence = Fence(corners.map((north, east) => (north.value, east.value)))
-    most("distance outside the geofence", "m", 0)((tracks, vehicle) =>
-      instant => fence.outsideM(tracks.northM(vehicle)(instant), tracks.eastM(vehicle)(instant))
+    val fence = Fence.Polygon(corners.map((north, east) => (north.value, east.value)))
+    single("distance outside the geofence", "m", 0, false, Some(Kept.Inside(fence)))((tracks, vehicle) =>
+      instant => fence.beyondM(tracks.northM(vehicle)(instant), tracks.eastM(vehicle)(instant)).max(0)
     )
 
   /** A quantity of every vehicle that must not fall below a value. */
   def least(name: String, unit: String, value: Double)(of: (Tracks, Int) => Int => Double): Limit =
-    new Limit(name, unit, value, true, single, (tracks, one) => of(tracks, one.head))
+    single(name, unit, value, true, None)(of)
 
   /** A quantity of every vehicle that must not rise above a value. */
   def most(name: String, unit: String, value: Double)(of: (Tracks, Int) => Int => Double): Limit =
-    new Limit(name, unit, value, false, single, (tracks, one) => of(tracks, one.head))
+    single(name, unit, value, false, None)(of)
 
-  private def single(vehicles: Range) = vehicles.toVector.map(Vector(_))
+  private def single(name: String, unit: String, value: Double, isLeast: Boolean, kept: Option[Kept])(
+      of: (Tracks, Int) => Int => Double
+  ): Limit =
+    new Limit(
+      name,
+      unit,
+      value,
+      isLeast,
+      _.toVector.map(Vector(_)),
+      kept,
+      (tracks, one) => of(tracks, one.head)
+    )
 
   private def pairs(vehicles: Range) =
     for one <- vehicles.toVector; other <- (0 until one).toVector yield Vector(other, one)
@@ -131,23 +151,8 @@ final case class Violation(
     worstAtS: Double
 )
 
-/** A polygon seen from above: corners north and east, m. */
-private final class Fence(corners: Vector[(Double, Double)]):
-  private val edges = corners.zip(corners.tail :+ corners.head)
-
-  /** How far a place is outside, m; 0 inside. */
-  def outsideM(north: Double, east: Double): Double =
-    if isInside(north, east) then 0 else edges.map((from, to) => distanceM(north, east, from, to)).min
-
-  private def isInside(north: Double, east: Double): Boolean =
-    edges.count { case ((n1, e1), (n2, e2)) =>
-      (e1 > east) != (e2 > east) && north < (n2 - n1) * (east - e1) / (e2 - e1) + n1
-    } % 2 == 1
-
-  private def distanceM(north: Double, east: Double, from: (Double, Double), to: (Double, Double)): Double =
-    val (alongN, alongE) = (to._1 - from._1, to._2 - from._2)
-    val length           = alongN * alongN + alongE * alongE
-    val share            =
-      if length == 0 then 0.0
-      else (((north - from._1) * alongN + (east - from._2) * alongE) / length).max(0).min(1)
-    StrictMath.hypot(north - from._1 - share * alongN, east - from._2 - share * alongE)
+/** What plans keep of a limit. */
+enum Kept:
+  /** Between any two vehicles, in the plane, m. */
+  case Apart(leastM: Double)
+  case Inside(fence: Fence)

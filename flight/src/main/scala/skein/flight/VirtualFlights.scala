@@ -98,18 +98,21 @@ object VirtualFlights:
       period: Span = Span.ofMillis(100),
       duration: Span = Span.Zero
   ): Either[String, Result] =
-    val most     = if duration == Span.Zero then scenario.duration else duration
-    val settings = FlySettings(List(loop), List(link), most, period, seed, scenario)
+    val most = if duration == Span.Zero then scenario.duration else duration
+    result(FlySettings(List(loop), List(link), most, period, seed, scenario))
+
+  /** What the last flight of these settings comes to, likewise. */
+  def result(settings: FlySettings): Either[String, Result] =
     for
-      flown <- fly(settings, FlightPlan(s"${loop.label}-${link.name}", loop, link, seed))
+      flown <- fly(settings, settings.plans.last.copy(seed = settings.seed))
       _     <- flown.landed.outcome match
         case Outcome.Failed(reason) => Left(reason)
         case _                      => Right(())
       tracks <- Tracks
         .of(RecordedTracks.of(flown.recorder.recording))
-        .filter(_.vehicles.size == scenario.agents.size)
+        .filter(_.vehicles.size == settings.fleet.agents.size)
         .toRight("its vehicles were not all seen")
-    yield Result.of(scenario, tracks)
+    yield Result.of(settings.scenario, tracks)
 
   private def workers(planning: PlanSettings): PlanWorkers =
     CountedPlanWorkers(planning.searches, planning.slices)

@@ -1,6 +1,7 @@
 package skein.loop
 
 import skein.planning.*
+import skein.scenario.{Fence, Kept}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
@@ -29,6 +30,8 @@ import skein.vehicle.ReducedModel
   *   to be kept from vehicles that are not the opponent; 0: none
   * @param geofenceM
   *   to be kept to north and south, east and west of the origin; 0: none
+  * @param kept
+  *   of the scenario's limits, with a margin of [[PlanSettings.Doubt]]; not in the text
   * @param response
   *   of the vehicles to their commands; across the command it is taken to be as along it
   */
@@ -45,6 +48,7 @@ final case class PlanSettings(
     slowestShare: Double = 1,
     separationM: Double = 0,
     geofenceM: Double = 0,
+    kept: Vector[Kept] = Vector.empty,
     response: ReducedModel = ReducedModel.AirSim
 ):
   /** What cannot be flown. */
@@ -90,8 +94,17 @@ final case class PlanSettings(
       stepsPerKnot = 3
     )
 
-  def geofence: Geofence =
-    if geofenceM == 0 then Geofence.None else Geofence(-geofenceM, geofenceM, -geofenceM, geofenceM)
+  def geofences: Vector[Geofence] =
+    Option.when(geofenceM > 0)(Geofence(Fence.rectangle(
+      -geofenceM,
+      geofenceM,
+      -geofenceM,
+      geofenceM
+    ))).toVector ++
+      kept.collect { case Kept.Inside(fence) => Geofence(fence, PlanSettings.Doubt) }
+
+  /** What the scenario says that any two vehicles keep between them, opponents too, m; 0: nothing. */
+  def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
   /** As [[PlanSettings.parse]] reads it back, apart from the response. */
   def text: String = Seq(
@@ -112,6 +125,11 @@ final case class PlanSettings(
 object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
+
+  /** On top of what is set, since vehicles do not follow their models exactly and commands come at other times than
+    * expected, m.
+    */
+  val Doubt = 1.0
 
   private val methods = Map(
     CrossEntropy -> Method.CrossEntropy(elites = 48, smoothing = 0.2),

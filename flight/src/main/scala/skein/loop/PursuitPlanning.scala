@@ -18,6 +18,8 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
   import Planning.{motion, straight}
   private val speed    = agent.speed.value
   private val response = settings.responseAt(-agent.startPositionNed.z)
+  private val leastM   =
+    settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
 
   val planner: PlannerSettings = settings.planner
   val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
@@ -28,17 +30,19 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
     closest = PursuitPlanning.Closest,
     capture = PursuitPlanning.Capture,
     cruiseSpeed = speed,
-    separation = Separation(settings.separationM, margin = if settings.separationM > 0 then 1 else 0),
-    geofence = settings.geofence
+    separation = Separation(leastM, margin = if leastM > 0 then 1 else 0),
+    geofences = settings.geofences
   )
 
-  def regardsTeam: Boolean = settings.separationM > 0
+  def regardsTeam: Boolean = leastM > 0
 
   def pose(memory: Memory, view: TeamView, now: Instant): Part =
     val opponent = scenario.opponentOf(self, view.kinematics(_).positionNed)
     val stream   = Planning.stream(seed, self, memory)
     val others   =
-      if regardsTeam then Planning.unplanned(scenario, but = opponent) else Vector.empty
+      if settings.apartM > 0 then Planning.unplanned(scenario, but = self)
+      else if regardsTeam then Planning.unplanned(scenario, but = opponent)
+      else Vector.empty
     val situation = Situation(
       motion(view.kinematics(self)),
       memory.headingRad,

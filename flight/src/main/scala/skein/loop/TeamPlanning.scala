@@ -7,8 +7,7 @@ import skein.units.*
 /** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from all others.
   * Those that plan fly by their plans, the rest are taken to fly straight on.
   *
-  * The separation planned for is wider than the set one by [[TeamPlanning.Doubt]], since vehicles do not follow their
-  * models exactly and commands come at other times than expected.
+  * The separation planned for is wider than the set one by [[PlanSettings.Doubt]].
   */
 private final class TeamPlanning(
     scenario: Fleet,
@@ -19,7 +18,7 @@ private final class TeamPlanning(
 ) extends Planning(scenario, self):
   import Planning.{motion, straight}
   private val response = settings.responseAt(-agent.startPositionNed.z)
-  private val minimumM = policy.minimumM.max(settings.separationM)
+  private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
   val planner: PlannerSettings = settings.planner
   val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
@@ -32,9 +31,9 @@ private final class TeamPlanning(
     speedChange = 0.1,
     cruiseSpeed = agent.speed.value,
     separation =
-      if minimumM > 0 then Separation(minimumM + TeamPlanning.Doubt, margin = 0.8, growth = 0.5)
+      if minimumM > 0 then Separation(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5)
       else Separation(0, 0, 0),
-    geofence = settings.geofence,
+    geofences = settings.geofences,
     softness = 1
   )
 
@@ -90,9 +89,6 @@ private final class TeamPlanning(
     Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
 
 private object TeamPlanning:
-  /** On top of the set separation, m. */
-  val Doubt = 1.0
-
   /** Of a multirotor that turns on the spot: as far as candidates can turn at once ([[skein.planning.Planner]]). What is
     * less than its policy turns keeps a vehicle from turning back in time.
     */

@@ -44,11 +44,14 @@ final case class FlySettings(
 ):
 
   /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
-    * vehicle's altitude.
+    * vehicle's altitude. They keep the scenario's separation and geofences.
     */
-  def planningByModel: PlanSettings = planning.copy(response = predictor match
-    case PredictionModel.Fitted(model, _) => model
-    case _                                => ReducedModel.AirSim)
+  def planningByModel: PlanSettings = planning.copy(
+    kept = scenario.limits.flatMap(_.kept),
+    response = predictor match
+      case PredictionModel.Fitted(model, _) => model
+      case _                                => ReducedModel.AirSim
+  )
 
   /** Who flies. */
   def fleet: Fleet = scenario.fleet

@@ -3,6 +3,7 @@ package skein.loop
 import skein.flow.{Sense, Steer}
 import skein.forward.{Asking, LoopTiming, Steering}
 import skein.planning.Geofence
+import skein.scenario.Fence
 import skein.units.*
 import skein.vehicle.ReducedModel
 
@@ -100,8 +101,8 @@ class SettingsSuite extends munit.FunSuite:
   test("plans: the horizon in seconds, a fence around the origin, and the vehicle's answer at its altitude"):
     val settings = PlanSettings(horizonSteps = 20, step = ms(50), geofenceM = 30)
     assertEquals((settings.planner.steps, settings.planner.dtS), (20, 0.05))
-    assertEquals(settings.geofence, Geofence(-30, 30, -30, 30))
-    assertEquals(PlanSettings().geofence, Geofence.None)
+    assertEquals(settings.geofences, Vector(Geofence(Fence.rectangle(-30, 30, -30, 30))))
+    assertEquals(PlanSettings().geofences, Vector.empty)
     assertEquals(PlanSettings().responseAt(35), ReducedModel.airSimAt(35))
     val own = ReducedModel.AirSim.copy(lagS = 0.3)
     assertEquals(PlanSettings(response = own).responseAt(35), own.copy(turnLagS = 0.3))

@@ -11,6 +11,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
+import skein.scenario.Fence;
 import skein.simd.LaneMath;
 import skein.simd.LaneRandom;
 import skein.vehicle.ReducedModel;
@@ -191,7 +192,9 @@ final class PlanKernel implements CandidateBlock {
   @Override
   public void fly() {
     steer();
-    bound();
+    exert();
+    for (int fence = 0; fence < objective.geofences().size(); fence++)
+      stayInside(objective.geofences().apply(fence));
     if (situation.others().nonEmpty()) keepApart();
     for (int each = 0; each < situation.behaviours().size(); each++) {
       Behaviour behaviour = situation.behaviours().apply(each);
@@ -276,20 +279,12 @@ final class PlanKernel implements CandidateBlock {
     }
   }
 
-  /** What the manoeuvre costs by itself: effort, and leaving the geofence. */
-  private void bound() {
-    Geofence fence = objective.geofence();
-    FloatVector south = FloatVector.broadcast(SPECIES, within(fence.minNorth() - originX));
-    FloatVector north = FloatVector.broadcast(SPECIES, within(fence.maxNorth() - originX));
-    FloatVector west = FloatVector.broadcast(SPECIES, within(fence.minEast() - originY));
-    FloatVector east = FloatVector.broadcast(SPECIES, within(fence.maxEast() - originY));
+  /** What the manoeuvre costs by itself: its effort. */
+  private void exert() {
     FloatVector turning = FloatVector.broadcast(SPECIES, (float) objective.turning() * dtS);
     FloatVector hurry = FloatVector.broadcast(SPECIES, (float) objective.speedChange() * dtS);
     FloatVector cruise = FloatVector.broadcast(SPECIES, (float) objective.cruiseSpeed());
-    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
-        one = FloatVector.broadcast(SPECIES, 1f),
-        guard = FloatVector.broadcast(SPECIES, GUARD),
-        breach = FloatVector.broadcast(SPECIES, BREACH);
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector cost = zero;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
@@ -297,15 +292,70 @@ final class PlanKernel implements CandidateBlock {
         FloatVector speed = FloatVector.fromArray(SPECIES, speeds, at);
         FloatVector aside = turn.mul(speed), slow = speed.sub(cruise);
         cost = aside.mul(aside).fma(turning, slow.mul(slow).fma(hurry, cost));
+      }
+      cost.intoArray(costs, i);
+    }
+  }
+
+  /** What it costs to leave a geofence. */
+  private void stayInside(Geofence geofence) {
+    float guard = GUARD + (float) geofence.marginM();
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        breach = FloatVector.broadcast(SPECIES, BREACH);
+    for (int i = 0; i < SIZE; i += LANES) {
+      FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
+      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
         FloatVector px = FloatVector.fromArray(SPECIES, x, at);
         FloatVector py = FloatVector.fromArray(SPECIES, y, at);
         FloatVector beyond =
-            south.sub(px).max(px.sub(north)).max(west.sub(py)).max(py.sub(east)).add(guard);
+            (geofence.fence() instanceof Fence.Circle circle
+                    ? beyond(circle, px, py)
+                    : beyond((Fence.Polygon) geofence.fence(), px, py))
+                .add(guard);
         VectorMask<Float> outside = beyond.compare(GT, zero);
         cost = cost.add(zero.blend(beyond.add(one).mul(breach), outside));
       }
       cost.intoArray(costs, i);
     }
+  }
+
+  private FloatVector beyond(Fence.Circle circle, FloatVector px, FloatVector py) {
+    FloatVector dx = px.sub(within(circle.northM() - originX));
+    FloatVector dy = py.sub(within(circle.eastM() - originY));
+    return dx.fma(dx, dy.mul(dy)).sqrt().sub((float) circle.radiusM());
+  }
+
+  /** See {@link Fence#beyondM}. */
+  private FloatVector beyond(Fence.Polygon polygon, FloatVector px, FloatVector py) {
+    FloatVector zero = FloatVector.broadcast(SPECIES, 0f), nearest = zero.add(FAR);
+    VectorMask<Float> inside = SPECIES.maskAll(false);
+    int corners = polygon.corners().size();
+    for (int from = 0; from < corners; from++) {
+      int to = (from + 1) % corners;
+      float n1 = north(polygon, from), e1 = east(polygon, from);
+      float alongN = north(polygon, to) - n1, alongE = east(polygon, to) - e1;
+      float length = alongN * alongN + alongE * alongE;
+      FloatVector dn = px.sub(n1), de = py.sub(e1);
+      FloatVector share =
+          dn.mul(alongN).add(de.mul(alongE)).mul(length == 0 ? 0f : 1 / length).max(0f).min(1f);
+      FloatVector offN = dn.sub(share.mul(alongN)), offE = de.sub(share.mul(alongE));
+      nearest = nearest.min(offN.fma(offN, offE.mul(offE)).sqrt());
+      if (alongE != 0) {
+        VectorMask<Float> crosses = py.compare(LT, e1).xor(py.compare(LT, east(polygon, to)));
+        VectorMask<Float> below = dn.compare(LT, de.mul(alongN / alongE));
+        inside = inside.xor(crosses.and(below));
+      }
+    }
+    return nearest.blend(nearest.neg(), inside);
+  }
+
+  private float north(Fence.Polygon polygon, int corner) {
+    return within((double) polygon.corners().apply(corner)._1() - originX);
+  }
+
+  private float east(Fence.Polygon polygon, int corner) {
+    return within((double) polygon.corners().apply(corner)._2() - originY);
   }
 
   private static float within(double bound) {

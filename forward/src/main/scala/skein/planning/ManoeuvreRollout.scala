@@ -31,9 +31,10 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       val slow  = speed - objective.cruiseSpeed
       val aside = turnRate * speed
       cost += (aside * aside * objective.turning + slow * slow * objective.speedChange) * dtS
-      val beyond = objective.geofence.beyond(own.x, own.y)
-      if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
-      if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
+      for geofence <- objective.geofences do
+        val beyond = geofence.beyond(own.x, own.y)
+        if beyond > 0 then breaches :+= Breached.Fence(step, beyond)
+        if beyond + Guard > 0 then cost += Breach * (1 + beyond + Guard)
       for index <- situation.others.indices do
         val other    = situation.others(index)
         val distance = StrictMath.hypot(own.x - other.x(step), own.y - other.y(step))

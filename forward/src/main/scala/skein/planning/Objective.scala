@@ -1,5 +1,7 @@
 package skein.planning
 
+import skein.scenario.Fence
+
 /** What a vehicle may be commanded.
   *
   * @param minSpeed
@@ -26,16 +28,14 @@ object Limits:
   /** The paper's pursuer: always 10 m/s, and a turning circle of 8 m, so 1.25 rad/s. */
   val paperPursuer: Limits = Limits(10, 10, 1.25, 8)
 
-/** A rectangle that is not left, m, world NED. */
-final case class Geofence(minNorth: Double, maxNorth: Double, minEast: Double, maxEast: Double):
-  require(minNorth < maxNorth && minEast < maxEast, s"a geofence must have an inside: $this")
-
+/** What is not left.
+  *
+  * @param marginM
+  *   kept inside of it
+  */
+final case class Geofence(fence: Fence, marginM: Double = 0):
   /** How far a place is outside, m; negative inside. */
-  def beyond(x: Double, y: Double): Double =
-    math.max(math.max(minNorth - x, x - maxNorth), math.max(minEast - y, y - maxEast))
-
-object Geofence:
-  val None: Geofence = Geofence(-1e6, 1e6, -1e6, 1e6)
+  def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
 
 /** How far vehicles stay apart.
   *
@@ -61,7 +61,7 @@ final case class Separation(minimum: Double, margin: Double = 1, growth: Double 
   * over the time flown times its length, the least, and, at the end of the horizon, the distance to which momentum
   * would carry the two: with velocities that lag, a place is known only with the place that its velocity leads to.
   *
-  * Leaving the geofence or going below the least separation costs more than anything else, once per step, and the more
+  * Leaving a geofence or going below the least separation costs more than anything else, once per step, and the more
   * the further.
   *
   * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back at once.
@@ -95,7 +95,7 @@ final case class Objective(
     speedChange: Double = 0,
     cruiseSpeed: Double = 0,
     separation: Separation = Separation(0),
-    geofence: Geofence = Geofence.None,
+    geofences: Vector[Geofence] = Vector.empty,
     softness: Double = 0
 ):
   require(

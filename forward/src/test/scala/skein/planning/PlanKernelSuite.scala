@@ -1,5 +1,6 @@
 package skein.planning
 
+import skein.scenario.Fence
 import skein.signal.SplitMix64
 import skein.vehicle.{ReducedFlight, ReducedModel}
 
@@ -66,16 +67,31 @@ class PlanKernelSuite extends munit.FunSuite:
 
   test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):
     val narrow =
-      objective.copy(separation = Separation(minimum = 1.5, margin = 2), geofence = Geofence(-20, 16, -6, 12))
+      objective.copy(
+        separation = Separation(minimum = 1.5, margin = 2),
+        geofences = Vector(Geofence(Fence.rectangle(-20, 16, -6, 12)))
+      )
     val busy   = situation(Behaviour(track)).copy(others = others)
     val scalar = flown(ScalarBlock(steps), busy, narrow)
     assert(scalar.costs.count(_ > 1000) > 10, "some candidates should breach a limit")
     assert(scalar.costs.count(_ < 1000) > 10, "some candidates should not")
     assertAgree(busy, narrow)
 
+  test("kernel and scalar reference agree on fences of any shape"):
+    val corner =
+      Vector((-20.0, -20.0), (16.5, -20.0), (16.5, 8.5), (13.0, 8.5), (13.0, 10.5), (-20.0, 10.5))
+    for fence <- Seq(Fence.Polygon(corner), Fence.Circle(1, 2, 15.6)) do
+      val fenced = objective.copy(geofences = Vector(Geofence(fence, marginM = 0.5)))
+      val scalar = flown(ScalarBlock(steps), situation(Behaviour(track)), fenced)
+      assert(scalar.costs.count(_ > 1000) > 10 && scalar.costs.count(_ < 1000) > 10, s"$fence")
+      assertAgree(situation(Behaviour(track)), fenced)
+
   test("a candidate that the kernel finds within the hard limits is so in doubles"):
     val narrow =
-      objective.copy(separation = Separation(minimum = 1.5, margin = 0), geofence = Geofence(-20, 16, -6, 12))
+      objective.copy(
+        separation = Separation(minimum = 1.5, margin = 0),
+        geofences = Vector(Geofence(Fence.rectangle(-20, 16, -6, 12)))
+      )
     val busy   = situation(Behaviour(track)).copy(others = others)
     val kernel = flown(PlanKernel(steps), busy, narrow)
     val check  = ManoeuvreRollout(busy, narrow, dtS)

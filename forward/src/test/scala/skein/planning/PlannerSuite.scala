@@ -1,5 +1,6 @@
 package skein.planning
 
+import skein.scenario.Fence
 import skein.policy.PaperEvader
 import skein.vehicle.ReducedModel
 
@@ -86,7 +87,7 @@ class PlannerSuite extends munit.FunSuite:
       assert(plan.manoeuvre.turnRates(step).abs <= limit * (1 + 1e-6))
 
   test("a plan turns back from the geofence"):
-    val fenced    = objective.copy(geofence = Geofence(-50, 20, -50, 50))
+    val fenced    = objective.copy(geofences = Vector(Geofence(Fence.rectangle(-50, 20, -50, 50))))
     val settings  = PlannerSettings(steps = 40)
     val planner   = Planner(settings, fenced)
     val outside   = PredictedTrack.standing(60, 0, settings.steps)

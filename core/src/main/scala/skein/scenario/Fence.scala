@@ -1,0 +1,37 @@
+package skein.scenario
+
+/** What vehicles stay in, seen from above; north and east, m. */
+enum Fence:
+  case Circle(northM: Double, eastM: Double, radiusM: Double)
+
+  /** @param corners
+    *   north and east, in turn; at least three
+    */
+  case Polygon(corners: Vector[(Double, Double)])
+
+  /** How far a place is outside, m; inside, how far it is from there, negative. */
+  def beyondM(north: Double, east: Double): Double = this match
+    case Circle(middleN, middleE, radius) => StrictMath.hypot(north - middleN, east - middleE) - radius
+    case Polygon(corners)                 =>
+      var nearest  = Double.PositiveInfinity
+      var isInside = false
+      var at       = 0
+      while at < corners.size do
+        val (n1, e1)         = corners(at)
+        val (n2, e2)         = corners((at + 1) % corners.size)
+        val (alongN, alongE) = (n2 - n1, e2 - e1)
+        val length           = alongN * alongN + alongE * alongE
+        val share            =
+          if length == 0 then 0.0 else (((north - n1) * alongN + (east - e1) * alongE) / length).max(0).min(1)
+        nearest =
+          nearest.min(StrictMath.hypot(north - n1 - share * alongN, east - e1 - share * alongE))
+        if (e1 > east) != (e2 > east) && north < alongN * (east - e1) / alongE + n1 then isInside = !isInside
+        at += 1
+      if isInside then -nearest else nearest
+
+object Fence:
+  def rectangle(minNorthM: Double, maxNorthM: Double, minEastM: Double, maxEastM: Double): Fence =
+    require(minNorthM < maxNorthM && minEastM < maxEastM, "a rectangle must have an inside")
+    Polygon(
+      Vector((minNorthM, minEastM), (maxNorthM, minEastM), (maxNorthM, maxEastM), (minNorthM, maxEastM))
+    )
