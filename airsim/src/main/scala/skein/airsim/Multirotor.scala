@@ -31,6 +31,9 @@ final class Multirotor(
   private val getter = once.copy(idempotent = true)
   private val sensor = getter.copy(lane = Lane.Sensors)
 
+  /** Its cameras and LIDARs. */
+  val eyes: Eyes = Eyes(client, name, originNed)
+
   // ---- state
 
   /** Where the vehicle is and how it moves, by its own estimate, with the three times known so far. */

@@ -23,8 +23,8 @@ private[rpc] final class Call(
     val options: CallOptions,
     val calledAt: Instant
 ):
-  val outcome: Promise[Either[RpcError, Answer[Msg]]] = Promise()
-  val deadline: Instant                               = calledAt + options.timeout
+  val outcome: Promise[Either[RpcError, Answer[Msg | Received]]] = Promise()
+  val deadline: Instant                                          = calledAt + options.timeout
 
   /** Order of arrival in its lane. */
   var sequence: Long = -1

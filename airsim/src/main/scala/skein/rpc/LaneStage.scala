@@ -100,7 +100,7 @@ private[rpc] final class LaneStage(
 
     def send(call: Call): Unit = connections(call.connection).toWrite.append(call)
 
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
       val _ = pending.decrementAndGet()
       call.outcome.success(outcome)
 
@@ -198,7 +198,7 @@ private[rpc] final class LaneStage(
     private final class Attempt(connection: Connection):
       private val requests = SubSourceOutlet[ByteString](s"$lane-requests")
       private val replies  = SubSinkInlet[ByteString](s"$lane-replies")
-      private val framer   = Framer(settings.limits)
+      private val framer   = Framer(settings.limits(lane))
       private val holding  = holdings.Holding()
       private var up       = false
       private var over     = false
@@ -262,7 +262,7 @@ private[rpc] final class LaneStage(
           framer.next() match
             case Framed.Complete(frame) =>
               begun = None
-              Message.fromServer(frame) match
+              (if lane == Lane.Bulk then Message.fromServerUnread(frame) else Message.fromServer(frame)) match
                 case reply: Message.Reply =>
                   if connection.received(reply, now) then strays = 0 else strays += 1
                 case Message.Ignored(what)     => stray(what)

@@ -13,7 +13,7 @@ private[rpc] trait LaneEffects:
   def send(call: Call): Unit
 
   /** The call has ended. */
-  def end(call: Call, outcome: Either[RpcError, Answer[Msg]]): Unit
+  def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit
 
   /** Try to open the connection again, after a pause. */
   def reconnect(connection: Int, after: Span): Unit
@@ -164,7 +164,7 @@ private[rpc] final class LaneState(
       inFlight -= 1
       if call.written then slot.remember(call)
 
-  private def succeed(call: Call, answer: Answer[Msg]): Unit =
+  private def succeed(call: Call, answer: Answer[Msg | Received]): Unit =
     counters.answered.increment()
     finish(call, Right(answer))
 
@@ -173,7 +173,7 @@ private[rpc] final class LaneState(
     effects.observe(RpcEvent.Failed(call.method, lane, error))
     finish(call, Left(error))
 
-  private def finish(call: Call, outcome: Either[RpcError, Answer[Msg]]): Unit =
+  private def finish(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
     call.ended = true
     val _ = deadlines.remove(call)
     effects.end(call, outcome)

@@ -12,7 +12,7 @@ import upack.{Arr, Binary, Int32, Int64, Msg, Null, Obj, Str, UInt64}
 enum Message:
   case Request(id: Long, method: String, params: IndexedSeq[Msg])
   case Notification(method: String, params: IndexedSeq[Msg])
-  case Reply(id: Long, error: Msg, result: Msg)
+  case Reply(id: Long, error: Msg, result: Msg | Received)
 
   /** A value that is no message but does no harm: an array of another length, a map, a number. */
   case Ignored(what: String)
@@ -65,6 +65,19 @@ object Message:
     case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
     case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))
     case other                             => Right(Ignored(kindOf(other)))
+
+  /** The same, with a reply's result left as it came: of a large one no tree is made. */
+  def fromServerUnread(frame: Array[Byte]): Message =
+    val reader = MessageReader.of(frame)
+    try
+      if !reader.isArray then Ignored("no array")
+      else
+        reader.array() match
+          case 4 =>
+            reader.skip()
+            idOf(upack.read(reader.raw())).fold(Malformed(_), Reply(_, upack.read(reader.raw()), reader.rest))
+          case length => Ignored(s"an array of $length")
+    catch case NonFatal(e) => Malformed(s"not readable as MessagePack: $e")
 
   /** The text of a reply's error slot, cut where a person would have stopped reading. */
   def errorText(error: Msg): String = error match

@@ -64,6 +64,35 @@ final class RpcClient(
       params: Seq[Msg],
       options: CallOptions = CallOptions()
   ): Future[Either[RpcError, Answer[Msg]]] =
+    submit(method, params, options).map(_.flatMap(answer =>
+      answer.value match
+        case read: Msg          => Right(answer.copy(value = read))
+        case received: Received =>
+          try Right(answer.copy(value = upack.read(received.toArray, trace = false)))
+          catch case NonFatal(e) => Left(RpcError.Malformed(method, s"not readable as MessagePack: $e"))
+    ))
+
+  /** Calls `method` on [[Lane.Bulk]], for what is large, and reads its result straight from the bytes of its message. They
+    * are copied once, from the transport's segments; binary that `read` gives out is a part of them.
+    */
+  def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
+      read: MessageReader => A
+  ): Future[Either[RpcError, Answer[A]]] =
+    submit(method, params, options.copy(lane = Lane.Bulk)).map(_.flatMap(answer =>
+      answer.value match
+        case received: Received =>
+          MessageReader.read(received)(read).map(value => answer.copy(value = value)).left.map(
+            RpcError.Malformed(method, _)
+          )
+        case other: Msg =>
+          Left(RpcError.Malformed(method, s"expected a large result, came ${Message.kindOf(other)}"))
+    ))
+
+  private def submit(
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions
+  ): Future[Either[RpcError, Answer[Msg | Received]]] =
     val call = Call(method, params, options, clock.now())
     counters.called.increment()
     val lane = options.lane match

@@ -68,6 +68,10 @@ final case class CallOptions(
   * @param openBytes
   *   most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a connection whose message
   *   finds no room is closed as malformed
+  * @param limits
+  *   of one message on [[Lane.Control]] and [[Lane.Sensors]]
+  * @param bulkLimits
+  *   of one message on [[Lane.Bulk]]
   */
 final case class RpcSettings(
     controlConnections: Int = 5,
@@ -82,7 +86,8 @@ final case class RpcSettings(
     messageTime: Span = Span.ofSeconds(60),
     openBytes: Long = 128 << 20,
     backOff: BackOff = BackOff(),
-    limits: FrameLimits = FrameLimits()
+    limits: FrameLimits = FrameLimits(frameBytes = 4 << 20, elements = 1 << 18, maps = 1 << 16),
+    bulkLimits: FrameLimits = FrameLimits()
 ):
   require(
     controlConnections > 0 && sensorConnections > 0 && bulkConnections > 0 && windowPerConnection > 0 && windowInAll > 0 && queue >= 0 &&
@@ -91,6 +96,8 @@ final case class RpcSettings(
   )
 
   private[rpc] def newHoldings(): Holdings = Holdings(each = 1 << 20, common = openBytes)
+
+  def limits(lane: Lane): FrameLimits = if lane == Lane.Bulk then bulkLimits else limits
 
   def connections(lane: Lane): Int = lane match
     case Lane.Control => controlConnections

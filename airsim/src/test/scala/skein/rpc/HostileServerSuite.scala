@@ -95,7 +95,7 @@ class HostileServerSuite extends munit.FunSuite:
 
   rig("unfinished messages share one store", RpcSettings(controlConnections = 1, openBytes = 1 << 20)): r =>
     val (peer, id) = r.call()
-    val answer = ByteString(Wire.pack(Arr(Int32(1), Int32(id.toInt), Null, Binary(new Array[Byte](4 << 20)))))
+    val answer = ByteString(Wire.pack(Arr(Int32(1), Int32(id.toInt), Null, Binary(new Array[Byte](3 << 20)))))
     peer.send(answer.take((2 << 20) + 1))
     assertEquals(
       r.outcome(),

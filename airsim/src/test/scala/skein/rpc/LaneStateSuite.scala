@@ -14,7 +14,7 @@ class LaneStateSuite extends munit.FunSuite:
     val counters   = RpcCounters()
     val sent       = mutable.Buffer.empty[Call]
     val usedInTurn = mutable.Buffer.empty[Int]
-    val ends       = mutable.Map.empty[String, Either[RpcError, Msg]]
+    val ends       = mutable.Map.empty[String, Either[RpcError, Msg | Received]]
     val reconnects = mutable.Buffer.empty[(Int, Span)]
     val events     = mutable.Buffer.empty[RpcEvent]
     val state      = LaneState(skein.rpc.Lane.Control, address, settings, counters, () => 0.0, this)
@@ -24,7 +24,7 @@ class LaneStateSuite extends munit.FunSuite:
       call.sends += 1
       sent += call
       usedInTurn += call.connection
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
       assert(!ends.contains(call.method), s"${call.method} ended twice")
       ends(call.method) = outcome.map(_.value)
     def reconnect(connection: Int, after: Span): Unit = reconnects += connection -> after

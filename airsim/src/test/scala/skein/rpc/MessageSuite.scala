@@ -20,7 +20,7 @@ class MessageSuite extends munit.FunSuite:
       val random = Random(seed)
       val result = Wire.randomMsg(random)
       Message.fromServer(Wire.pack(Arr(Int32(1), Int32(7), Null, result))) match
-        case Message.Reply(7, Null, read) =>
+        case Message.Reply(7, Null, read: Msg) =>
           assertEquals(Wire.toValue(read), Wire.toValue(result), s"seed $seed")
         case other => fail(s"$other, seed $seed")
 

@@ -29,7 +29,8 @@ object Mutation:
 
   private def value(random: Random): Msg = Wire.randomMsg(random, depth = 2, longest = 40)
 
-  private def mutated(bytes: Array[Byte], random: Random): Array[Byte] =
+  /** Changed in one place. */
+  def mutated(bytes: Array[Byte], random: Random): Array[Byte] =
     val at = random.nextInt(bytes.length + 1)
     random.nextInt(7) match
       case 0 if at < bytes.length => bytes.updated(at, (bytes(at) ^ (1 << random.nextInt(8))).toByte)

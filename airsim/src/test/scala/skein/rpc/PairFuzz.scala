@@ -115,7 +115,7 @@ object PairFuzz:
       val result      = Await.result(client.call("read", Seq.empty), 20.seconds)
       val (id, bytes) = sent.poll(10, TimeUnit.SECONDS)
       (firstReply(bytes, id), result) match
-        case (Some(Message.Reply(_, Null, value)), Right(got)) =>
+        case (Some(Message.Reply(_, Null, value: Msg)), Right(got)) =>
           check(same(got, value), s"got $got, expected $value, $clue")
           right += 1
         case (Some(Message.Reply(_, error, _)), Left(RpcError.Refused(_, text))) if error != Null =>

@@ -1,0 +1,49 @@
+package skein.airsim
+
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.wire.ImageRequest
+import skein.rpc.{Answer, CallOptions, Lane, MessageReader, RpcError, WhenFull}
+import skein.signal.Stamped
+import skein.units.*
+import upack.{Bool, Msg, Str}
+import upickle.default.writeMsg
+
+/** Cameras and LIDARs of one vehicle. Pictures and scans come on connections of their own ([[Lane.Bulk]]), so nothing that
+  * flies the vehicle waits for them, and are stamped with their exposure. A question is refused while
+  * [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as often as wanted, keeps the
+  * newest and counts what it skips.
+  *
+  * @param originNed
+  *   where the vehicle's own frame has its origin
+  */
+final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originNed: Vector3):
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  private val options = CallOptions(client.timeout, Lane.Bulk, idempotent = true, whenFull = WhenFull.Refuse)
+
+  /** Several pictures of one moment, in the order of the shots. */
+  def images(shots: Seq[Shot]): Future[Either[RpcError, Stamped[Vector[Image]]]] =
+    val asked = shots.map: shot =>
+      ImageRequest(
+        shot.camera,
+        shot.kind.number,
+        pixels_as_float = shot.encoding == Encoding.Numbers,
+        compress = shot.encoding == Encoding.Png
+      )
+    ask("simGetImages", Seq(writeMsg(asked), Str(vehicle), Bool(false)))(Images.read(_, shots, originNed))
+
+  /** One picture. */
+  def image(shot: Shot): Future[Either[RpcError, Stamped[Image]]] =
+    images(Seq(shot)).map(_.map(_.map(_.head)))
+
+  /** The newest scan of a LIDAR; an empty name means the first. Between two scans the older one comes again. */
+  def scan(lidar: String = ""): Future[Either[RpcError, Stamped[Scan]]] =
+    ask("getLidarData", Seq(Str(lidar), Str(vehicle)))(Images.readScan(_, originNed))
+
+  private def ask[A](method: String, params: Seq[Msg])(
+      read: MessageReader => Either[String, (A, Instant)]
+  ): Future[Either[RpcError, Stamped[A]]] =
+    client.rpc.callBulk(method, params, options)(read).map(_.flatMap:
+      case Answer(Right((value, validAt)), sentAt, receivedAt) =>
+        Right(Stamped(value, validAt, sentAt, receivedAt))
+      case Answer(Left(reason), _, _) => Left(RpcError.Malformed(method, reason)))

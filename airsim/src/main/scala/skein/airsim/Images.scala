@@ -1,0 +1,176 @@
+package skein.airsim
+
+import skein.rpc.{Bytes, MessageReader}
+import skein.units.*
+
+/** What a picture shows, with AirSim's numbers. Cosys-AirSim has further ones. */
+enum ImageKind(val number: Int):
+  case Scene               extends ImageKind(0)
+  case DepthPlanar         extends ImageKind(1)
+  case DepthPerspective    extends ImageKind(2)
+  case DepthVis            extends ImageKind(3)
+  case DisparityNormalized extends ImageKind(4)
+  case Segmentation        extends ImageKind(5)
+  case SurfaceNormals      extends ImageKind(6)
+  case Infrared            extends ImageKind(7)
+  case OpticalFlow         extends ImageKind(8)
+  case OpticalFlowVis      extends ImageKind(9)
+
+/** How a picture's pixels come. */
+enum Encoding:
+  /** Three bytes a pixel: blue, green, red. */
+  case Raw
+
+  /** As a PNG file. It costs the simulator much time. */
+  case Png
+
+  /** One number a pixel, depths in m. */
+  case Numbers
+
+/** One picture to be taken.
+  *
+  * @param camera
+  *   its name; `0` is the front one
+  */
+final case class Shot(camera: String, kind: ImageKind = ImageKind.Scene, encoding: Encoding = Encoding.Raw)
+
+/** The pixels of a picture, in rows from the top, without gaps. */
+enum Pixels:
+  /** Blue, green, red of each pixel. */
+  case Bgr(bytes: Bytes)
+
+  /** A PNG file. */
+  case Png(file: Bytes)
+
+  /** One number a pixel. */
+  case Numbers(values: Array[Float])
+
+/** A picture.
+  *
+  * @param positionNed
+  *   of the camera when it was taken, world, m
+  * @param orientation
+  *   from the camera's frame (front, right, down) to world NED
+  */
+final case class Image(
+    shot: Shot,
+    width: Int,
+    height: Int,
+    pixels: Pixels,
+    positionNed: Vector3,
+    orientation: Quaternion
+)
+
+/** A LIDAR's scan.
+  *
+  * @param points
+  *   x, y, z of each, m, in the frame that the LIDAR's settings name: its own, or the vehicle's start's
+  * @param segmentation
+  *   what each point lies on; empty where the simulator does not tell
+  * @param positionNed
+  *   of the LIDAR, world, m
+  */
+final case class Scan(
+    points: Array[Float],
+    segmentation: Array[Int],
+    positionNed: Vector3,
+    orientation: Quaternion
+):
+  def size: Int = points.length / 3
+
+/** Reads pictures and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones passed over,
+  * missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
+  */
+private[airsim] object Images:
+
+  /** The answer to `simGetImages`, and when they were exposed; None for one that the simulator could not take, with what
+    * it says.
+    */
+  def read(
+      in: MessageReader,
+      shots: Seq[Shot],
+      originNed: Vector3
+  ): Either[String, (Vector[Image], Instant)] =
+    val came = Vector.fill(in.array())(readOne(in))
+    if came.size != shots.size then Left(s"expected ${shots.size} pictures, came ${came.size}")
+    else
+      came.zip(shots).foldLeft[Either[String, Vector[Image]]](Right(Vector.empty)):
+        case (before, (one, shot)) => before.flatMap(images => one.image(shot, originNed).map(images :+ _))
+      .map((_, came.headOption.fold(Instant.Epoch)(_.at)))
+
+  private final class Came:
+    var bytes         = Bytes.empty
+    var numbers       = Array.emptyFloatArray
+    var position      = Vector3.Zero
+    var orientation   = Quaternion.Identity
+    var at            = Instant.Epoch
+    var message       = ""
+    var width, height = 0
+
+    def image(shot: Shot, originNed: Vector3): Either[String, Image] =
+      val size             = width.toLong * height
+      def isSized(of: Int) = width > 0 && height > 0 && of.toLong == size
+      val pixels           = shot.encoding match
+        case Encoding.Raw if isSized(bytes.length / 3) && bytes.length % 3 == 0 => Right(Pixels.Bgr(bytes))
+        case Encoding.Png if bytes.length > 1            => Right(Pixels.Png(bytes))
+        case Encoding.Numbers if isSized(numbers.length) => Right(Pixels.Numbers(numbers))
+        case encoding                                    =>
+          val said = if message.isEmpty then "" else s"; the simulator says: ${message.take(200)}"
+          Left(
+            s"expected ${shot.kind} of camera '${shot.camera}' as $encoding, came $width × $height pixels in " +
+              s"${bytes.length} bytes and ${numbers.length} numbers$said"
+          )
+      pixels.map(Image(shot, width, height, _, position + originNed, orientation))
+
+  private def readOne(in: MessageReader): Came =
+    val came = Came()
+    in.fields:
+      case "image_data_uint8"   => came.bytes = in.binary()
+      case "image_data_float"   => came.numbers = in.floats()
+      case "camera_position"    => came.position = vector(in)
+      case "camera_orientation" => came.orientation = quaternion(in)
+      case "time_stamp"         => came.at = Instant.ofNanos(in.long())
+      case "message"            => came.message = in.string()
+      case "width"              => came.width = in.int()
+      case "height"             => came.height = in.int()
+    came
+
+  /** The answer to `getLidarData`, and when it was scanned. A cloud of one number is AirSim's way to send an empty one. */
+  def readScan(in: MessageReader, originNed: Vector3): Either[String, (Scan, Instant)] =
+    var points       = Array.emptyFloatArray
+    var segmentation = Array.emptyIntArray
+    var at           = Instant.Epoch
+    var position     = Vector3.Zero
+    var orientation  = Quaternion.Identity
+    in.fields:
+      case "point_cloud"  => points = in.floats()
+      case "segmentation" => segmentation = in.ints()
+      case "time_stamp"   => at = Instant.ofNanos(in.long())
+      case "pose"         =>
+        in.fields:
+          case "position"    => position = vector(in)
+          case "orientation" => orientation = quaternion(in)
+    if points.length == 1 then
+      points = Array.emptyFloatArray
+      segmentation = Array.emptyIntArray
+    if points.length % 3 != 0 then Left(s"expected x, y, z of each point, came ${points.length} numbers")
+    else if segmentation.length > 0 && segmentation.length != points.length / 3 then
+      Left(s"expected ${points.length / 3} segmentation ids, came ${segmentation.length}")
+    else Right((Scan(points, segmentation, position + originNed, orientation), at))
+
+  private def vector(in: MessageReader): Vector3 =
+    var (x, y, z) = (0.0, 0.0, 0.0)
+    in.fields:
+      case "x_val" => x = in.double()
+      case "y_val" => y = in.double()
+      case "z_val" => z = in.double()
+    Vector3(x, y, z)
+
+  private def quaternion(in: MessageReader): Quaternion =
+    var (w, x, y, z) = (1.0, 0.0, 0.0, 0.0)
+    in.fields:
+      case "w_val" => w = in.double()
+      case "x_val" => x = in.double()
+      case "y_val" => y = in.double()
+      case "z_val" => z = in.double()
+    Quaternion(w, x, y, z)

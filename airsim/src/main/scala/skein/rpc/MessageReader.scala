@@ -1,0 +1,215 @@
+package skein.rpc
+
+import java.lang.Double.longBitsToDouble
+import java.lang.Float.intBitsToFloat
+import java.nio.ByteBuffer
+import java.nio.charset.StandardCharsets.UTF_8
+
+/** Bytes where they stand: a part of an array that nobody changes. */
+final class Bytes(array: Array[Byte], offset: Int, val length: Int):
+
+  /** Without a copy; read-only. */
+  def buffer: ByteBuffer = ByteBuffer.wrap(array, offset, length).slice().asReadOnlyBuffer()
+
+  def apply(index: Int): Byte =
+    java.util.Objects.checkIndex(index, length): Unit
+    array(offset + index)
+
+  def toArray: Array[Byte] = java.util.Arrays.copyOfRange(array, offset, offset + length)
+
+object Bytes:
+  val empty: Bytes = Bytes(Array.emptyByteArray, 0, 0)
+
+/** A MessagePack value as it came, at the end of the bytes of its message, to be read by a [[MessageReader]]. */
+final class Received private[skein] (private[rpc] val bytes: Array[Byte], private[rpc] val from: Int):
+  private[rpc] def toArray: Array[Byte] = java.util.Arrays.copyOfRange(bytes, from, bytes.length)
+
+/** Reads one MessagePack value from front to back, straight into what the caller wants: no tree of values is made, and
+  * binary is not copied. Numbers are read from whatever form they came in.
+  */
+final class MessageReader private (bytes: Array[Byte], private var at: Int, end: Int):
+  import MessageReader.Unexpected
+
+  /** How many values follow; each has to be read or skipped. */
+  def array(): Int = header() match
+    case marker if (marker & 0xf0) == 0x90 => marker & 0x0f
+    case 0xdc                              => size(2, least = 1)
+    case 0xdd                              => size(4, least = 1)
+    case other                             => unexpected("an array", other)
+
+  /** How many keys follow, each with its value. */
+  def map(): Int = header() match
+    case marker if (marker & 0xf0) == 0x80 => marker & 0x0f
+    case 0xde                              => size(2, least = 2)
+    case 0xdf                              => size(4, least = 2)
+    case other                             => unexpected("a map", other)
+
+  /** The fields of a map, in whatever order they come. `read` says whether it knows a field and has read its value; others
+    * are skipped.
+    */
+  def fields(read: PartialFunction[String, Unit]): Unit =
+    for _ <- 0 until map() do
+      val key = string()
+      try read.applyOrElse(key, (_: String) => skip())
+      catch case Unexpected(what) => throw Unexpected(s"$key: $what")
+
+  def string(): String =
+    val text = binary()
+    String(bytes, at - text.length, text.length, UTF_8)
+
+  /** Binary, or a string's bytes, as AirSim's sender chooses. */
+  def binary(): Bytes =
+    val length = header() match
+      case marker if (marker & 0xe0) == 0xa0 => marker & 0x1f
+      case 0xc4 | 0xd9                       => size(1, least = 1)
+      case 0xc5 | 0xda                       => size(2, least = 1)
+      case 0xc6 | 0xdb                       => size(4, least = 1)
+      case other                             => unexpected("binary or a string", other)
+    need(length)
+    at += length
+    Bytes(bytes, at - length, length)
+
+  def boolean(): Boolean = header() match
+    case 0xc2  => false
+    case 0xc3  => true
+    case other => unexpected("a boolean", other)
+
+  def long(): Long =
+    val marker = header()
+    if marker < 0x80 || marker >= 0xe0 then marker.toByte.toLong
+    else
+      marker match
+        case 0xcc | 0xd0 => if marker == 0xcc then take(1) else take(1).toByte.toLong
+        case 0xcd | 0xd1 => if marker == 0xcd then take(2) else take(2).toShort.toLong
+        case 0xce | 0xd2 => if marker == 0xce then take(4) else take(4).toInt.toLong
+        case 0xcf | 0xd3 => take(8)
+        case other       => unexpected("an integer", other)
+
+  def int(): Int =
+    val value = long()
+    if value.isValidInt then value.toInt else throw Unexpected(s"expected a 32-bit integer, came $value")
+
+  def double(): Double = peek() match
+    case 0xca =>
+      at += 1
+      intBitsToFloat(take(4).toInt).toDouble
+    case 0xcb =>
+      at += 1
+      longBitsToDouble(take(8))
+    case _ => long().toDouble
+
+  /** An array of numbers; of 32-bit floats, as AirSim sends, at the speed of memory. */
+  def floats(): Array[Float] =
+    val numbers = new Array[Float](array())
+    var i       = 0
+    while i < numbers.length do
+      if end - at >= 5 && bytes(at) == 0xca.toByte then
+        numbers(i) = MessageReader.FloatAt.get(bytes, at + 1): Float
+        at += 5
+      else numbers(i) = double().toFloat
+      i += 1
+    numbers
+
+  def ints(): Array[Int] =
+    val numbers = new Array[Int](array())
+    var i       = 0
+    while i < numbers.length do
+      numbers(i) = int()
+      i += 1
+    numbers
+
+  /** Passes over one value. */
+  def skip(): Unit =
+    var left = 1L
+    while left > 0 do
+      left -= 1
+      header() match
+        case m if m < 0x80 || m >= 0xe0  => ()
+        case m if (m & 0xf0) == 0x80     => left += 2L * (m & 0x0f)
+        case m if (m & 0xf0) == 0x90     => left += m & 0x0f
+        case m if (m & 0xe0) == 0xa0     => pass(m & 0x1f)
+        case 0xc0 | 0xc2 | 0xc3          => ()
+        case 0xc4 | 0xd9                 => pass(size(1, least = 1))
+        case 0xc5 | 0xda                 => pass(size(2, least = 1))
+        case 0xc6 | 0xdb                 => pass(size(4, least = 1))
+        case 0xc7                        => pass(size(1, least = 1) + 1)
+        case 0xc8                        => pass(size(2, least = 1) + 1)
+        case 0xc9                        => pass(size(4, least = 1) + 1)
+        case 0xcc | 0xd0                 => pass(1)
+        case 0xcd | 0xd1                 => pass(2)
+        case 0xca | 0xce | 0xd2          => pass(4)
+        case 0xcb | 0xcf | 0xd3          => pass(8)
+        case m if m >= 0xd4 && m <= 0xd8 => pass(1 + (1 << (m - 0xd4)))
+        case 0xdc                        => left += size(2, least = 1)
+        case 0xdd                        => left += size(4, least = 1)
+        case 0xde                        => left += 2L * size(2, least = 2)
+        case 0xdf                        => left += 2L * size(4, least = 2)
+        case other                       => unexpected("a value", other)
+
+  /** The next value, and all that follows, where it stands. */
+  private[rpc] def rest: Received = Received(bytes, at)
+
+  private[rpc] def isArray: Boolean =
+    val marker = peek()
+    (marker & 0xf0) == 0x90 || marker == 0xdc || marker == 0xdd
+
+  /** One value as it stands, which is passed over. */
+  private[rpc] def raw(): Array[Byte] =
+    val start = at
+    skip()
+    java.util.Arrays.copyOfRange(bytes, start, at)
+
+  private def peek(): Int =
+    need(1)
+    bytes(at) & 0xff
+
+  private def header(): Int =
+    val marker = peek()
+    at += 1
+    marker
+
+  private def take(count: Int): Long =
+    need(count)
+    var value = 0L
+    for i <- 0 until count do value = value << 8 | (bytes(at + i) & 0xff)
+    at += count
+    value
+
+  private def pass(count: Int): Unit =
+    need(count)
+    at += count
+
+  /** A length, of what takes at least so many bytes each: what cannot be there is not allocated for. */
+  private def size(bytesOfSize: Int, least: Int): Int =
+    val length = take(bytesOfSize)
+    if length * least > end - at then
+      throw Unexpected(s"expected $length more values or bytes, came ${end - at} bytes")
+    length.toInt
+
+  private def need(count: Int): Unit =
+    if end - at < count then throw Unexpected(s"expected $count more bytes, came ${end - at}")
+
+  private def unexpected(what: String, marker: Int): Nothing =
+    throw Unexpected(
+      s"expected $what, came a value that begins with 0x${Integer.toHexString(marker | 0x100).drop(1)}"
+    )
+
+object MessageReader:
+  private val FloatAt =
+    java.lang.invoke.MethodHandles.byteArrayViewVarHandle(
+      classOf[Array[Float]],
+      java.nio.ByteOrder.BIG_ENDIAN
+    )
+
+  /** What came is not what `read` asked for. */
+  private[rpc] final case class Unexpected(what: String) extends RuntimeException(what, null, false, false)
+
+  /** What `read` makes of one value, or what it expected and what came. Binary that it gives out stands in these bytes. */
+  def read[A](received: Received)(read: MessageReader => A): Either[String, A] =
+    attempt(read(new MessageReader(received.bytes, received.from, received.bytes.length)))
+
+  private[rpc] def of(bytes: Array[Byte]): MessageReader = new MessageReader(bytes, 0, bytes.length)
+
+  private[rpc] def attempt[A](read: => A): Either[String, A] =
+    try Right(read)
+    catch case Unexpected(what) => Left(what)

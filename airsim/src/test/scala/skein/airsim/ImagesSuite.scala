@@ -1,0 +1,125 @@
+package skein.airsim
+
+import scala.util.Random
+import skein.airsim.wire.{ImageResponse, LidarData, Pose, Quaternionr, Vector3r}
+import skein.rpc.{MessageReader, Mutation, Received, Wire}
+import skein.units.*
+import upack.*
+
+class ImagesSuite extends munit.FunSuite:
+  private val origin = Vector3(10, 20, -1)
+  private val raw    = Shot("front_center")
+  private val depth  = Shot("front_center", ImageKind.DepthPlanar, Encoding.Numbers)
+  private val at     = Instant.ofNanos(123_456_789)
+
+  private val picture = ImageResponse(
+    image_data_uint8 = Array.tabulate(4 * 2 * 3)(_.toByte),
+    camera_position = Vector3r(1, 2, 3),
+    camera_name = "front_center",
+    camera_orientation = Quaternionr(0, 1, 0, 0),
+    time_stamp = at,
+    compress = false,
+    width = 4,
+    height = 2
+  )
+
+  private def received(bytes: Array[Byte]): Received = Received(bytes, 0)
+
+  private def images(bytes: Array[Byte], shots: Shot*): Either[String, (Vector[Image], Instant)] =
+    MessageReader.read(received(bytes))(Images.read(_, shots, origin)).flatMap(identity)
+
+  private def scan(bytes: Array[Byte]): Either[String, (Scan, Instant)] =
+    MessageReader.read(received(bytes))(Images.readScan(_, origin)).flatMap(identity)
+
+  private def sent(pictures: ImageResponse*): Array[Byte] = ImageResponse.encode(pictures).bytes.toArray
+
+  test("a picture is read as it was sent, its camera in the world"):
+    val (read, exposed) = images(sent(picture), raw).fold(fail(_), identity)
+    assertEquals(exposed, at)
+    assertEquals((read.head.width, read.head.height), (4, 2))
+    assertEquals(read.head.positionNed, Vector3(11, 22, 2))
+    assertEquals(read.head.orientation, Quaternion(0, 1, 0, 0))
+    read.head.pixels match
+      case Pixels.Bgr(bytes) => assertEquals(bytes.toArray.toSeq, picture.image_data_uint8.toSeq)
+      case other             => fail(s"$other")
+
+  test("several pictures of one moment come in the order of the shots"):
+    val far = picture.copy(
+      image_data_uint8 = Array.emptyByteArray,
+      image_data_float = Array.tabulate(8)(_ * 0.5f),
+      pixels_as_float = true,
+      image_type = 1
+    )
+    val (read, _) = images(sent(picture, far), raw, depth).fold(fail(_), identity)
+    read(1).pixels match
+      case Pixels.Numbers(values) => assertEquals(values.toSeq, far.image_data_float.toSeq)
+      case other                  => fail(s"$other")
+
+  test(
+    "Cosys-AirSim's further keys, other orders and missing keys are borne, and binary that comes as a string"
+  ):
+    val cosys = Obj(
+      Str("annotation_name")  -> Str(""),
+      Str("height")           -> Int32(2),
+      Str("width")            -> Int32(4),
+      Str("image_data_uint8") -> Str("123456789012345678901234"),
+      Str("image_data_float") -> Arr(Float32(0)),
+      Str("camera_position")  -> Obj(Str("x_val") -> Int32(1), Str("further") -> Arr(Null))
+    )
+    val (read, exposed) = images(Wire.pack(Arr(cosys)), raw).fold(fail(_), identity)
+    assertEquals(read.head.positionNed, Vector3(11, 20, -1))
+    assertEquals(exposed, Instant.Epoch)
+
+  test("a picture that the simulator could not take is told with what it says"):
+    val none = ImageResponse(image_data_uint8 = Array[Byte](0), message = "no such camera", compress = false)
+    assertEquals(
+      images(sent(none), raw),
+      Left(
+        "expected Scene of camera 'front_center' as Raw, came 0 × 0 pixels in 1 bytes and 0 numbers; " +
+          "the simulator says: no such camera"
+      )
+    )
+    assert(images(sent(picture.copy(height = 3)), raw).isLeft)
+    assert(images(sent(picture.copy(width = -4, height = -2)), raw).isLeft)
+    assertEquals(images(sent(picture), raw, raw), Left("expected 2 pictures, came 1"))
+
+  test("a scan is read as it was sent; one number is an empty cloud; ids that do not fit are told"):
+    val cloud = LidarData(
+      at,
+      Array(1, 2, 3, 4, 5, 6),
+      Pose(Vector3r(0, 0, -1), Quaternionr(1, 0, 0, 0)),
+      Array(7, 8)
+    )
+    def bytes(scan: LidarData) = LidarData.encode(scan).bytes.toArray
+    val (read, scanned)        = scan(bytes(cloud)).fold(fail(_), identity)
+    assertEquals((read.points.toSeq, read.segmentation.toSeq), (cloud.point_cloud.toSeq, Seq(7, 8)))
+    assertEquals((read.size, read.positionNed, scanned), (2, Vector3(10, 20, -2), at))
+    assertEquals(
+      scan(bytes(cloud.copy(point_cloud = Array(0), segmentation = Array(0)))).map(_._1.size),
+      Right(0)
+    )
+    assertEquals(
+      scan(bytes(cloud.copy(segmentation = Array(7)))),
+      Left("expected 2 segmentation ids, came 1")
+    )
+    assertEquals(
+      scan(bytes(cloud.copy(point_cloud = Array(1, 2)))),
+      Left("expected x, y, z of each point, came 2 numbers")
+    )
+    val cosys = Obj(Str("point_cloud") -> Arr(), Str("groundtruth") -> Arr(Str("tree")))
+    assertEquals(scan(Wire.pack(cosys)).map(_._1.size), Right(0))
+
+  test("of malformed replies nothing is thrown"):
+    val replies = Vector(
+      (sent(picture, picture), (bytes: Array[Byte]) => images(bytes, raw, raw)),
+      (
+        LidarData.encode(LidarData(at, Array.fill(30)(1f), segmentation = Array.fill(10)(1))).bytes.toArray,
+        scan
+      )
+    )
+    var refused = 0
+    for seed <- 1 to 20_000 do
+      val random        = Random(seed)
+      val (bytes, read) = replies(seed % 2)
+      if read(Mutation.mutated(bytes, random)).isLeft then refused += 1
+    assert(refused > 5_000, refused)

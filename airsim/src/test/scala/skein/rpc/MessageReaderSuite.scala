@@ -1,0 +1,58 @@
+package skein.rpc
+
+import scala.util.Random
+import upack.*
+
+class MessageReaderSuite extends munit.FunSuite:
+
+  private def read[A](bytes: Array[Byte])(by: MessageReader => A): Either[String, A] =
+    MessageReader.read(Received(bytes, 0))(by)
+
+  test("whatever the oracle encodes is passed over to its end"):
+    for seed <- 1 to 500 do
+      val random = Random(seed)
+      val bytes  = Wire.pack(Arr(Wire.randomMsg(random), Int32(77)))
+      val after  = read(bytes): in =>
+        in.array(): Unit
+        in.skip()
+        in.int()
+      assertEquals(after, Right(77), s"seed $seed")
+
+  test("integers are read from every form, floats from integers and doubles too"):
+    val edges = (0 to 62).flatMap(bit => Seq(1L << bit, -(1L << bit), (1L << bit) - 1))
+    for edge <- edges do assertEquals(read(Wire.pack(Int64(edge)))(_.long()), Right(edge))
+    val numbers = Arr(Float32(1.5f), Float64(-2.25), Int32(3), Int32(-4000))
+    assertEquals(read(Wire.pack(numbers))(_.floats().toSeq), Right(Seq(1.5f, -2.25f, 3f, -4000f)))
+
+  test("binary is given where it stands"):
+    val frame  = Wire.pack(Binary(Array[Byte](1, 2, 3)))
+    val binary = read(frame)(_.binary()).fold(fail(_), identity)
+    frame(frame.length - 1) = 9
+    assertEquals(binary.toArray.toSeq, Seq[Byte](1, 2, 9))
+    assert(binary.buffer.isReadOnly)
+    intercept[IndexOutOfBoundsException](binary(3))
+
+  test("what came instead is told, with the field it stood in"):
+    val map = Wire.pack(Obj(Str("width") -> Str("wide")))
+    assertEquals(
+      read(map)(in => in.fields { case "width" => in.int(): Unit }),
+      Left("width: expected an integer, came a value that begins with 0xa4")
+    )
+
+  test("of mutated bytes nothing is thrown, and nothing is allocated that cannot be there"):
+    for seed <- 1 to 20_000 do
+      val random = Random(seed)
+      val bytes  = Mutation.of(random, Mutation.request)
+      for by <- Seq[MessageReader => Any](
+          _.skip(),
+          _.floats(),
+          _.ints(),
+          _.binary(),
+          _.fields { case "a" => () }
+        )
+      do assert(read(bytes)(by).fold(_.nonEmpty, _ => true), s"seed $seed")
+    val huge = Array(0xdd, 0x7f, 0xff, 0xff, 0xff, 1).map(_.toByte)
+    assertEquals(
+      read(huge)(_.floats().length),
+      Left("expected 2147483647 more values or bytes, came 1 bytes")
+    )
