@@ -1,0 +1,39 @@
+package skein.cli
+
+/** Walks all commands: one word means one thing in every one of them. */
+class OptionsAgreeSuite extends munit.FunSuite:
+  private val options: Seq[(Command, CommandOption)] =
+    for command <- Main.commands; option <- command.options yield (command, option)
+
+  private def having(flag: String): Seq[(Command, CommandOption)] = options.filter(_._2.flag == flag)
+
+  test("an option takes a value in every command that has it, or in none, and says what it does"):
+    for (flag, same) <- options.groupBy(_._2.flag) do
+      assertEquals(same.map(_._2.takesValue).distinct.size, 1, flag)
+      for (command, option) <- same do
+        assert(option.summary.length > 5, s"${command.name} $flag")
+        assert(command.help.contains(flag), s"${command.name} $flag")
+
+  test("--out is a folder, and results go nowhere else"):
+    assert(having("--out").sizeIs > 6)
+    for (command, option) <- having("--out") do
+      assert(option.summary.startsWith("folder "), s"${command.name}: ${option.summary}")
+    assertEquals(options.map(_._2.flag).filter(Set("--output", "--folder", "--dir", "-o")), Seq.empty)
+
+  test("what flies is --plant, what predicts is --predictor, and nothing is --model"):
+    assertEquals(having("--model"), Seq.empty)
+    for (command, option) <- having("--plant") do assert(option.summary.startsWith("what flies"), command.name)
+    for (command, option) <- having("--predictor") do assert(option.summary.contains("predicts by"), command.name)
+    assertEquals(having("--plant").map(_._1).intersect(having("--predictor").map(_._1)), Seq.empty)
+
+  test("scenario, settings, seed and loops are asked for in the same words wherever they are"):
+    for flag <- Seq("--set", "--seed") do
+      val words = having(flag).map(_._2.summary.takeWhile(letter => letter != '(' && letter != ',').trim)
+      assertEquals(words.distinct.size, 1, words.toString)
+    for (command, option) <- having("--loop") do assertEquals(option.values, OptionValues.known("loop"), command.name)
+
+  test("every command prints tables as JSON too, but for those that print none"):
+    val plain = Set("serve", "link", "export", "import", "replay", "digest", "new", "completion")
+    for command <- Main.commands if !plain(command.name) do
+      val json = command.options.find(_.flag == "--json")
+      assert(json.exists(_.summary.contains("JSON on standard output")), command.name)
