@@ -9,25 +9,38 @@ import skein.report.SummaryTables
   *
   * What a loaded machine disturbs is how old data grows: each millisecond that its mean age exceeds the twins' is allowed
   * for. It shifts the distribution of ages by about 6 % of its height, and widens the orbit by 0.6 %. On a quiet machine
-  * nothing is left but 2 % of the distance and 0.2 between the distributions. [[checkTwins]] holds full flights to 2 %
-  * without allowance.
+  * nothing is left but 2 % of the distance and 0.2 between the distributions. Where data is older by more than
+  * [[mostExcessMs]], hardly any two distributions would be too far apart: such a flight says nothing. [[checkTwins]] holds
+  * full flights to 2 % without allowance.
   */
 class TwinLiveSuite extends munit.FunSuite:
 
   override val munitTimeout: Duration = 5.minutes
 
+  private val mostExcessMs = 6.0
+
   test(
     "a live flight and its virtual twins decide on data of the same ages and converge to the same distance"
   ):
     // A machine may be busy in other ways than by making data older; it is not so each time.
-    val problems = Iterator.range(0, 3).map(_ => disagreements()).takeWhile(_.nonEmpty).toVector
-    assert(
-      problems.size < 3,
-      problems.mkString("three flights in a row disagree with their twins: ", "; ", "")
-    )
+    val (busy, agreed) = Iterator.continually(compared()).take(3).span(!_.agrees)
+    val flown          = busy.toVector ++ agreed.take(1)
+    // .ci/run counts such lines.
+    if !flown.exists(_.isCalm) then
+      println(s"INCONCLUSIVE: the machine was busy, data older than the twins' by ${flown.map(_.excessMs)} ms")
+    assume(flown.exists(_.isCalm), "inconclusive")
+    assert(flown.exists(_.agrees), s"flights disagree with their twins: ${flown.map(_.problems)}")
 
-  /** What one live flight and its twins do not agree on. */
-  private def disagreements(): Vector[String] =
+  /** @param excessMs
+    *   mean age of data beyond that of the twins
+    * @param problems
+    *   what one live flight and its twins do not agree on
+    */
+  private final case class Compared(excessMs: Double, problems: Vector[String]):
+    def isCalm: Boolean = excessMs <= mostExcessMs
+    def agrees: Boolean = isCalm && problems.isEmpty
+
+  private def compared(): Compared =
     val settings = TwinFlights.settings(List(LoopKind.Stream), seconds = 30)
     val flights  = TwinFlights.fly(settings, twins = 3).fold(fail(_), identity)
     println(SummaryTables.twins(flights).render)
@@ -44,4 +57,4 @@ class TwinLiveSuite extends munit.FunSuite:
     val distance   = Option.when(difference.abs > 0.02 + 0.01 * excessMs)(
       s"$excessMs ms older: ${twin.converged}"
     )
-    apart.toVector ++ distance
+    Compared(excessMs, apart.toVector ++ distance)

@@ -118,5 +118,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite:
       runs(left = 5)(run(profile, distribution)).map: runs =>
         runs.foreach(run => println(s"${profile.name}: $run"))
         val judged = runs.tail.exists(_.calm) || runs.last.matches
-        assume(judged, "the machine is too busy to tell the link's delays from its own")
+        // .ci/run counts such lines.
+        if !judged then println("INCONCLUSIVE: the machine is too busy to tell the link's delays from its own")
+        assume(judged, "inconclusive")
         assert(runs.last.matches, runs)
