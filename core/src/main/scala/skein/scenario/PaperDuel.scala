@@ -15,7 +15,7 @@ import skein.units.*
   */
 final case class PaperDuel(
     pairs: Int = 1,
-    override val asPublished: Boolean = false,
+    asPublished: Boolean = false,
     altitudeM: Double = PaperDuel.AltitudeM
 ) extends Scenario:
   override def name: String  = PaperDuel.Name
@@ -59,6 +59,11 @@ final case class PaperDuel(
   override def crowded(vehicles: Int): PaperDuel = copy(pairs = pairs.max(vehicles / 2))
 
 object PaperDuel:
+  /** Whether loops run as the paper's published code does, which confounds its result. */
+  def isAsPublished(scenario: Scenario): Boolean = scenario match
+    case duel: PaperDuel => duel.asPublished
+    case _               => false
+
   val Name = "duel"
 
   /** The paper's, m. */

@@ -42,9 +42,6 @@ trait Scenario extends Product:
   /** By which pictures tell the vehicles of one role apart: equal numbers, equal colours. */
   def shade(vehicle: Int): Int = (0 until vehicle).count(agents(_).role == agents(vehicle).role)
 
-  /** Whether loops run as the paper's published code does, which confounds its result: for the paper's own game. */
-  def asPublished: Boolean = false
-
   /** The same with at least so many vehicles, where there can be more: for rehearsals. */
   def crowded(vehicles: Int): Scenario = this
 

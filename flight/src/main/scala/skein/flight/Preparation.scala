@@ -15,8 +15,8 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
   import system.dispatcher
 
   /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
-  def place(scenario: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
-    everyVehicle(scenario): (vehicle, agent) =>
+  def place(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+    everyVehicle(fleet): (vehicle, agent) =>
       for
         _ <- call(vehicle.enableApiControl())
         _ <- call(vehicle.arm())
@@ -29,11 +29,11 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
     * straight to a layer of their own, above all starts, and cross over in it when all have come to theirs; when all have
     * crossed over, they go down. So no way crosses another at one altitude.
     */
-  def climb(scenario: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def climb(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
     for
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
-      vehicles <- everyVehicle(scenario)((vehicle, agent) =>
+      vehicles <- everyVehicle(fleet)((vehicle, agent) =>
         Future.successful(
           Starting(
             vehicle,
@@ -71,8 +71,8 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
   private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits): Future[Unit] =
     one.approach.to(goalNed, limits).map(_.fold(error => throw NotReady(error), _ => ()))
 
-  private def everyVehicle[A](scenario: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
-    Future.traverse(scenario.agents): agent =>
+  private def everyVehicle[A](fleet: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
+    Future.traverse(fleet.agents): agent =>
       Multirotor
         .named(client, agent.name)
         .flatMap:

@@ -16,10 +16,10 @@ final case class Memory(headingRad: Double, decidedAt: Option[Instant], decision
   * @param policy
   *   the agent's own, or one in its place
   */
-final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
-  private val agent = scenario.agents(self)
+final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
+  private val agent = fleet.agents(self)
 
-  def this(scenario: Fleet, self: Int) = this(scenario, self, scenario.agents(self).policy)
+  def this(fleet: Fleet, self: Int) = this(fleet, self, fleet.agents(self).policy)
 
   val start: Memory = Memory(agent.startHeading.value, None, 0, policy.start)
 
@@ -54,13 +54,13 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
 
   /** What the vehicle's policy decides upon. */
   def observation(memory: Memory, view: TeamView, now: Instant): Observation =
-    val places = scenario.agents.indices.toVector
+    val places = fleet.agents.indices.toVector
     Observation(
       self,
       places.map(seen(view, now, _)),
       opponentIn(view),
       places.map(place =>
-        Radians(if place == self then memory.headingRad else view.headingRad(place, scenario))
+        Radians(if place == self then memory.headingRad else view.headingRad(place, fleet))
       ),
       elapsed(memory, now),
       memory.decisions,
@@ -84,7 +84,7 @@ final class Decider(scenario: Fleet, self: Int, policy: AgentPolicy):
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 
   private def opponentIn(view: TeamView): Int =
-    scenario.opponentOf(self, view.kinematics(_).positionNed)
+    fleet.opponentOf(self, view.kinematics(_).positionNed)
 
   /** The decision for a course that was chosen, however that was done.
     *

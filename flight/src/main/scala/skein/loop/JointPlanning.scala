@@ -51,10 +51,10 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 object JointPlanning:
 
   /** Absent where nobody plans. */
-  def of(scenario: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
+  def of(fleet: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
     val (vehicles, plannings) =
       (for
-        vehicle  <- scenario.agents.indices.toVector
-        planning <- Plannings.of(scenario, vehicle, settings, seed)
+        vehicle  <- fleet.agents.indices.toVector
+        planning <- Plannings.of(fleet, vehicle, settings, seed)
       yield (vehicle, planning)).unzip
     Option.when(vehicles.nonEmpty)(JointPlanning(vehicles, plannings))

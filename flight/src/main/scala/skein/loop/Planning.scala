@@ -6,9 +6,9 @@ import skein.signal.Kinematics
 import skein.units.*
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
-private abstract class Planning(scenario: Fleet, self: Int):
-  protected val agent: Agent     = scenario.agents(self)
-  protected val decider: Decider = Decider(scenario, self)
+private abstract class Planning(fleet: Fleet, self: Int):
+  protected val agent: Agent     = fleet.agents(self)
+  protected val decider: Decider = Decider(fleet, self)
 
   def planner: PlannerSettings
 
@@ -95,5 +95,5 @@ object Planning:
     PredictedTrack.straight(motion, planner.steps, planner.dtS)
 
   /** The vehicles of which nothing is planned, but for one. */
-  private[loop] def unplanned(scenario: Fleet, but: Int): Vector[Int] =
-    scenario.agents.indices.toVector.filter(other => other != but && !plans(scenario.agents(other)))
+  private[loop] def unplanned(fleet: Fleet, but: Int): Vector[Int] =
+    fleet.agents.indices.toVector.filter(other => other != but && !plans(fleet.agents(other)))

@@ -10,9 +10,9 @@ private object Plannings:
     * @param seed
     *   of the search's random numbers
     */
-  def of(scenario: Fleet, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
-    val agent = scenario.agents(self)
+  def of(fleet: Fleet, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
+    val agent = fleet.agents(self)
     Option.when(Planning.plans(agent)):
       agent.policy match
-        case goal: GoalPolicy => TeamPlanning(scenario, self, goal, settings, seed)
-        case _                => PursuitPlanning(scenario, self, settings, seed)
+        case goal: GoalPolicy => TeamPlanning(fleet, self, goal, settings, seed)
+        case _                => PursuitPlanning(fleet, self, settings, seed)

@@ -13,8 +13,8 @@ import skein.units.*
   *
   * In its place the vehicle's own policy decides within the turn limit.
   */
-private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSettings, seed: Long)
-    extends Planning(scenario, self):
+private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSettings, seed: Long)
+    extends Planning(fleet, self):
   import Planning.{motion, straight}
   private val speed    = agent.speed.value
   private val response = settings.responseAt(-agent.startPositionNed.z)
@@ -37,11 +37,11 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
   def regardsTeam: Boolean = leastM > 0
 
   def pose(memory: Memory, view: TeamView, now: Instant): Part =
-    val opponent = scenario.opponentOf(self, view.kinematics(_).positionNed)
+    val opponent = fleet.opponentOf(self, view.kinematics(_).positionNed)
     val stream   = Planning.stream(seed, self, memory)
     val others   =
-      if settings.apartM > 0 then Planning.unplanned(scenario, but = self)
-      else if regardsTeam then Planning.unplanned(scenario, but = opponent)
+      if settings.apartM > 0 then Planning.unplanned(fleet, but = self)
+      else if regardsTeam then Planning.unplanned(fleet, but = opponent)
       else Vector.empty
     val situation = Situation(
       motion(view.kinematics(self)),
@@ -53,9 +53,9 @@ private final class PursuitPlanning(scenario: Fleet, self: Int, settings: PlanSe
     )
     Part(objective, situation, stream)
 
-  private def target(opponent: Int, motion: Motion): Target = scenario.agents(opponent).policy match
+  private def target(opponent: Int, motion: Motion): Target = fleet.agents(opponent).policy match
     case paper: PaperEvader =>
-      Target.paperEvader(motion, response, scenario.agents(opponent).speed.value, paper)
+      Target.paperEvader(motion, response, fleet.agents(opponent).speed.value, paper)
     case _ => Target.Along(straight(motion, planner))
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1

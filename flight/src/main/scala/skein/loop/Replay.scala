@@ -13,18 +13,18 @@ import skein.units.*
   * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
   * against and the heading chosen. The memory from decision to decision is the replay's own.
   */
-final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings = PlanSettings()):
+final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = PlanSettings()):
   import Replay.*
 
-  private val rows     = Rows(scenario)
+  private val rows     = Rows(fleet)
   private val paused   = recording.flight.isPaused
-  private val indexOf  = scenario.agents.map(_.name).zipWithIndex.toMap
+  private val indexOf  = fleet.agents.map(_.name).zipWithIndex.toMap
   private val readings =
     if paused then recording.readings.map(read => read.copy(state = PausedLoop.timeless(read.state)))
     else recording.readings
   private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val heard      =
-    scenario.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name).map(message)))
+    fleet.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name).map(message)))
   private val sighted  = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
   private val measured = recording.measurements
     .map(read => (read.vehicle, read.sensor, read.sequence) -> read)
@@ -44,8 +44,8 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
 
   private val joint = Option
     .when(recording.flight.loopKind.contains(LoopKind.Plan))(())
-    .flatMap(_ => JointPlanning.of(scenario, planning, recording.flight.seed))
-  private val planners = joint.fold(Vector.empty)(_.vehicles).map(scenario.agents(_).name)
+    .flatMap(_ => JointPlanning.of(fleet, planning, recording.flight.seed))
+  private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 
   /** Decisions made together, by their time and vehicle. */
   private val together =
@@ -58,11 +58,11 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
 
   /** The first decision that comes out differently. */
   def firstDifference: Option[Difference] =
-    val states = scenario.agents.indices.toVector.map: self =>
-      val decider = Decider(scenario, self)
+    val states = fleet.agents.indices.toVector.map: self =>
+      val decider = Decider(fleet, self)
       DecisionState(decider, decider.start)
     val jointly =
-      joint.map(planning => JointDecisionState(planning, planning.vehicles.map(Decider(scenario, _).start)))
+      joint.map(planning => JointDecisionState(planning, planning.vehicles.map(Decider(fleet, _).start)))
     whole.iterator
       .scanLeft((Minds(states, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
         again(state._1, recorded) match
@@ -140,7 +140,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       sensed   <- sensed(recorded, self)
       others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
     yield
-      val empty = TeamView.empty(scenario.agents.size)
+      val empty = TeamView.empty(fleet.agents.size)
       val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
       val known = empty.copy(
         readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),
@@ -150,7 +150,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
       )
       val possible = views(known, recorded)
       possible
-        .find(view => scenario.opponentOf(self, view.kinematics(_).positionNed) == other)
+        .find(view => fleet.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
 
   /** What the vehicle's sensors had said. */
@@ -176,13 +176,13 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
 
   /** Who decided where a deadline was missed. */
   private def instead(self: Int): Decider =
-    fallback.policy(scenario.agents(self)).fold(Decider(scenario, self))(Decider(scenario, self, _))
+    fallback.policy(fleet.agents(self)).fold(Decider(fleet, self))(Decider(fleet, self, _))
 
   /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
   private def othersSeen(of: DecisionRow, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
-    val rest = scenario.agents.indices.filter(index => index != self && index != opponent)
+    val rest = fleet.agents.indices.filter(index => index != self && index != opponent)
     rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
-      val name = scenario.agents(vehicle).name
+      val name = fleet.agents(vehicle).name
       for
         readings <- soFar
         sighting <- sightingOf(of, name).toRight(
@@ -202,7 +202,7 @@ final class Replay(scenario: Fleet, recording: Recording, planning: PlanSettings
     */
   private def views(known: TeamView, recorded: DecisionRow): Vector[TeamView] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
-    val others   = scenario.agents.indices.filter(known.readings(_).isEmpty).toVector
+    val others   = fleet.agents.indices.filter(known.readings(_).isEmpty).toVector
     val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))
     for
       moment <- (earliest +: moments).distinct

@@ -18,19 +18,19 @@ import skein.vehicle.Setpoint
 
 /** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
 final class Team(
-    val scenario: Fleet,
+    val fleet: Fleet,
     crafts: Vector[VehiclePort],
     clock: Clock,
     recorder: Recorder,
     val settings: LoopSettings,
     workers: PlanWorkers = PlanWorkers.none
 )(using ExecutionContext):
-  require(crafts.size == scenario.agents.size, "one craft per agent")
-  for missing <- Team.missingSensor(scenario, crafts) do throw IllegalArgumentException(missing)
+  require(crafts.size == fleet.agents.size, "one craft per agent")
+  for missing <- Team.missingSensor(fleet, crafts) do throw IllegalArgumentException(missing)
 
   val vehicles: Range  = crafts.indices
-  private val deciders = vehicles.map(Decider(scenario, _))
-  val log: TeamLog     = TeamLog(scenario, deciders, clock, recorder)
+  private val deciders = vehicles.map(Decider(fleet, _))
+  val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
   // `futures` asks one vehicle from several threads at once.
   private val asked = AtomicLongArray(crafts.size)
@@ -53,7 +53,7 @@ final class Team(
           Left(error)
 
   private val sensors = vehicles.toVector.flatMap: vehicle =>
-    scenario.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
+    fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
       TeamSensor(vehicle, name, crafts(vehicle).sensors(name), log)
 
   /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles are asked a
@@ -175,7 +175,7 @@ final class Team(
         .fromMaterializer: (materializer, _) =>
           given system: ActorSystem = materializer.system
           val policies              = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
-          decideWithin(vehicle, deadline.within, deadline.otherwise.policy(scenario.agents(vehicle))):
+          decideWithin(vehicle, deadline.within, deadline.otherwise.policy(fleet.agents(vehicle))):
             case (memory, (view, now)) => Future(decideAt(vehicle, memory, view, now))(using policies)
         .mapMaterializedValue(_ => NotUsed)
 
@@ -204,7 +204,7 @@ final class Team(
   )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
     type Seen = (TeamView, Instant)
     val otherwise = instead.fold(Otherwise.Hold()): fallback =>
-      val decider = Decider(scenario, vehicle, fallback)
+      val decider = Decider(fleet, vehicle, fallback)
       Otherwise.Ask((memory: Memory, seen: Seen) =>
         decider.decide(memory, seen._1, seen._2)
       )
@@ -222,7 +222,7 @@ final class Team(
       .via(Tap(log.decided(_)))
 
   /** How the decisions of those vehicles are planned that plan. */
-  val planning: Option[JointPlanning] = JointPlanning.of(scenario, settings.planning, settings.seed)
+  val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
 
   /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned. */
   def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
@@ -347,22 +347,22 @@ final class Team(
 
   private def setpoint(move: Move): Setpoint =
     move.action.fold {
-      val velocity = scenario.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
+      val velocity = fleet.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
       Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
     }(Acting.setpoint)
 
   private def action(decision: Decision): Action =
     decision.action.getOrElse:
       import decision.vehicle
-      val velocity = scenario.agents(vehicle).velocityNed(decision.heading.value, decision.speed)
+      val velocity = fleet.agents(vehicle).velocityNed(decision.heading.value, decision.speed)
       Action.VelocityAt(velocity.x, velocity.y, altitude(vehicle))
 
   /** Whose predictions are held against readings by a decider: where each of a team predicts all, its own. */
-  private def verified(decider: Int): Int => Boolean = scenario.agents(decider).policy match
+  private def verified(decider: Int): Int => Boolean = fleet.agents(decider).policy match
     case _: Policy => _ => true
     case _         => _ == decider
 
-  private def altitude(vehicle: Int): Metres = Metres(scenario.agents(vehicle).startPositionNed.z)
+  private def altitude(vehicle: Int): Metres = Metres(fleet.agents(vehicle).startPositionNed.z)
 
 object Team:
 

@@ -9,8 +9,8 @@ import skein.record.{Acknowledgement, Event, EventKind, Planned, Prediction, Rec
 import skein.units.*
 
 /** Tells a recorder what happens to a team in flight. */
-final class TeamLog(scenario: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
-  private val rows = Rows(scenario)
+final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
+  private val rows = Rows(fleet)
 
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))

@@ -10,12 +10,12 @@ import skein.units.*
   * The separation planned for is wider than the set one by [[PlanSettings.Doubt]].
   */
 private final class TeamPlanning(
-    scenario: Fleet,
+    fleet: Fleet,
     self: Int,
     policy: GoalPolicy,
     settings: PlanSettings,
     seed: Long
-) extends Planning(scenario, self):
+) extends Planning(fleet, self):
   import Planning.{motion, straight}
   private val response = settings.responseAt(-agent.startPositionNed.z)
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
@@ -46,7 +46,7 @@ private final class TeamPlanning(
     val others  =
       if minimumM == 0 then Vector.empty
       else
-        Planning.unplanned(scenario, but = self).map(other =>
+        Planning.unplanned(fleet, but = self).map(other =>
           straight(motion(view.kinematics(other)), planner)
         )
     val along = PredictedTrack(IArray.from(wanted.map(_._1)), IArray.from(wanted.map(_._2)))

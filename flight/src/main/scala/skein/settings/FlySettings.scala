@@ -67,7 +67,7 @@ final case class FlySettings(
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
       )
-    if scenario.asPublished then timely.asPublished else timely
+    if PaperDuel.isAsPublished(scenario) then timely.asPublished else timely
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
     * that they do not meet the same delays; flights that differ in the policy alone have the same seed.

@@ -16,8 +16,8 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
   def policy: Policy = family.policy(parameters)
 
   /** The scenario with this policy for all agents of its role. */
-  def flownIn(scenario: Fleet): Fleet =
-    Fleet(scenario.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
+  def flownIn(fleet: Fleet): Fleet =
+    Fleet(fleet.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
 
   /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
   def text: String =

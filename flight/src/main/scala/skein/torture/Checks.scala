@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, Recording}
+import skein.scenario.PaperDuel
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -119,7 +120,7 @@ object Checks:
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =
-      if seen.ordeal.scenario.asPublished then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
+      if PaperDuel.isAsPublished(seen.ordeal.scenario) then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(
       Option.when(

@@ -2,6 +2,7 @@ package skein.torture
 
 import skein.loop.LoopKind
 import skein.record.{Decision, Reading}
+import skein.scenario.PaperDuel
 import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -17,7 +18,7 @@ private[torture] object KnowledgeChecks:
         case LoopKind.Paused                       => Vector.empty
         case LoopKind.Futures                      => notAtOnce(seen, told)
         case LoopKind.Sequential                   => notAtOnce(seen, told) ++ outdated(seen, told)
-        case _ if seen.ordeal.scenario.asPublished => backwards(seen)
+        case _ if PaperDuel.isAsPublished(seen.ordeal.scenario) => backwards(seen)
         case _                                     => outdated(seen, told) ++ backwards(seen)
       ,
       agesWrong(seen)

@@ -12,6 +12,7 @@ import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.RpcClient
+import skein.scenario.PaperDuel
 import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -90,7 +91,7 @@ object TortureFlight:
           )
         crafts       = multirotors.map(WatchedVehicle(_, clock))
         stepper      = WatchedTime(AirSimTime(client))
-        loopSettings = if ordeal.scenario.asPublished then LoopSettings().asPublished else LoopSettings()
+        loopSettings = if PaperDuel.isAsPublished(ordeal.scenario) then LoopSettings().asPublished else LoopSettings()
         team         = Team(scenario, crafts, clock, recorder, loopSettings)
         flight       =
           Flight.start(ordeal.loop, team, Some(stepper), ordeal.duration, clock, recorder)

@@ -42,10 +42,10 @@ final case class Duel(pursuer: Duelist, evader: Duelist, durationS: Double = 60.
 
 object Duel:
   /** The duel of a scenario with one pursuer and one evader. */
-  def of(scenario: Fleet, durationS: Double = 60.0): Duel =
-    require(scenario.agents.size == 2, s"a duel has two agents, this scenario ${scenario.agents.size}")
+  def of(fleet: Fleet, durationS: Double = 60.0): Duel =
+    require(fleet.agents.size == 2, s"a duel has two agents, this fleet ${fleet.agents.size}")
     def the(role: Role) =
-      val agent = scenario.agents.find(_.role == role).get
+      val agent = fleet.agents.find(_.role == role).get
       Duelist.of(agent).copy(policy = agent.duelPolicy)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 

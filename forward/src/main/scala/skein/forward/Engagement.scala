@@ -44,11 +44,11 @@ object Engagement:
   val Most = 64
 
   /** The agents of a scenario, under its own assignment. */
-  def of(scenario: Fleet, durationS: Double = 60.0): Engagement =
+  def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
     Engagement(
-      scenario.agents.map(Duelist.of),
-      scenario.agents.map(_.role),
-      scenario.assignment,
+      fleet.agents.map(Duelist.of),
+      fleet.agents.map(_.role),
+      fleet.assignment,
       durationS
     )
 
