@@ -22,15 +22,18 @@ class OptionsAgreeSuite extends munit.FunSuite:
 
   test("what flies is --plant, what predicts is --predictor, and nothing is --model"):
     assertEquals(having("--model"), Seq.empty)
-    for (command, option) <- having("--plant") do assert(option.summary.startsWith("what flies"), command.name)
-    for (command, option) <- having("--predictor") do assert(option.summary.contains("predicts by"), command.name)
+    for (command, option) <- having("--plant") do
+      assert(option.summary.startsWith("what flies"), command.name)
+    for (command, option) <- having("--predictor") do
+      assert(option.summary.contains("predicts by"), command.name)
     assertEquals(having("--plant").map(_._1).intersect(having("--predictor").map(_._1)), Seq.empty)
 
   test("scenario, settings, seed and loops are asked for in the same words wherever they are"):
     for flag <- Seq("--set", "--seed") do
       val words = having(flag).map(_._2.summary.takeWhile(letter => letter != '(' && letter != ',').trim)
       assertEquals(words.distinct.size, 1, words.toString)
-    for (command, option) <- having("--loop") do assertEquals(option.values, OptionValues.known("loop"), command.name)
+    for (command, option) <- having("--loop") do
+      assertEquals(option.values, OptionValues.known("loop"), command.name)
 
   test("every command prints tables as JSON too, but for those that print none"):
     val plain = Set("serve", "link", "export", "import", "replay", "digest", "new", "completion")

@@ -27,7 +27,9 @@ class TwinLiveSuite extends munit.FunSuite:
     val flown          = busy.toVector ++ agreed.take(1)
     // .ci/run counts such lines.
     if !flown.exists(_.isCalm) then
-      println(s"INCONCLUSIVE: the machine was busy, data older than the twins' by ${flown.map(_.excessMs)} ms")
+      println(
+        s"INCONCLUSIVE: the machine was busy, data older than the twins' by ${flown.map(_.excessMs)} ms"
+      )
     assume(flown.exists(_.isCalm), "inconclusive")
     assert(flown.exists(_.agrees), s"flights disagree with their twins: ${flown.map(_.problems)}")
 

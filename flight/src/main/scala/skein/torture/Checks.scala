@@ -120,7 +120,8 @@ object Checks:
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =
-      if PaperDuel.isAsPublished(seen.ordeal.scenario) then RowsPerSecond + 20 * seen.vehicles.size else RowsPerSecond
+      if PaperDuel.isAsPublished(seen.ordeal.scenario) then RowsPerSecond + 20 * seen.vehicles.size
+      else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(
       Option.when(

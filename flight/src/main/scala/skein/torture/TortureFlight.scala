@@ -91,9 +91,10 @@ object TortureFlight:
           )
         crafts       = multirotors.map(WatchedVehicle(_, clock))
         stepper      = WatchedTime(AirSimTime(client))
-        loopSettings = if PaperDuel.isAsPublished(ordeal.scenario) then LoopSettings().asPublished else LoopSettings()
-        team         = Team(scenario, crafts, clock, recorder, loopSettings)
-        flight       =
+        loopSettings =
+          if PaperDuel.isAsPublished(ordeal.scenario) then LoopSettings().asPublished else LoopSettings()
+        team   = Team(scenario, crafts, clock, recorder, loopSettings)
+        flight =
           Flight.start(ordeal.loop, team, Some(stepper), ordeal.duration, clock, recorder)
         _         = ordeal.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
         restarted = Future.traverse(ordeal.restarts)(restart =>

@@ -85,7 +85,7 @@ class OrdealSuite extends munit.FunSuite:
       )
     do often(what, 0.3)(ordeal => of(ordeal.meddling) > 0)
     often("a file", 0.1)(_.isFiled)
-    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(_.scenario.asPublished)
+    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(each => PaperDuel.isAsPublished(each.scenario))
 
   test("mischief is bounded, so that flights still have something to show"):
     for ordeal <- ordeals do
@@ -103,7 +103,7 @@ class OrdealSuite extends munit.FunSuite:
         case LoopKind.Sequential | LoopKind.Futures => 3
         case _                                      => 10
       assert(pairs(ordeal) >= 1 && pairs(ordeal) <= most, ordeal.toString)
-      assert(!ordeal.scenario.asPublished || ordeal.loop == LoopKind.Stream, ordeal.toString)
+      assert(!PaperDuel.isAsPublished(ordeal.scenario) || ordeal.loop == LoopKind.Stream, ordeal.toString)
     val streams = ordeals.filter(_.loop == LoopKind.Stream)
     often("one pair", 0.6 + 0.4 / 10, streams)(pairs(_) == 1)
     assertEquals(streams.map(pairs).distinct.sorted, (1 to 10).toSeq)
