@@ -26,7 +26,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
       Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)
     )
 
-  /** What a call came to nothing by.
+  /** Records why a call failed.
     *
     * @param what
     *   was called

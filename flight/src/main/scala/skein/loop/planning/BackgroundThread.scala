@@ -35,7 +35,8 @@ object BackgroundThread:
   /** Makes the calling thread give way; says whether the system did so. */
   private[planning] def giveWay(): Boolean = isLinux && giveWay(CallingThread)
 
-  /** Makes the threads give way that compile the program while it runs: for when most of it is compiled.
+  /** Lowers the JVM's compiler threads to the scheduler's idle class. Call it after a warm-up, when most of the program is
+    * compiled.
     *
     * @return
     *   how many the system made do so
