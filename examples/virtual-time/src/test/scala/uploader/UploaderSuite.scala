@@ -1,5 +1,6 @@
 package uploader
 
+import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
@@ -8,26 +9,52 @@ import scala.concurrent.duration.*
 import skein.vtime.VirtualTime
 
 class UploaderSuite extends munit.FunSuite:
+  test("an hour without the server loses nothing, and everything has arrived soon after"):
+    val TwoHours(received, took, inVain, waiting) = TwoHours.of(seed = 1)
+    assertEquals(received, (0 until 72_000).toVector)
+    assert(took < 2.hours + 10.seconds, s"took $took")
+    assert(inVain >= 10 && inVain <= Uploader.Attempts, s"asked $inVain times in vain")
+    assert(waiting.map(_._2).max > 36_000 && waiting.last._2 < 100, waiting.last.toString)
 
-  /** Ten samples a second for two hours; the server is away from the 10th to the 70th minute.
-    *
-    * @return
-    *   what the server has received, after how long, and how often it was asked in vain
-    */
-  private def day(seed: Long): (Seq[Int], FiniteDuration, Int) =
+  test("the same seed gives the same two hours, to the nanosecond"):
+    assertEquals(TwoHours.of(seed = 5).took.toNanos, TwoHours.of(seed = 5).took.toNanos)
+
+/** Ten samples a second; the server is away from the 10th to the 70th minute.
+  *
+  * @param received
+  *   by the server
+  * @param inVain
+  *   how often it was asked so
+  * @param waiting
+  *   minutes, and how many samples the server had not received, as a batch came
+  */
+final case class TwoHours(
+    received: Vector[Int],
+    took: FiniteDuration,
+    inVain: Int,
+    waiting: Vector[(Double, Double)]
+)
+
+object TwoHours:
+  def of(seed: Long): TwoHours =
     var received = Vector.empty[Int]
+    var waiting  = Vector.empty[(Double, Double)]
     var inVain   = 0
     val run      = VirtualTime.run(seed): system =>
       given ActorSystem                         = system
       val clock                                 = VirtualTime.clock(system)
       val start                                 = clock()
       def upload(batch: Seq[Int]): Future[Unit] =
-        val minute = (clock() - start).nanos.toMinutes
+        val seconds = (clock() - start) * 1e-9
+        val minute  = seconds / 60
+        def late    = (minute, 10 * seconds - received.size)
         if minute >= 10 && minute < 70 then
           inVain += 1
           Future.never
         else
+          waiting :+= late
           received ++= batch
+          waiting :+= late
           after(50.millis)(Future.unit)
       Source
         .tick(0.seconds, 100.millis, ())
@@ -37,13 +64,18 @@ class UploaderSuite extends munit.FunSuite:
         .take(72_000)
         .via(Uploader(upload))
         .runWith(Sink.seq)
-    (received, run.duration, inVain)
+    TwoHours(received, run.duration, inVain, waiting)
 
-  test("an hour without the server loses nothing, and everything has arrived soon after"):
-    val (received, took, inVain) = day(seed = 1)
-    assertEquals(received, (0 until 72_000).toVector)
-    assert(took < 2.hours + 10.seconds, s"took $took")
-    assert(inVain >= 10 && inVain <= Uploader.Attempts, s"asked $inVain times in vain")
-
-  test("the same seed gives the same two hours, to the nanosecond"):
-    assertEquals(day(seed = 5)._2.toNanos, day(seed = 5)._2.toNanos)
+/** `./sbtw "virtualTime/Test/runMain uploader.draw"` draws the README's picture. */
+@main def draw(): Unit =
+  val points = TwoHours.of(seed = 1).waiting.map((minute, samples) => f"${60 + minute * 5}%.1f,${260 - samples / 200}%.1f")
+  val svg    =
+    s"""<svg xmlns="http://www.w3.org/2000/svg" width="720" height="300" font-family="sans-serif" font-size="12">
+       |<rect width="720" height="300" fill="#fff"/><rect x="110" y="60" width="300" height="200" fill="#f0f0f0"/>
+       |<line x1="60" y1="260" x2="660" y2="260" stroke="#ccc"/><text x="50" y="264" text-anchor="end">0</text>
+       |<text x="50" y="84" text-anchor="end">36,000</text><text x="260" y="55" text-anchor="middle">no server</text>
+       |<polyline fill="none" stroke="#009e73" stroke-width="2" points="${points.mkString(" ")}"/>
+       |<text x="360" y="290" text-anchor="middle">samples that wait, over two hours</text>
+       |</svg>
+       |""".stripMargin
+  println(s"drawn in ${Files.writeString(Path.of("backlog.svg"), svg)}")
