@@ -1,11 +1,9 @@
 package skein.cli
 
-import java.io.IOException
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.budget.*
 import skein.optimise.Objective
-import skein.plot.{Png, Svg}
 import skein.policy.PolicyFamily
 import skein.record.LoopKind
 import skein.scenario.Scenarios
@@ -217,20 +215,9 @@ final class BudgetCommand(using scenarios: Scenarios)
         )
 
   private def write(maps: Vector[BudgetMap], folder: Path): Either[String, Vector[Path]] =
-    val drawing                 = BudgetFigure(maps)
-    val painted                 = Png.bytes(drawing)
-    def file(extension: String) = folder.resolve(s"map.$extension")
-    val contents                = Vector(
-      file("svg") -> Svg.file(drawing, "latency budget").getBytes("UTF-8"),
-      file("csv") -> (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString(
-        "",
-        "\n",
-        "\n"
-      ).getBytes("UTF-8"),
-      file("json") -> BudgetMap.json(maps).getBytes("UTF-8")
-    ) ++ painted.toOption.map(file("png") -> _)
-    try
-      for (path, bytes) <- contents do Files.write(path, bytes)
-      painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
-      Right(contents.map(_._1))
-    catch case failed: IOException => Left(s"--out: cannot write into $folder: ${failed.getMessage}")
+    val csv = (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString("", "\n", "\n")
+    OutFolder.write(
+      folder,
+      OutFolder.picture("map", BudgetFigure(maps), "latency budget") :+
+        OutFolder.text("map.csv", csv) :+ OutFolder.text("map.json", BudgetMap.json(maps))
+    )

@@ -1,12 +1,10 @@
 package skein.cli
 
-import java.io.IOException
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.figures.ResponseFigure
 import skein.identify.*
 import skein.measure.FlownVehicles
-import skein.plot.{Png, Svg}
 import skein.record.{Recording, RecordingReader}
 import skein.report.{Section, TextTable}
 import skein.scenario.PaperDuel
@@ -188,18 +186,9 @@ object IdentifyCommand
       fit: Fit,
       flights: Vector[Flown]
   ): Either[String, Vector[Path]] =
-    val drawing                   = ResponseFigure(fit.identification.model, flights.take(MostPanels))
-    val description               = "Measured and modelled velocity over time, and residuals"
-    def beside(extension: String) = out.resolve(s"model.$extension")
-    try
-      Files.writeString(beside("conf"), model): Unit
-      Files.writeString(beside("svg"), Svg.file(drawing, description)): Unit
-      val image = Png.bytes(drawing, scale = 2) match
-        case Left(reason) =>
-          Console.err.println(s"skein identify: no PNG: $reason")
-          Vector.empty
-        case Right(bytes) =>
-          Files.write(beside("png"), bytes): Unit
-          Vector(beside("png"))
-      Right(Vector(beside("conf"), beside("svg")) ++ image)
-    catch case error: IOException => Left(s"cannot write into $out: ${error.getMessage}")
+    val drawing     = ResponseFigure(fit.identification.model, flights.take(MostPanels))
+    val description = "Measured and modelled velocity over time, and residuals"
+    OutFolder.write(
+      out,
+      OutFolder.text("model.conf", model) +: OutFolder.picture("model", drawing, description, scale = 2)
+    )

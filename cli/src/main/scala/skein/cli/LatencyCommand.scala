@@ -1,7 +1,5 @@
 package skein.cli
 
-import java.io.IOException
-import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.Sink
@@ -11,7 +9,6 @@ import skein.airsim.AirSimClient
 import skein.figures.LatencyFigure
 import skein.link.*
 import skein.measure.{Distribution, Numbers}
-import skein.plot.{Drawing, Png, Svg}
 import skein.report.{Section, TextHistogram, TextTable}
 import skein.rpc.RpcClient
 import skein.signal.LatencyProfile
@@ -57,7 +54,7 @@ object LatencyCommand
       roundTrips = answers.collect { case Success(roundTrip) => roundTrip.toMillis }
       samples <- Distribution.of(roundTrips).toRight(s"no ping was answered: ${failures.mkString("; ")}")
       drawing <- LatencyFigure(Seq(profile.name -> samples)).toRight("nothing to draw")
-      files   <- write(drawing, s"Round trips to $simulator", folder)
+      files <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
     yield
       val shown = Shown(options.json.value)
       val table = quantileTable(profile, samples)
@@ -125,17 +122,3 @@ object LatencyCommand
   private def quantiles(at: Double => Double): Vector[String] = probabilities.map(p => fixed(at(p / 100.0)))
 
   private def fixed(ms: Double): String = Numbers.fixed(ms, if ms < 10 then 2 else 1)
-
-  /** The files written. */
-  private def write(drawing: Drawing, description: String, folder: Path): Either[String, Seq[Path]] =
-    val (svg, png) = (folder.resolve("latency.svg"), folder.resolve("latency.png"))
-    try
-      Files.writeString(svg, Svg.file(drawing, description)): Unit
-      Png.bytes(drawing) match
-        case Left(reason) =>
-          Console.err.println(s"skein latency: no PNG: $reason")
-          Right(Seq(svg))
-        case Right(bytes) =>
-          Files.write(png, bytes): Unit
-          Right(Seq(svg, png))
-    catch case error: IOException => Left(s"cannot write the pictures: $error")

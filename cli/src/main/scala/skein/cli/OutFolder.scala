@@ -1,7 +1,9 @@
 package skein.cli
 
 import java.io.IOException
+import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{FileSystemException, Files, Path}
+import skein.plot.{Drawing, Png, Svg}
 
 /** Folders that commands write into. */
 private[cli] object OutFolder:
@@ -27,6 +29,27 @@ private[cli] object OutFolder:
           Left(s"$option: cannot write into the folder $folder: ${reason(failed)}")
         case failed: IOException =>
           Left(s"$option: cannot write into the folder $folder: ${failed.getMessage}")
+
+  /** Writes files by their names.
+    *
+    * @return
+    *   where they are, or why not, in a line
+    */
+  def write(folder: Path, files: Seq[(String, Array[Byte])]): Either[String, Vector[Path]] =
+    try Right(files.toVector.map((name, bytes) => Files.write(folder.resolve(name), bytes)))
+    catch case failed: IOException => Left(s"cannot write into $folder: $failed")
+
+  def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
+
+  /** `NAME.svg` and, where this machine can paint, `NAME.png`; where it cannot, that is said.
+    *
+    * @param scale
+    *   pixels for a unit of the drawing
+    */
+  def picture(name: String, drawing: Drawing, title: String, scale: Double = 3): Vector[(String, Array[Byte])] =
+    val painted = Png.bytes(drawing, scale)
+    painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
+    text(s"$name.svg", Svg.file(drawing, title)) +: painted.toOption.map(s"$name.png" -> _).toVector
 
   private def reason(failed: FileSystemException): String =
     val what = Option(failed.getReason).getOrElse:

@@ -1,13 +1,11 @@
 package skein.cli
 
-import java.io.IOException
 import java.nio.file.{Files, Path}
 import java.time.LocalDateTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import skein.lanes.DuelBatch
 import skein.optimise.{CmaEs, SearchState}
-import skein.plot.{Png, Svg}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
 import skein.search.*
@@ -227,12 +225,12 @@ final class SearchCommand(using scenarios: Scenarios)
     val fresh  = setup.question.fresh.getOrElse(effort.freshEpisodes).min(most)
     val result = SearchResult.measured(setup, batch, state, fresh)
     for
-      _ <- write(folder.resolve("policy.conf"), result.file.getBytes("UTF-8"))
+      file <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <-
         if state.isDone then landscape(setup, batch, folder, result, effort.within(fresh), shown)
         else Right(Vector.empty)
-    yield say(shown, s"written: ${(folder.resolve("policy.conf") +: pictures).mkString(", ")}")
+    yield say(shown, s"written: ${(file ++ pictures).mkString(", ")}")
 
   private def landscape(
       setup: SearchSetup,
@@ -255,21 +253,10 @@ final class SearchCommand(using scenarios: Scenarios)
     val unit    = setup.objective.unit
     val drawing =
       LandscapeFigure(land, title, setup.objective.formula + (if unit.isEmpty then "" else s", $unit"))
-    val svg = folder.resolve("landscape.svg")
-    val csv = folder.resolve("landscape.csv")
-    val png = folder.resolve("landscape.png")
-    for
-      _ <- write(svg, Svg.file(drawing, title).getBytes("UTF-8"))
-      _ <- write(csv, land.csv.getBytes("UTF-8"))
-      painted = Png.bytes(drawing)
-      _ <- painted.fold(reason => Right(say(shown, s"no PNG: $reason")), bytes => write(png, bytes))
-    yield Vector(svg, csv) ++ painted.toOption.map(_ => png)
-
-  private def write(file: Path, bytes: Array[Byte]): Either[String, Unit] =
-    try
-      val _ = Files.write(file, bytes)
-      Right(())
-    catch case failed: IOException => Left(s"cannot write $file: $failed")
+    OutFolder.write(
+      folder,
+      OutFolder.picture("landscape", drawing, title) :+ OutFolder.text("landscape.csv", land.csv)
+    )
 
   private def brief(value: Double): String = PolicyFile.brief(value)
 

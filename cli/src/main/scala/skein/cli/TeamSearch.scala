@@ -1,10 +1,8 @@
 package skein.cli
 
-import java.io.IOException
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import skein.lanes.TeamBatch
 import skein.optimise.SearchState
-import skein.plot.{Png, Svg}
 import skein.search.*
 import skein.settings.PolicyFile.brief
 
@@ -57,10 +55,10 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
     val fresh  = if state.isDone then setup.question.fresh else setup.question.fresh.min(FreshEpisodes)
     val result = TeamSearchResult.measured(setup, batch, state, fresh)
     for
-      _ <- write("scenario.conf", result.file.getBytes("UTF-8"))
+      file <- OutFolder.write(folder, Seq(OutFolder.text("scenario.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <- if state.isDone then landscape(batch, result) else Right(Vector.empty)
-    yield say(s"written: ${(folder.resolve("scenario.conf") +: pictures).mkString(", ")}")
+    yield say(s"written: ${(file ++ pictures).mkString(", ")}")
 
   private def landscape(batch: TeamBatch, result: TeamSearchResult): Either[String, Vector[Path]] =
     say("drawing the landscape")
@@ -76,20 +74,10 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
       s"${setup.kind.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
     val drawing =
       LandscapeFigure(land, title, setup.formula + (if setup.unit.isEmpty then "" else s", ${setup.unit}"))
-    for
-      svg <- write("landscape.svg", Svg.file(drawing, title).getBytes("UTF-8"))
-      csv <- write("landscape.csv", land.csv.getBytes("UTF-8"))
-      painted = Png.bytes(drawing)
-      png <- painted.fold(
-        reason => Right { say(s"no PNG: $reason"); None },
-        bytes => write("landscape.png", bytes).map(Some(_))
-      )
-    yield Vector(svg, csv) ++ png
-
-  private def write(name: String, bytes: Array[Byte]): Either[String, Path] =
-    val file = folder.resolve(name)
-    try Right(Files.write(file, bytes))
-    catch case failed: IOException => Left(s"cannot write $file: $failed")
+    OutFolder.write(
+      folder,
+      OutFolder.picture("landscape", drawing, title) :+ OutFolder.text("landscape.csv", land.csv)
+    )
 
   private def say(text: String): Unit = shown.say(lines(text))
 
