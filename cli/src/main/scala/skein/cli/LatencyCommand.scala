@@ -54,7 +54,7 @@ object LatencyCommand
       roundTrips = answers.collect { case Success(roundTrip) => roundTrip.toMillis }
       samples <- Distribution.of(roundTrips).toRight(s"no ping was answered: ${failures.mkString("; ")}")
       drawing <- LatencyFigure(Seq(profile.name -> samples)).toRight("nothing to draw")
-      files <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
+      files   <- OutFolder.write(folder, OutFolder.picture("latency", drawing, s"Round trips to $simulator"))
     yield
       val shown = Shown(options.json.value)
       val table = quantileTable(profile, samples)

@@ -46,7 +46,12 @@ private[cli] object OutFolder:
     * @param scale
     *   pixels for a unit of the drawing
     */
-  def picture(name: String, drawing: Drawing, title: String, scale: Double = 3): Vector[(String, Array[Byte])] =
+  def picture(
+      name: String,
+      drawing: Drawing,
+      title: String,
+      scale: Double = 3
+  ): Vector[(String, Array[Byte])] =
     val painted = Png.bytes(drawing, scale)
     painted.left.foreach(reason => Console.err.println(s"no PNG: $reason"))
     text(s"$name.svg", Svg.file(drawing, title)) +: painted.toOption.map(s"$name.png" -> _).toVector

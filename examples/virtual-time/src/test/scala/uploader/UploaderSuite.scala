@@ -68,8 +68,10 @@ object TwoHours:
 
 /** `./sbtw "virtualTime/Test/runMain uploader.draw"` draws the README's picture. */
 @main def draw(): Unit =
-  val points = TwoHours.of(seed = 1).waiting.map((minute, samples) => f"${60 + minute * 5}%.1f,${260 - samples / 200}%.1f")
-  val svg    =
+  val points = TwoHours.of(seed = 1).waiting.map((minute, samples) =>
+    f"${60 + minute * 5}%.1f,${260 - samples / 200}%.1f"
+  )
+  val svg =
     s"""<svg xmlns="http://www.w3.org/2000/svg" width="720" height="300" font-family="sans-serif" font-size="12">
        |<rect width="720" height="300" fill="#fff"/><rect x="110" y="60" width="300" height="200" fill="#f0f0f0"/>
        |<line x1="60" y1="260" x2="660" y2="260" stroke="#ccc"/><text x="50" y="264" text-anchor="end">0</text>
