@@ -47,7 +47,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
-    .aggregate(mcap, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
+    .aggregate(mcap, view, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -124,6 +124,12 @@ lazy val record = project
   .dependsOn(core, mcap % "compile->compile;test->test")
   .settings(libraryDependencies ++= duckdb +: (pekkoStream ++ munit))
 
+/** What a browser and Foxglove see of a flight, over WebSockets. */
+lazy val view = project
+  .settings(artifact("view", "Flights in the browser and in Foxglove, live and replayed"))
+  .dependsOn(record % "compile->compile;test->test")
+  .settings(libraryDependencies ++= Seq(httpCore, upickle) ++ pekkoStream ++ munit)
+
 /** The loops; flights put together, live and in virtual time, and through faults. */
 lazy val flight = project
   .settings(artifact("flight", "Control loops, and flights put together"))
@@ -134,7 +140,7 @@ lazy val flight = project
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test")
+  .dependsOn(flight % "compile->compile;test->test", view)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

@@ -10,6 +10,7 @@ object Dependencies {
   val pekkoStream   = pekkoModules("actor", "stream")
   val pekkoTyped    = pekkoModules("actor-typed")
   val pekkoLog      = pekkoModules("slf4j")
+  val httpCore      = "org.apache.pekko"      %% "pekko-http-core"      % "1.3.0"
   val streamTestkit = "org.apache.pekko"      %% "pekko-stream-testkit" % pekkoVersion % Test
   val upickle       = "com.lihaoyi"           %% "upickle"              % "4.4.3"
   val msgpackOracle = "org.msgpack"            % "msgpack-core"         % "0.9.11"     % Test

@@ -11,11 +11,12 @@ import skein.flight.{FlightRigs, Landed, LiveFlights, ProgressBoard, VirtualFlig
 import skein.link.{Address, TcpTransport}
 import skein.loop.Outcome
 import skein.measure.FlightSet
-import skein.record.{ClockKind, RecordError}
+import skein.record.{ClockKind, Heading, Record, RecordError}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
+import skein.view.{Feed, LiveShow, Shows}
 
 /** Options of `./skein fly`. */
 final case class FlyOptions(
@@ -34,6 +35,7 @@ final case class FlyOptions(
     twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String],
+    view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -55,10 +57,12 @@ final class FlyCommand(using Scenarios)
       flown     <- clock match
         case ClockKind.Real =>
           for
-            _     <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
-            _     <- OpenFiles.enoughFor(settings.plans.size)
-            _     <- warmUp(settings)
-            flown <- flyLive(settings, simulator, out)
+            _ <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
+            _ <- OpenFiles.enoughFor(settings.plans.size)
+            _ <- warmUp(settings)
+            shows = Shows()
+            flown <-
+              options.view.serving(shows)(flyLive(settings, simulator, out, observed(options.view, shows)))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case ClockKind.Virtual if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
@@ -83,6 +87,14 @@ final class FlyCommand(using Scenarios)
   private def defaultFolder: String =
     s"flights/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
 
+  /** Puts each flight on show as it begins. */
+  private def observed(options: ViewOptions, shows: Shows)(heading: Heading): Record => Unit =
+    if !options.view.value then _ => ()
+    else
+      val feed = Feed()
+      shows.add(LiveShow(heading, feed))
+      feed.offer
+
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-warm-up")
     try
@@ -98,42 +110,53 @@ final class FlyCommand(using Scenarios)
   private def flyLive(
       settings: FlySettings,
       simulator: Option[Address],
-      out: Path
+      out: Path,
+      observe: Heading => Record => Unit
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator, tell = tell)
     try
-      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out).map(Flown(_, None))
-      else flyInTurn(rigs, settings, out)
+      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out, observe).map(Flown(_, None))
+      else flyInTurn(rigs, settings, out, observe)
     finally
       val _ = Edge.await(system.terminate())
 
   /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
-  private def flyInTurn(rigs: FlightRigs, settings: FlySettings, out: Path)(using
-      system: ActorSystem
-  ): Either[String, Flown] =
+  private def flyInTurn(
+      rigs: FlightRigs,
+      settings: FlySettings,
+      out: Path,
+      observe: Heading => Record => Unit
+  )(using system: ActorSystem): Either[String, Flown] =
     val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
       if before.grounded.isDefined then before
       else if Edge.isInterrupted then
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
       else
         Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(rigs, Vector(plan), settings, out) match
+        flyTogether(rigs, Vector(plan), settings, out, observe) match
           case Left(reason)  => before.copy(grounded = Some(reason))
           case Right(landed) => before.copy(landed = before.landed ++ landed)
     flown.grounded match
       case Some(reason) if flown.landed.isEmpty => Left(reason)
       case _                                    => Right(flown)
 
-  private def flyTogether(rigs: FlightRigs, plans: Vector[FlightPlan], settings: FlySettings, out: Path)(using
-      system: ActorSystem
-  ): Either[String, Vector[Landed]] =
+  private def flyTogether(
+      rigs: FlightRigs,
+      plans: Vector[FlightPlan],
+      settings: FlySettings,
+      out: Path,
+      observe: Heading => Record => Unit
+  )(using system: ActorSystem): Either[String, Vector[Landed]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()
     def abandon() = abandoned.trySuccess(Left(s"${plans.head.id}: ended from outside before it began")): Unit
     Edge
       .untilInterrupted(() => abandon()):
-        Edge.await(Future.firstCompletedOf(Seq(LiveFlights.start(rigs, plans, out), abandoned.future)))
+        Edge.await(Future.firstCompletedOf(Seq(
+          LiveFlights.start(rigs, plans, out, observe),
+          abandoned.future
+        )))
       .map: flights =>
         val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
         val timer =

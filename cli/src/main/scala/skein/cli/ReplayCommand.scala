@@ -2,12 +2,15 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
+import scala.concurrent.Promise
 import skein.flight.{FlownAgain, Replayed}
-import skein.record.Difference
+import skein.record.{Difference, RecordingReader}
 import skein.scenario.Scenarios
+import skein.view.{RecordedShow, Shows}
 
 /** Options of `./skein replay`. */
 final case class ReplayOptions(
+    view: ViewOptions,
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String]
 )
@@ -15,7 +18,7 @@ final case class ReplayOptions(
 final class ReplayCommand(using Scenarios)
     extends OptionsCommand[ReplayOptions](
       "replay",
-      "decides again what a recording decided, and shows whether the same comes out",
+      "decides again what a recording decided, and shows whether the same comes out; with --view, plays it",
       ParserForClass[ReplayOptions]
     ):
 
@@ -26,10 +29,28 @@ final class ReplayCommand(using Scenarios)
         (),
         "expected recordings, came none: ./skein replay FILE…"
       )
-      same <- options.files.value.foldLeft[Either[String, Boolean]](Right(true)): (soFar, file) =>
-        soFar.flatMap(same => replay(file).map(same && _))
-      _ <- Either.cond(same, (), "not the same")
+      _ <- if options.view.view.value then play(options) else replayAll(options.files.value)
     yield ()
+
+  /** To be looked at, until Ctrl-C. */
+  private def play(options: ReplayOptions): Either[String, Unit] =
+    val shows = Shows()
+    for
+      _ <- options.files.value.foldLeft[Either[String, Unit]](Right(())): (soFar, file) =>
+        soFar.flatMap(_ => RecordingReader.records(Path.of(file)).left.map(_.message)).map(rows =>
+          shows.add(RecordedShow.of(rows))
+        )
+      _ <- options.view.serving(shows):
+        val ended = Promise[Either[String, Unit]]()
+        Console.err.println("Ctrl-C ends it")
+        Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
+    yield ()
+
+  private def replayAll(files: Seq[String]): Either[String, Unit] =
+    files
+      .foldLeft[Either[String, Boolean]](Right(true)): (soFar, file) =>
+        soFar.flatMap(same => replay(file).map(same && _))
+      .flatMap(Either.cond(_, (), "not the same"))
 
   private def replay(file: String): Either[String, Boolean] =
     Replayed

@@ -5,7 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
-import skein.record.DuckDbRecorder
+import skein.record.{DuckDbRecorder, Heading, ObservedRecorder, Record}
 import skein.settings.FlightPlan
 
 /** Flights in real time, side by side, each with a recording of its own in `folder`. */
@@ -24,15 +24,20 @@ object LiveFlights:
 
   /** Starts all flights, or none.
     *
+    * @param observe
+    *   is shown every record of a flight that begins with a heading; it must not wait for anything
     * @return
     *   or why they cannot be flown; those that had started were stopped again
     */
-  def start(rigs: FlightRigs, plans: Vector[FlightPlan], folder: Path)(using
-      system: ActorSystem
-  ): Future[Either[String, LiveFlights]] =
+  def start(
+      rigs: FlightRigs,
+      plans: Vector[FlightPlan],
+      folder: Path,
+      observe: Heading => Record => Unit = _ => _ => ()
+  )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
     Future
-      .sequence(plans.map(start(rigs, _, folder)))
+      .sequence(plans.map(start(rigs, _, folder, observe)))
       .flatMap: started =>
         val flying = started.collect { case Right(rig) => rig }
         started.collectFirst { case Left(reason) => reason } match
@@ -45,17 +50,21 @@ object LiveFlights:
                 flying.foreach(rig => unmade(rig.plan.file(folder)))
                 Left(reason)
 
-  private def start(rigs: FlightRigs, plan: FlightPlan, folder: Path)(using
-      system: ActorSystem
-  ): Future[Either[String, FlightRig]] =
+  private def start(
+      rigs: FlightRigs,
+      plan: FlightPlan,
+      folder: Path,
+      observe: Heading => Record => Unit
+  )(using system: ActorSystem): Future[Either[String, FlightRig]] =
     import system.dispatcher
+    val heading = rigs.heading(plan, clockKind = "real")
     DuckDbRecorder
-      .open(plan.file(folder), rigs.heading(plan, clockKind = "real"))
+      .open(plan.file(folder), heading)
       .flatMap:
         case Left(error)     => Future.successful(Left(error.message))
         case Right(recorder) =>
           rigs
-            .start(plan, recorder)
+            .start(plan, ObservedRecorder(recorder, observe(heading)))
             .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
             .flatMap:
               case Left(reason) =>

@@ -8,7 +8,7 @@ import skein.units.*
   * body, front, right, down. Times in messages are when physics was sampled, on the controller's clock, as far as the
   * offset of the simulator's was known by then.
   */
-private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset: Span):
+private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset: Option[Span]):
   import FoxgloveViews.*
 
   private val colours = vehicles.zipWithIndex.map((name, at) => name -> colour(at)).toMap
@@ -17,33 +17,34 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
 
   /** Before the first row. */
   def opening(at: Instant): Vector[View] =
-    val world = Json.obj(
-      "transforms" -> Json.array(Vector(transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)))
-    )
-    View("/tf_static", "foxglove.FrameTransforms", world) +: vehicles.map: name =>
-      val drawn = entity(at, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
-      View(s"/vehicles/$name/body", "foxglove.SceneUpdate", scene(drawn))
+    def world = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
+    View(FixedFrames, () => Json.obj("transforms" -> Json.array(Vector(world)))) +: vehicles.map: name =>
+      def drawn = entity(at, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
+      View(bodyOf(name), () => scene(drawn))
 
   def of(record: Record): Vector[View] = record match
     case reading: Reading =>
-      val at    = reading.state.validAt + offset
-      val state = reading.state.value
-      val name  = reading.vehicle
-      val moved = transform(at, "world_ned", name, state.positionNed, state.orientation)
-      val pose  = Json.obj(
-        "timestamp" -> time(at),
-        "frame_id"  -> "\"world_ned\"",
-        "pose"      -> placed(state.positionNed, state.orientation)
-      )
+      // As long as nothing better is known, as if the first reading had taken no time.
+      val ahead = offset.getOrElse(reading.state.receivedAt.since(reading.state.validAt))
+      offset = Some(ahead)
+      val at     = reading.state.validAt + ahead
+      val state  = reading.state.value
+      val name   = reading.vehicle
+      def moved  = transform(at, "world_ned", name, state.positionNed, state.orientation)
+      def placed = pose(at, state.positionNed, state.orientation)
       Vector(
-        View("/tf", "foxglove.FrameTransforms", Json.obj("transforms" -> Json.array(Vector(moved)))),
-        View(s"/vehicles/$name/pose", "foxglove.PoseInFrame", pose)
+        View(Frames, () => Json.obj("transforms" -> Json.array(Vector(moved)))),
+        View(poseOf(name), () => placed)
       ) ++ trail(name, at, state.positionNed)
     case decision: Decision =>
-      decision.trueAge.foreach(age => offset = age.clockOffset)
-      Vector.empty
+      decision.trueAge.foreach(age => offset = Some(age.clockOffset))
+      val name = decision.vehicle
+      decision.predicted.toVector.map: expected =>
+        val at   = expected.actsAt + offset.getOrElse(Span.Zero)
+        val from = decision.own.state.value.positionNed
+        View(predictionOf(name), () => scene(carried(name, at, from, expected.ownPositionNed)))
     case event: Event =>
-      val log = Json.obj(
+      def log = Json.obj(
         "timestamp" -> time(event.at),
         "level"     -> Warning,
         "message"   -> Json.string(s"${event.kind}: ${event.detail}"),
@@ -51,7 +52,7 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
         "file"      -> "\"\"",
         "line"      -> "0"
       )
-      Vector(View("/log", "foxglove.Log", log))
+      Vector(View(Log, () => log))
     case _ => Vector.empty
 
   /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it at once. */
@@ -61,18 +62,30 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
     Option.when(at.since(trail.shownAt) >= TrailEvery):
       trail.shownAt = at
       trail.points.dropWhileInPlace((passed, _) => at.since(passed) > TrailLength): Unit
-      val line = Json.obj(
-        "type"            -> LineStrip,
-        "pose"            -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
-        "thickness"       -> "2",
-        "scale_invariant" -> "true",
-        "points"          -> Json.array(trail.points.map((_, point) => xyz(point))),
-        "color"           -> colours.getOrElse(name, colour(0)),
-        "colors"          -> "[]",
-        "indices"         -> "[]"
-      )
-      val drawn = entity(at, "world_ned", s"$name trail", lines = Vector(line))
-      View(s"/vehicles/$name/trail", "foxglove.SceneUpdate", scene(drawn))
+      val points = trail.points.toVector.map(_._2)
+      def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
+      View(trailOf(name), () => scene(drawn))
+
+  /** From where a vehicle was read to where it is expected when the command acts. */
+  private def carried(name: String, at: Instant, from: Vector3, to: Vector3) =
+    val there = Json.obj(
+      "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
+      "size"  -> xyz(Vector3(0.5, 0.5, 0.5)),
+      "color" -> colours.getOrElse(name, colour(0))
+    )
+    val way = line(name, Vector(from, to), thickness = 4)
+    entity(at, "world_ned", s"$name prediction", cubes = Vector(there), lines = Vector(way))
+
+  private def line(name: String, points: Vector[Vector3], thickness: Int) = Json.obj(
+    "type"            -> LineStrip,
+    "pose"            -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
+    "thickness"       -> thickness.toString,
+    "scale_invariant" -> "true",
+    "points"          -> Json.array(points.map(xyz)),
+    "color"           -> colours.getOrElse(name, colour(0)),
+    "colors"          -> "[]",
+    "indices"         -> "[]"
+  )
 
   private def body(name: String) = Json.obj(
     "pose"  -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
@@ -90,8 +103,24 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
   )
 
 private[record] object FoxgloveViews:
-  /** A message for a topic. */
-  final case class View(topic: String, schema: String, json: String)
+  /** A message for a topic; its JSON is made when it is wanted. */
+  final case class View(topic: String, json: () => String)
+
+  private val FixedFrames                = "/tf_static"
+  private val Frames                     = "/tf"
+  private val Log                        = "/log"
+  private def bodyOf(name: String)       = s"/vehicles/$name/body"
+  private def poseOf(name: String)       = s"/vehicles/$name/pose"
+  private def trailOf(name: String)      = s"/vehicles/$name/trail"
+  private def predictionOf(name: String) = s"/vehicles/$name/prediction"
+
+  /** Every topic with the name of its schema. */
+  def topics(vehicles: Vector[String]): Vector[(String, String)] =
+    Vector(FixedFrames, Frames).map(_ -> "foxglove.FrameTransforms") ++
+      vehicles.map(poseOf(_) -> "foxglove.PoseInFrame") ++
+      vehicles.flatMap(name => Vector(bodyOf(name), trailOf(name), predictionOf(name))).map(
+        _ -> "foxglove.SceneUpdate"
+      ) :+ (Log -> "foxglove.Log")
 
   private final class Trail(var shownAt: Instant):
     val points: mutable.ArrayBuffer[(Instant, Vector3)] = mutable.ArrayBuffer.empty
@@ -125,6 +154,12 @@ private[record] object FoxgloveViews:
 
   private def placed(position: Vector3, orientation: Quaternion) =
     Json.obj("position" -> xyz(position), "orientation" -> wxyz(orientation))
+
+  private def pose(at: Instant, position: Vector3, orientation: Quaternion) = Json.obj(
+    "timestamp" -> time(at),
+    "frame_id"  -> "\"world_ned\"",
+    "pose"      -> placed(position, orientation)
+  )
 
   private def transform(
       at: Instant,

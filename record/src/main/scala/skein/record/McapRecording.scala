@@ -21,7 +21,6 @@ import skein.units.*
   * sampled is in the message.
   */
 object McapRecording:
-  private val Topic = "/skein/"
   private val About = "skein"
 
   /** Writes the file, or replaces it. Blocks; holds the whole recording in memory. */
@@ -35,36 +34,16 @@ object McapRecording:
 
   private def write(rows: Vector[(Long, Record)], mcap: McapWriter): Unit =
     val channels = Channels(mcap)
-    val views = FoxgloveViews(rows.collect { case (_, vehicle: Vehicle) => vehicle.name }, firstOffset(rows))
-    var known =
-      rows.iterator.flatMap((_, record) => knownAt(record)).nextOption().getOrElse(Instant.ofNanos(0))
+    val names    = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
+    val from     =
+      rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
+        Instant.ofNanos(0)
+      )
+    val topics = FlightTopics(names, from, Some(firstOffset(rows)))
     mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
-    // Also what has no rows has a topic, so that a layout finds all of them in every flight.
-    Table.all.foreach(table => channels.named(table): Unit)
-    channels.named("/log", "foxglove.Log"): Unit
-    views.opening(known).foreach(channels.put(_, known, known))
-    rows.foreach: (number, record) =>
-      known = knownAt(record).getOrElse(known)
-      val published = publishedAt(record).getOrElse(known)
-      channels.put(Table.of(record), JsonRow.of(number, record), known, published)
-      views.of(record).foreach(channels.put(_, known, published))
-
-  /** When it was known to the controller, if it says so. */
-  private def knownAt(record: Record): Option[Instant] = record match
-    case reading: Reading        => Some(reading.state.receivedAt)
-    case measured: Measurement   => Some(measured.receivedAt)
-    case decision: Decision      => Some(decision.decidedAt)
-    case command: Command        => Some(command.sentAt)
-    case answer: Acknowledgement => Some(answer.endedAt)
-    case latency: Latency        => Some(latency.sentAt + latency.roundTrip)
-    case event: Event            => Some(event.at)
-    case ending: Ending          => Some(ending.at)
-    case _                       => None
-
-  private def publishedAt(record: Record): Option[Instant] = record match
-    case prediction: Prediction => Some(prediction.madeAt)
-    case latency: Latency       => Some(latency.sentAt)
-    case _                      => None
+    FlightTopics.all(names).foreach(channels.add)
+    topics.opening.foreach(channels.put)
+    rows.foreach((number, record) => topics.of(number, record).foreach(channels.put))
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
@@ -75,34 +54,27 @@ object McapRecording:
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
 
-  /** Names schemas and channels as they come. */
   private final class Channels(mcap: McapWriter):
     private val schemas  = mutable.Map.empty[String, Int]
     private val channels = mutable.Map.empty[String, Int]
     private val counts   = mutable.Map.empty[Int, Int].withDefaultValue(0)
 
-    def named(table: Table[?]): Int = named(Topic + table.name, s"skein.${table.name}", JsonRow.schema(table))
-
-    def named(topic: String, foxglove: String): Int = named(topic, foxglove, FoxgloveSchemas.all(foxglove))
-
-    def put(table: Table[?], json: String, known: Instant, published: Instant): Unit =
-      put(named(table), json, known, published)
-
-    def put(view: FoxgloveViews.View, known: Instant, published: Instant): Unit =
-      put(named(view.topic, view.schema), view.json, known, published)
-
-    private def named(topic: String, name: String, schema: => String): Int =
-      channels.getOrElseUpdate(
-        topic,
-        mcap.channel(
-          topic,
-          "json",
-          schemas.getOrElseUpdate(name, mcap.schema(name, "jsonschema", Bytes.utf8(schema)))
-        )
+    def add(topic: Topic): Unit =
+      val schema = schemas.getOrElseUpdate(
+        topic.schemaName,
+        mcap.schema(topic.schemaName, "jsonschema", Bytes.utf8(topic.schema))
       )
+      channels(topic.name) = mcap.channel(topic.name, "json", schema)
 
-    private def put(channel: Int, json: String, known: Instant, published: Instant): Unit =
-      mcap.message(channel, counts(channel), known.toNanos.max(0), published.toNanos.max(0), Bytes.utf8(json))
+    def put(message: FlightMessage): Unit =
+      val channel = channels(message.topic)
+      mcap.message(
+        channel,
+        counts(channel),
+        message.known.toNanos.max(0),
+        message.published.toNanos.max(0),
+        Bytes.utf8(message.json)
+      )
       counts(channel) += 1
 
   /** Makes a recording of what `write` wrote; equal contents, so an equal [[Digest]]. Blocks; needs room for the rows as
@@ -143,8 +115,8 @@ object McapRecording:
             case Right(Parsed.Found(metadata: McapRecord.Metadata, _, _)) => otherFormat(file, metadata)
             case Right(Parsed.Found(message: McapRecord.Message, _, _))   =>
               val topic = records.channel(message.channelId).fold("")(_.topic)
-              if topic.startsWith(Topic) then
-                val name = topic.drop(Topic.length)
+              if topic.startsWith(FlightTopics.Prefix) then
+                val name = topic.drop(FlightTopics.Prefix.length)
                 if tables.contains(name) then
                   val out = outs.getOrElseUpdate(name, Files.newBufferedWriter(folder.resolve(s"$name.json")))
                   out.write(message.data.utf8)

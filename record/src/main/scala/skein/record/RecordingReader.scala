@@ -32,7 +32,7 @@ object RecordingReader:
         .flatMap(_.toRight(RecordError.NotARecording(file, "its table 'flight' is empty")))
 
   /** Every record with its row number, in that order. Blocks. */
-  private[record] def records(file: Path): Either[RecordError, Vector[(Long, Record)]] =
+  def records(file: Path): Either[RecordError, Vector[(Long, Record)]] =
     withRecording(file): connection =>
       RecordingFile.attempt(RecordError.NotARecording(file, _)):
         Table.all.flatMap(_.readNumbered(connection)).sortBy(_._1)

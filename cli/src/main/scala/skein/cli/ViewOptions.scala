@@ -1,0 +1,58 @@
+package skein.cli
+
+import java.util.concurrent.Executors
+import mainargs.{Flag, ParserForClass, arg}
+import scala.concurrent.ExecutionContext
+import skein.loop.planning.BackgroundThread
+import skein.units.Clock
+import skein.view.{Shows, ViewServer}
+
+/** Whether and where a flight can be looked at. */
+final case class ViewOptions(
+    @arg(doc = "shows it in the browser and in Foxglove, at an address that is printed")
+    view: Flag,
+    @arg(
+      name = "view-port",
+      doc = "where --view listens, on this machine alone; 8765 unless given, 0 for any that is free"
+    )
+    viewPort: Option[Int],
+    @arg(
+      name = "view-origin",
+      doc =
+        "a site whose pages may look, too, for example https://app.foxglove.dev; may be given several times"
+    )
+    viewOrigin: Seq[String]
+):
+  /** Serves `shows` while `body` runs, if that is wanted. */
+  def serving[A](shows: Shows)(body: => Either[String, A]): Either[String, A] =
+    if !view.value then body
+    else
+      val port = viewPort.getOrElse(ViewServer.DefaultPort)
+      if port < 0 || port > 65535 then Left(s"--view-port: expected 0 to 65535, came $port")
+      else
+        // Flights come first: viewers have a processor while nobody else wants it.
+        val threads = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-view"))
+        try
+          Edge.await(
+            ViewServer
+              .start(
+                shows,
+                Clock.system,
+                ExecutionContext.fromExecutorService(threads),
+                port,
+                viewOrigin.toSet
+              )
+              .map(Right(_))(using ExecutionContext.parasitic)
+              .recover { case error => Left(s"--view-port: cannot listen on $port: ${error.getMessage}") }(
+                using ExecutionContext.parasitic
+              )
+          ).flatMap: server =>
+            Console.err.println(
+              s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}"
+            )
+            try body
+            finally Edge.await(server.close()): Unit
+        finally threads.shutdown()
+
+object ViewOptions:
+  given ParserForClass[ViewOptions] = ParserForClass[ViewOptions]

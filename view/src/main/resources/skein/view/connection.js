@@ -1,0 +1,55 @@
+// Foxglove's WebSocket protocol, as far as the page needs it; messages are JSON.
+
+const protocols = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
+const statuses = ["playing", "paused", "buffering", "ended"];
+
+/** Connects, again after a second where the connection ends, and subscribes to what is wanted.
+ *  @param on info(serverInfo), row(topic, row, logNs), time(ns), playback(state), warning(id, text), closed() */
+export function connect(path, wanted, on) {
+  let socket, ended = false, timer;
+  const open = () => {
+    const topics = new Map();
+    socket = new WebSocket(`ws://${location.host}${path}`, protocols);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }) => typeof data === "string" ? text(JSON.parse(data), topics) : bytes(data, topics);
+    socket.onclose = () => { if (!ended) { on.closed(); timer = setTimeout(open, 1000); } };
+  };
+  const text = (message, topics) => {
+    if (message.op === "serverInfo") on.info(message);
+    else if (message.op === "status") on.warning(message.id, message.message);
+    else if (message.op === "advertise") {
+      const chosen = message.channels.filter(channel => wanted(channel.topic));
+      for (const { id, topic } of chosen) topics.set(id, topic);
+      socket.send(JSON.stringify({ op: "subscribe", subscriptions: chosen.map(({ id }) => ({ id, channelId: id })) }));
+    }
+  };
+  const bytes = (buffer, topics) => {
+    const view = new DataView(buffer);
+    switch (view.getUint8(0)) {
+      case 1: {
+        const row = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 13)));
+        on.row(topics.get(view.getUint32(1, true)), row, view.getBigUint64(5, true));
+        break;
+      }
+      case 2: on.time(view.getBigUint64(1, true)); break;
+      case 5: on.playback({
+        status: statuses[view.getUint8(1)], now: view.getBigUint64(2, true), speed: view.getFloat32(10, true), seeked: view.getUint8(14) === 1,
+      });
+    }
+  };
+  open();
+  return {
+    close() { ended = true; clearTimeout(timer); socket.close(); },
+    /** Plays or stands, and jumps where a time is given. */
+    play(playing, speed, seekNs) {
+      if (socket.readyState !== WebSocket.OPEN) return;
+      const request = new DataView(new ArrayBuffer(19));
+      request.setUint8(0, 3);
+      request.setUint8(1, playing ? 0 : 1);
+      request.setFloat32(2, speed, true);
+      request.setUint8(6, seekNs === undefined ? 0 : 1);
+      request.setBigUint64(7, seekNs ?? 0n, true);
+      socket.send(request.buffer);
+    },
+  };
+}

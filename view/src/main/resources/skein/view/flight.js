@@ -1,0 +1,132 @@
+// What is known of one flight: from rows, in their order. Times are seconds since its first row.
+
+const trailS = 20, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
+
+const colours = ["#d1495b", "#1f6fb2", "#2a9d5c", "#b8860b", "#7b4fa3", "#0f8b8d", "#c1666b", "#4d648d"];
+
+export class Flight {
+  constructor() {
+    this.heading = undefined;
+    this.startNs = undefined;
+    this.now = 0;
+    this.vehicles = new Map();
+    this.events = [];
+    this.eventCount = 0;
+    this.ending = undefined;
+    this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series() };
+    this.unacknowledged = new Map();
+  }
+
+  seconds(ns) {
+    this.startNs ??= ns;
+    return Number(ns - this.startNs) / 1e9;
+  }
+
+  /** Takes a row of one of the recording's tables. */
+  row(table, row, logNs) {
+    const at = this.seconds(logNs);
+    const vehicle = row.vehicle === undefined ? undefined : this.vehicle(row.vehicle);
+    switch (table) {
+      case "flight": this.heading = row; break;
+      case "vehicle": Object.assign(this.vehicle(row.name), { role: row.role }); break;
+      case "reading": {
+        if (vehicle.at !== undefined && at < vehicle.at) break;
+        vehicle.at = at;
+        vehicle.north = row.positionNorthM; vehicle.east = row.positionEastM; vehicle.down = row.positionDownM;
+        vehicle.velocityNorth = row.velocityNorthMps; vehicle.velocityEast = row.velocityEastMps;
+        vehicle.trail.push([at, vehicle.north, vehicle.east]);
+        while (vehicle.trail.length && vehicle.trail[0][0] < at - trailS) vehicle.trail.shift();
+        this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);
+        this.measure(at);
+        break;
+      }
+      case "decision":
+        vehicle.decided = at;
+        vehicle.heading = row.headingRad;
+        vehicle.predicted = row.actsAtNs === undefined ? undefined
+          : { north: row.ownPredictedPositionNorthM, east: row.ownPredictedPositionEastM };
+        vehicle.ageMs = row.ownTrueAgeMs ?? row.ownAgeMs;
+        this.series.age.put(at, this.line(vehicle), vehicle.ageMs);
+        break;
+      case "command":
+        vehicle.command = { north: row.velocityNorthMps, east: row.velocityEastMps };
+        break;
+      case "prediction":
+        vehicle.errorM = row.errorM;
+        this.series.error.put(at, this.line(vehicle), row.errorM);
+        break;
+      case "event":
+        this.eventCount++;
+        this.events.unshift({ at, kind: row.kind, vehicle: row.vehicle ?? "", detail: row.detail });
+        this.events.length = Math.min(this.events.length, mostEvents);
+        break;
+      case "ending": this.ending = row; break;
+    }
+  }
+
+  /** The smallest distance between any two. */
+  measure(at) {
+    const placed = [...this.vehicles.values()].filter(vehicle => vehicle.north !== undefined);
+    let nearest = Infinity;
+    for (let i = 0; i < placed.length; i++)
+      for (let j = i + 1; j < placed.length; j++)
+        nearest = Math.min(nearest, Math.hypot(placed[i].north - placed[j].north, placed[i].east - placed[j].east, placed[i].down - placed[j].down));
+    if (nearest < Infinity) {
+      this.nearestM = nearest;
+      this.series.distance.put(at, 0, nearest);
+    }
+  }
+
+  /** A jump to an earlier time forgets what came later. */
+  rewind(at) {
+    for (const vehicle of this.vehicles.values()) {
+      vehicle.trail = vehicle.trail.filter(point => point[0] <= at);
+      vehicle.at = undefined;
+    }
+    for (const series of Object.values(this.series)) series.cut(at);
+    this.events = this.events.filter(event => event.at <= at);
+    this.eventCount = this.events.length;
+    this.ending = undefined;
+  }
+
+  vehicle(name) {
+    if (!this.vehicles.has(name)) {
+      const index = this.vehicles.size;
+      this.vehicles.set(name, { name, index, colour: colours[index % colours.length], trail: [] });
+    }
+    return this.vehicles.get(name);
+  }
+
+  /** Few vehicles have a line each, many share one, of the worst. */
+  line(vehicle) { return this.vehicles.size > mostLines ? 0 : vehicle.index; }
+
+  lines() {
+    const all = [...this.vehicles.values()];
+    return all.length > mostLines ? [{ name: "worst", colour: colours[0] }] : all;
+  }
+}
+
+/** The largest value of each line in each tenth of a second, for some time back. */
+class Series {
+  constructor() { this.buckets = []; }
+
+  put(at, line, value) {
+    if (value === undefined) return;
+    const time = Math.floor(at / bucketS) * bucketS;
+    let last = this.buckets.length - 1;
+    while (last >= 0 && this.buckets[last].time > time + 1e-6) last--;
+    if (last < 0 || this.buckets[last].time < time - 1e-6) this.buckets.splice(++last, 0, { time, values: [] });
+    const values = this.buckets[last].values;
+    values[line] = Math.max(values[line] ?? -Infinity, value);
+    while (this.buckets[0].time < at - windowS) this.buckets.shift();
+  }
+
+  cut(at) { this.buckets = this.buckets.filter(bucket => bucket.time <= at); }
+
+  /** As uPlot wants it: times, then the values of each line. */
+  columns(lines) {
+    const columns = [this.buckets.map(bucket => bucket.time)];
+    for (let line = 0; line < lines; line++) columns.push(this.buckets.map(bucket => bucket.values[line] ?? null));
+    return columns;
+  }
+}

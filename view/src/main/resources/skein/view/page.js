@@ -1,0 +1,113 @@
+import { connect } from "/connection.js";
+import { Flight } from "/flight.js";
+import { FlightMap } from "/map.js";
+import { Plots } from "/plots.js";
+
+const find = id => document.getElementById(id);
+const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending"];
+const map = new FlightMap(document.querySelector("#map canvas"));
+const plots = new Plots(find("plots"));
+
+let flight, connection, changed = false, recorded, playing, warnings;
+
+/** What a test asks the page. */
+window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, frames: 0 };
+
+function show(id) {
+  connection?.close();
+  flight = new Flight();
+  recorded = playing = undefined;
+  warnings = new Map();
+  connection = connect(`/flights/${id}`, topic => topic.startsWith("/skein/") && tables.includes(topic.slice(7)), {
+    info(info) {
+      flight = new Flight();
+      const ns = time => BigInt(time.sec) * 1000000000n + BigInt(time.nsec);
+      recorded = info.dataStartTime && { start: ns(info.dataStartTime), end: ns(info.dataEndTime) };
+      if (recorded) flight.startNs = recorded.start;
+      find("playback").hidden = !recorded;
+      state("", false);
+    },
+    row(topic, row, logNs) {
+      flight.row(topic.slice(7), row, logNs);
+      changed = true;
+    },
+    time(ns) { flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns); changed = true; },
+    playback(now) {
+      const at = flight.seconds(now.now);
+      if (now.seeked && at < flight.now) flight.rewind(at);
+      flight.now = at;
+      playing = now;
+      find("play").textContent = now.status === "playing" ? "Pause" : "Play";
+      changed = true;
+    },
+    warning(key, text) { warnings.set(key, text); find("lost").textContent = [...warnings.values()].join("; "); },
+    closed() { state("not connected", true); },
+  });
+}
+
+function state(text, bad) {
+  find("state").textContent = text;
+  find("state").classList.toggle("bad", bad);
+}
+
+let seeking = false;
+
+function draw(at) {
+  requestAnimationFrame(draw);
+  if (!changed || !flight) return;
+  changed = false;
+  window.skein.frames++;
+  map.draw(flight);
+  if (at - drawn < 100) return;
+  drawn = at;
+  plots.draw(flight);
+  words();
+}
+let drawn = 0, told = -1;
+
+function words() {
+  const { heading } = flight;
+  if (heading) find("what").textContent =
+    `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
+  find("time").textContent = `${flight.now.toFixed(1)} s`;
+  if (flight.ending) state(`${flight.ending.how}${flight.ending.reason ? `: ${flight.ending.reason}` : ""}`, flight.ending.how === "Failed");
+  else if (find("state").textContent !== "not connected") state("", false);
+  if (recorded && !seeking) {
+    find("seek").max = Number(recorded.end - recorded.start) / 1e9;
+    find("seek").value = flight.now;
+  }
+  const vehicles = [...flight.vehicles.values()];
+  find("legend").replaceChildren(...(vehicles.length > 8 ? [] : vehicles).map(vehicle => {
+    const item = document.createElement("li"), dot = document.createElement("i");
+    dot.style.background = vehicle.colour;
+    const age = vehicle.ageMs === undefined ? "" : `, ${vehicle.ageMs.toFixed(0)} ms old at its last decision`;
+    item.append(dot, `${vehicle.name}${age}`);
+    return item;
+  }));
+  if (told === flight.eventCount) return;
+  told = flight.eventCount;
+  find("eventCount").textContent = `(${flight.eventCount})`;
+  document.querySelector("#events ol").replaceChildren(...flight.events.map(event => {
+    const item = document.createElement("li");
+    for (const text of [`${event.at.toFixed(2)} s`, event.kind, event.vehicle, event.detail])
+      item.append(Object.assign(document.createElement("span"), { textContent: text }));
+    return item;
+  }));
+}
+
+const speed = () => Number(find("speed").value);
+const stands = () => playing?.status !== "playing";
+find("play").onclick = () => connection.play(stands(), speed());
+find("speed").onchange = () => connection.play(!stands(), speed());
+find("seek").oninput = () => {
+  seeking = true;
+  connection.play(!stands(), speed(), recorded.start + BigInt(Math.round(Number(find("seek").value) * 1e9)));
+};
+find("seek").onchange = () => { seeking = false; };
+
+const flights = await (await fetch("/flights")).json();
+find("flights").replaceChildren(...flights.map(id => Object.assign(document.createElement("option"), { textContent: id })));
+find("flights").hidden = flights.length < 2;
+find("flights").onchange = () => show(find("flights").value);
+show(flights[0]);
+requestAnimationFrame(draw);

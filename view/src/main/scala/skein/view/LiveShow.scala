@@ -1,0 +1,52 @@
+package skein.view
+
+import skein.record.{FlightMessage, FlightTopics, Heading, Topic}
+import skein.units.{Instant, Span}
+
+/** Something besides the records that is shown of a flight, asked for now and then.
+  *
+  * @param json
+  *   as the topic's schema says
+  */
+final case class Gauge(topic: Topic, every: Span, json: () => String)
+
+/** A flight while it flies. Its records come by `feed`. */
+final class LiveShow(
+    heading: Heading,
+    feed: Feed,
+    gauges: Vector[Gauge] = Vector.empty,
+    limits: Limits = Limits()
+) extends Show(heading.flight.id, heading.vehicles.map(_.name).toVector, gauges.map(_.topic), limits):
+  private val topics = FlightTopics(heading.vehicles.map(_.name).toVector, heading.flight.startedAt)
+  private var number = 0L
+  private var asked  = gauges.map(_ => Instant.ofNanos(0))
+
+  topics.opening.foreach(publish)
+  heading.records.foreach(show)
+
+  def recorded: Option[(Instant, Instant)] = None
+
+  protected def greet(viewer: Viewer): Unit = ()
+
+  def turn(now: Instant): Unit =
+    Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
+    asked = gauges.zip(asked).map: (gauge, last) =>
+      if now.since(last) < gauge.every then last
+      else
+        val json = gauge.json()
+        publish(FlightMessage(gauge.topic.name, "", now, now, json))
+        now
+    notice("time", ServerBytes(Protocol.timeIs(now)))
+    if feed.lost > 0 then
+      notice("feed", ServerText(Protocol.warning("feed", s"${feed.lost} records were too many to be shown")))
+
+  def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit] =
+    Left("a flight that flies cannot be played")
+
+  private def show(record: skein.record.Record): Unit =
+    topics.of(number, record).foreach(publish)
+    number += 1
+
+object LiveShow:
+  /** Records of one turn: so that no turn lasts for long. */
+  private val MostAtOnce = 8192

@@ -1,0 +1,67 @@
+package skein.view
+
+import scala.collection.immutable.{Queue, TreeMap, VectorMap}
+
+/** What waits for one viewer. The newest wins: where more waits than may, the oldest is lost, first of the subscription
+  * that has too much, then of all. Notices of the server are few, one a key, and go before everything.
+  *
+  * @param lost
+  *   messages, since the viewer came
+  */
+final case class Outbox[A] private (
+    limits: Limits,
+    notices: VectorMap[String, A],
+    waiting: TreeMap[Long, Outbox.Waiting[A]],
+    places: Map[Long, Queue[Long]],
+    bytes: Long,
+    next: Long,
+    lost: Long
+):
+  def isEmpty: Boolean = notices.isEmpty && waiting.isEmpty
+
+  /** A newer notice takes the place of an older one with its key. */
+  def noticed(key: String, message: A): Outbox[A] = copy(notices = notices.updated(key, message))
+
+  def offered(subscription: Long, message: A, size: Int): Outbox[A] =
+    val places2 = places.updated(subscription, places.getOrElse(subscription, Queue.empty).enqueue(next))
+    copy(
+      waiting = waiting.updated(next, Outbox.Waiting(subscription, message, size)),
+      places = places2,
+      bytes = bytes + size,
+      next = next + 1
+    ).bounded(subscription)
+
+  /** The next to be sent, and what waits then. */
+  def taken: Option[(A, Outbox[A])] =
+    notices.headOption match
+      case Some((key, message)) => Some((message, copy(notices = notices - key)))
+      case None                 => waiting.headOption.map((place, first) => (first.message, without(place)))
+
+  /** Nothing more of a subscription. */
+  def unsubscribed(subscription: Long): Outbox[A] =
+    places.getOrElse(subscription, Queue.empty).foldLeft(this)(_.without(_))
+
+  private def bounded(subscription: Long): Outbox[A] =
+    val own = places(subscription)
+    if own.size > limits.waiting then losing(own.head).bounded(subscription)
+    else if bytes > limits.waitingBytes && waiting.size > 1 then
+      val smaller = losing(waiting.firstKey)
+      if smaller.places.contains(subscription) then smaller.bounded(subscription) else smaller
+    else this
+
+  private def losing(place: Long) = without(place).copy(lost = lost + 1)
+
+  private def without(place: Long): Outbox[A] =
+    val gone = waiting(place)
+    val left = places(gone.subscription).filterNot(_ == place)
+    copy(
+      waiting = waiting - place,
+      places = if left.isEmpty then places - gone.subscription else places.updated(gone.subscription, left),
+      bytes = bytes - gone.size
+    )
+
+object Outbox:
+  final case class Waiting[A](subscription: Long, message: A, size: Int)
+
+  def empty[A](limits: Limits): Outbox[A] =
+    Outbox(limits, VectorMap.empty, TreeMap.empty, Map.empty, bytes = 0, next = 0, lost = 0)

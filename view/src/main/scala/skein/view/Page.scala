@@ -1,0 +1,44 @@
+package skein.view
+
+import org.apache.pekko.http.scaladsl.model.*
+import org.apache.pekko.http.scaladsl.model.headers.RawHeader
+import scala.util.Using
+
+/** The page and what it needs. It asks nobody else for anything, and its browser is told to hold it to that. */
+private[view] object Page:
+  private val css  = MediaTypes.`text/css`.withCharset(HttpCharsets.`UTF-8`)
+  private val code = MediaTypes.`application/javascript`.withCharset(HttpCharsets.`UTF-8`)
+
+  private val files: Map[String, (ContentType, Array[Byte])] = Vector[(String, (String, ContentType))](
+    "/"                -> ("index.html", ContentTypes.`text/html(UTF-8)`),
+    "/icon.svg"        -> ("icon.svg", ContentType(MediaTypes.`image/svg+xml`)),
+    "/page.css"        -> ("page.css", css),
+    "/page.js"         -> ("page.js", code),
+    "/connection.js"   -> ("connection.js", code),
+    "/flight.js"       -> ("flight.js", code),
+    "/map.js"          -> ("map.js", code),
+    "/plots.js"        -> ("plots.js", code),
+    "/graph.js"        -> ("graph.js", code),
+    "/uplot/uPlot.js"  -> ("uplot/uPlot.iife.min.js", code),
+    "/uplot/uPlot.css" -> ("uplot/uPlot.min.css", css)
+  ).map { case (path, (name, kind)) => path -> (kind, read(name)) }.toMap
+
+  def file(path: String): Option[HttpResponse] =
+    files.get(path).map((kind, bytes) => answer(StatusCodes.OK, HttpEntity(kind, bytes)))
+
+  def answer(status: StatusCode, kind: ContentType.NonBinary, text: String): HttpResponse =
+    answer(status, HttpEntity(kind, text))
+
+  private def answer(status: StatusCode, entity: ResponseEntity) = HttpResponse(status, guards, entity)
+
+  private val guards = Vector(
+    "Content-Security-Policy" ->
+      "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options"       -> "nosniff",
+    "Referrer-Policy"              -> "no-referrer",
+    "Cross-Origin-Resource-Policy" -> "same-origin",
+    "Cache-Control"                -> "no-store"
+  ).map(RawHeader(_, _))
+
+  private def read(name: String): Array[Byte] =
+    Using.resource(getClass.getResourceAsStream(name))(_.readAllBytes())

@@ -1,0 +1,47 @@
+package skein.view
+
+import skein.units.{Instant, Span}
+
+/** Where a recording is played: a pure clock that can stand, jump and run at another speed.
+  *
+  * @param start
+  *   of the recording
+  * @param end
+  *   of the recording, where it stops
+  * @param at
+  *   the recorded time at `since`
+  * @param since
+  *   on the clock of whoever asks
+  * @param speed
+  *   recorded seconds per second, more than 0
+  */
+final case class Playback private (
+    start: Instant,
+    end: Instant,
+    at: Instant,
+    since: Instant,
+    speed: Double,
+    playing: Boolean
+):
+  def position(now: Instant): Instant =
+    if !playing then at
+    else
+      val passed = Span.ofNanos(math.round(now.since(since).toNanos.max(0) * speed))
+      if passed >= end.since(at) then end else at + passed
+
+  def hasEnded(now: Instant): Boolean = position(now) >= end
+
+  /** Plays on, or stands, from where it is now or from another time, which is held between start and end. To play from
+    * the end is to play from the start.
+    */
+  def controlled(playing: Boolean, speed: Double, seek: Option[Instant], now: Instant): Playback =
+    val wanted = seek.getOrElse(position(now))
+    val from   = if playing && seek.isEmpty && wanted >= end then start else wanted.max(start).min(end)
+    copy(at = from, since = now, speed = speed, playing = playing)
+
+object Playback:
+  val MostSpeed = 100.0
+
+  /** Standing at the start. */
+  def apply(start: Instant, end: Instant): Playback =
+    Playback(start, end.max(start), start, start, speed = 1, playing = false)

@@ -1,0 +1,186 @@
+package skein.view
+
+import java.nio.{BufferUnderflowException, ByteBuffer, ByteOrder}
+import java.nio.charset.StandardCharsets.UTF_8
+import org.apache.pekko.util.{ByteString, ByteStringBuilder}
+import scala.util.control.NonFatal
+import skein.record.Topic
+import skein.units.Instant
+
+/** A topic as a connection names it. */
+final case class Channel(id: Long, topic: Topic)
+
+/** What a viewer says. Numbers of subscriptions are its own, those of channels the server's. */
+enum ClientMessage:
+  case Subscribe(subscriptions: Vector[(subscription: Long, channel: Long)])
+  case Unsubscribe(subscriptions: Vector[Long])
+
+  /** To play or to stop, how fast, and from where.
+    *
+    * @param speed
+    *   recorded seconds per second
+    * @param request
+    *   names it in the answer
+    */
+  case Playback(playing: Boolean, speed: Double, seek: Option[Instant], request: String)
+
+  /** What the protocol knows and this server does not offer. */
+  case NotOffered(op: String)
+
+/** Foxglove's WebSocket protocol: pure, bytes and texts in and out.
+  *
+  * After `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK. Binary messages
+  * are little-endian. `OfficialClientLiveSuite` holds it to Foxglove's own client.
+  */
+object Protocol:
+
+  /** In the order of preference. */
+  val Names: Vector[String] = Vector("foxglove.sdk.v1", "foxglove.websocket.v1")
+
+  /** How a recording is played.
+    *
+    * @param speed
+    *   recorded seconds per second
+    * @param seeked
+    *   whether the time has jumped
+    * @param request
+    *   that this answers; empty where it answers none
+    */
+  final case class Playing(status: Status, now: Instant, speed: Double, seeked: Boolean, request: String)
+
+  enum Status:
+    case Playing, Paused, Buffering, Ended
+
+  /** The first message to every viewer.
+    *
+    * @param recorded
+    *   begin and end of a recording that can be played; absent while a flight flies
+    * @param session
+    *   another after a restart
+    */
+  def serverInfo(name: String, session: String, recorded: Option[(Instant, Instant)]): String =
+    val info = ujson.Obj(
+      "op"           -> "serverInfo",
+      "name"         -> name,
+      "capabilities" -> ujson.Arr.from(Seq("time") ++ recorded.map(_ => "playbackControl")),
+      "metadata"     -> ujson.Obj(),
+      "sessionId"    -> session
+    )
+    for (start, end) <- recorded do
+      info("dataStartTime") = time(start)
+      info("dataEndTime") = time(end)
+    info.render()
+
+  def advertise(channels: Seq[Channel]): String = ujson.Obj(
+    "op"       -> "advertise",
+    "channels" -> ujson.Arr.from(channels.map(channel =>
+      ujson.Obj(
+        "id"             -> channel.id.toDouble,
+        "topic"          -> channel.topic.name,
+        "encoding"       -> "json",
+        "schemaName"     -> channel.topic.schemaName,
+        "schema"         -> channel.topic.schema,
+        "schemaEncoding" -> "jsonschema"
+      )
+    ))
+  ).render()
+
+  /** A line for a person; a later one with the same `id` replaces it. */
+  def warning(id: String, text: String): String =
+    ujson.Obj("op" -> "status", "level" -> 1, "message" -> text, "id" -> id).render()
+
+  def messageData(subscription: Long, logTime: Instant, payload: ByteString): ByteString =
+    binary(1)(_.putInt(subscription.toInt).putLong(logTime.toNanos)) ++ payload
+
+  def time(now: Instant, op: Byte): ByteString = binary(op)(_.putLong(now.toNanos))
+
+  /** That it is now `now`. */
+  def timeIs(now: Instant): ByteString = time(now, 2)
+
+  def playbackState(state: Playing): ByteString =
+    val request = state.request.getBytes(UTF_8)
+    binary(5)(
+      _.putByte(state.status.ordinal.toByte)
+        .putLong(state.now.toNanos)
+        .putFloat(state.speed.toFloat)
+        .putByte(if state.seeked then 1 else 0)
+        .putInt(request.length)
+        .putBytes(request)
+    )
+
+  /** A text message of a viewer.
+    *
+    * @return
+    *   or what was wrong with it
+    */
+  def read(text: String): Either[String, ClientMessage] =
+    try
+      val message = ujson.read(text)
+      message("op").str match
+        case "subscribe" =>
+          Right(ClientMessage.Subscribe(
+            message("subscriptions").arr.toVector.map(one => (number(one("id")), number(one("channelId"))))
+          ))
+        case "unsubscribe" =>
+          Right(ClientMessage.Unsubscribe(message("subscriptionIds").arr.toVector.map(number)))
+        case op => Right(ClientMessage.NotOffered(op.take(64)))
+    catch
+      case refused: Malformed                  => Left(refused.getMessage)
+      case NonFatal(_) | _: StackOverflowError =>
+        Left("expected a JSON object with a known op and its fields")
+
+  /** A binary message of a viewer. */
+  def read(bytes: ByteString): Either[String, ClientMessage] =
+    val in = bytes.toByteBuffer.order(ByteOrder.LITTLE_ENDIAN)
+    try
+      in.get() match
+        case 3  => playback(in)
+        case op => Right(ClientMessage.NotOffered(s"binary $op"))
+    catch
+      case _: BufferUnderflowException =>
+        Left(s"a binary message ends at byte ${bytes.length}, within a field")
+
+  private def playback(in: ByteBuffer): Either[String, ClientMessage] =
+    val command = in.get()
+    val speed   = in.getFloat()
+    val hasSeek = in.get() != 0
+    val seek    = in.getLong()
+    val length  = in.getInt()
+    if command != 0 && command != 1 then Left(s"a playback command is 0 or 1, came $command")
+    else if !(speed > 0 && speed <= Playback.MostSpeed) then
+      Left(s"a playback speed is more than 0 and up to ${Playback.MostSpeed.toInt}, came $speed")
+    else if length < 0 || length > in.remaining || length > MostRequest then
+      Left(s"a request's name has up to $MostRequest bytes, all of them in the message; came $length")
+    else
+      val request = new Array[Byte](length)
+      in.get(request)
+      Right(ClientMessage.Playback(
+        command == 0,
+        speed,
+        Option.when(hasSeek)(Instant.ofNanos(seek)),
+        String(request, UTF_8)
+      ))
+
+  private val MostRequest = 256
+  private val MostNumber  = 0xffffffffL
+
+  private final class Malformed(message: String) extends RuntimeException(message, null, false, false)
+
+  private def number(value: ujson.Value): Long =
+    val number = value.num
+    if number >= 0 && number <= MostNumber && number == number.toLong then number.toLong
+    else
+      throw Malformed(
+        s"a number of a channel or a subscription is whole, from 0 to $MostNumber; came $number"
+      )
+
+  private def time(at: Instant) =
+    ujson.Obj(
+      "sec"  -> (at.toNanos / 1_000_000_000L).toDouble,
+      "nsec" -> (at.toNanos % 1_000_000_000L).toDouble
+    )
+
+  private given ByteOrder = ByteOrder.LITTLE_ENDIAN
+
+  private def binary(op: Byte)(fields: ByteStringBuilder => ByteStringBuilder): ByteString =
+    fields(ByteString.newBuilder.putByte(op)).result()

@@ -1,0 +1,77 @@
+package skein.view
+
+import org.apache.pekko.util.ByteString
+import scala.collection.immutable.VectorMap
+import scala.collection.mutable
+import skein.record.{FlightMessage, FlightTopics, Topic}
+import skein.units.Instant
+
+/** One flight as viewers see it: channels, the newest of each, and who is looking. Of each topic and vehicle the newest
+  * message is kept, so that whoever comes later, or looks at a time that stands still, sees where everything is.
+  *
+  * All its methods may be called from any thread; none waits but for another of them.
+  *
+  * @param id
+  *   of the flight
+  * @param more
+  *   topics besides those of every flight
+  */
+abstract class Show private[view] (
+    val id: String,
+    vehicles: Vector[String],
+    more: Vector[Topic],
+    val limits: Limits
+):
+  val channels: Vector[Channel] =
+    (FlightTopics.all(vehicles) ++ more).zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
+
+  private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
+  private val newest  = mutable.Map.empty[Long, VectorMap[String, Shown]]
+  private val viewers = mutable.Set.empty[Viewer]
+
+  private final class Shown(message: FlightMessage):
+    lazy val payload: ByteString = ByteString(message.json)
+    def at: Instant              = message.known
+
+  /** Begin and end, where it can be played. */
+  def recorded: Option[(Instant, Instant)]
+
+  /** Looks what is new, and tells the viewers. To be called some forty times a second. */
+  def turn(now: Instant): Unit
+
+  def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit]
+
+  private[view] def entered(viewer: Viewer): Unit = synchronized:
+    viewers += viewer
+    viewer.notice("info", ServerText(Protocol.serverInfo(s"Skein: $id", Show.session, recorded)))
+    viewer.notice("advertise", ServerText(Protocol.advertise(channels)))
+    greet(viewer)
+
+  private[view] def left(viewer: Viewer): Unit = synchronized(viewers -= viewer): Unit
+
+  private[view] def subscribed(viewer: Viewer, subscription: Long, channel: Long): Unit = synchronized:
+    for shown <- newest.get(channel).toSeq.flatMap(_.values) do
+      viewer.offer(subscription, shown.at, shown.payload)
+
+  /** What a viewer is told when it comes. */
+  protected def greet(viewer: Viewer): Unit
+
+  protected def publish(message: FlightMessage): Unit = synchronized:
+    for channel <- byTopic.get(message.topic) do
+      val shown = Shown(message)
+      newest(channel) = newest.getOrElse(channel, VectorMap.empty).updated(message.key, shown)
+      for
+        viewer       <- viewers
+        subscription <- viewer.subscriptionsTo(channel)
+      do viewer.offer(subscription, shown.at, shown.payload)
+
+  protected def forget(): Unit = synchronized(newest.clear())
+
+  protected def notice(key: String, message: ServerMessage): Unit = synchronized:
+    viewers.foreach(_.notice(key, message))
+
+  def watching: Int = synchronized(viewers.size)
+
+object Show:
+  /** Tells viewers that connect again whether they talk to the same process. */
+  private[view] val session: String = java.util.UUID.randomUUID().toString

@@ -1,0 +1,176 @@
+package skein.view
+
+import com.typesafe.config.ConfigFactory
+import java.util.concurrent.atomic.AtomicInteger
+import org.apache.pekko.Done
+import org.apache.pekko.actor.{ActorSystem, BootstrapSetup}
+import org.apache.pekko.http.scaladsl.Http
+import org.apache.pekko.http.scaladsl.model.*
+import org.apache.pekko.http.scaladsl.model.headers.Origin
+import org.apache.pekko.http.scaladsl.model.ws.{BinaryMessage, Message, TextMessage, WebSocketUpgrade}
+import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.duration.*
+import skein.units.Clock
+
+/** Serves the page and Foxglove's protocol for some flights, on loopback. It has an actor system of its own, so that
+  * viewers and flights share no threads.
+  *
+  * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
+  * them.
+  */
+final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
+    system: ActorSystem
+):
+  def port: Int = binding.localAddress.getPort
+
+  def url: String = s"http://127.0.0.1:$port"
+
+  /** Closes every connection. */
+  def close(): Future[Done] =
+    import system.dispatcher
+    turning()
+    binding
+      .unbind()
+      .transformWith(_ => system.terminate())
+      .map(_ => Done)
+
+object ViewServer:
+
+  /** Foxglove's usual port. */
+  val DefaultPort = 8765
+
+  /** @param port
+    *   0 for any that is free
+    * @param threads
+    *   what it runs on
+    * @param origins
+    *   pages of other sites that may look
+    * @return
+    *   fails where it cannot listen
+    */
+  def start(
+      shows: Shows,
+      clock: Clock,
+      threads: ExecutionContext,
+      port: Int = DefaultPort,
+      origins: Set[String] = Set.empty,
+      limits: Limits = Limits()
+  ): Future[ViewServer] =
+    given system: ActorSystem = ActorSystem(
+      "skein-view",
+      BootstrapSetup(None, Some(configured), Some(threads))
+    )
+    import system.dispatcher
+    val counts = Counts()
+    val open   = AtomicInteger()
+    Http()
+      .newServerAt("127.0.0.1", port)
+      .connectionSource()
+      .toMat(Sink.foreach: connection =>
+        if open.incrementAndGet() > limits.connections then
+          open.decrementAndGet(): Unit
+          counts.refusedConnection()
+          connection.handleWith(Flow.fromSinkAndSourceCoupled(Sink.cancelled, Source.empty)): Unit
+        else
+          val access  = Access(connection.localAddress.getPort, origins)
+          val handled = Flow[HttpRequest]
+            .map(answer(_, access, shows.all, clock, counts))
+            .watchTermination()((_, ended) => ended.onComplete(_ => open.decrementAndGet()))
+          connection.handleWith(handled): Unit)(Keep.left)
+      .run()
+      .map: binding =>
+        val turns = system.scheduler.scheduleWithFixedDelay(TurnEvery, TurnEvery)(() =>
+          shows.all.foreach(_.turn(clock.now()))
+        )
+        ViewServer(binding, counts, () => turns.cancel(): Unit)
+      .recoverWith { case error => system.terminate().transformWith(_ => Future.failed(error)) }
+
+  private val TurnEvery = 25.millis
+
+  private def configured = ConfigFactory
+    .parseString("""
+      |pekko.http.server {
+      |  idle-timeout = 60s
+      |  pipelining-limit = 1
+      |  server-header = ""
+      |  parsing.max-content-length = 4k
+      |  parsing.max-header-count = 64
+      |  websocket.periodic-keep-alive-max-idle = 20s
+      |}
+      |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
+      |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
+      |""".stripMargin)
+    .withFallback(ConfigFactory.load())
+
+  private def answer(
+      request: HttpRequest,
+      access: Access,
+      shows: Vector[Show],
+      clock: Clock,
+      counts: Counts
+  )(using ActorSystem): HttpResponse =
+    def refused(status: StatusCode, why: String) =
+      counts.refusedRequest()
+      request.discardEntityBytes()
+      Page.answer(status, ContentTypes.`text/plain(UTF-8)`, why)
+    val host   = request.uri.authority.toString
+    val origin = request.header[Origin].map(_.origins.mkString(" "))
+    val path   = request.uri.path.toString
+    access.refusal(host, origin) match
+      case Some(why) => refused(StatusCodes.Forbidden, why)
+      case None      =>
+        (request.attributes.get(AttributeKeys.webSocketUpgrade), request.method) match
+          case (Some(upgrade: WebSocketUpgrade), _) =>
+            shows.find(show => path == s"/flights/${show.id}").orElse(shows.headOption.filter(_ =>
+              path == "/"
+            )) match
+              case Some(show) => watch(upgrade, show, clock, counts).getOrElse(
+                  refused(
+                    StatusCodes.BadRequest,
+                    s"expected one of the subprotocols ${Protocol.Names.mkString(", ")}"
+                  )
+                )
+              case None => refused(StatusCodes.NotFound, s"no flight at $path")
+          case (_, HttpMethods.GET) if path == "/flights" =>
+            Page.answer(
+              StatusCodes.OK,
+              ContentTypes.`application/json`,
+              ujson.Arr.from(shows.map(_.id)).render()
+            )
+          case (_, HttpMethods.GET) =>
+            Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
+          case _ => refused(StatusCodes.MethodNotAllowed, "expected GET")
+
+  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: Counts)(using
+      ActorSystem
+  ): Option[HttpResponse] =
+    Protocol.Names
+      .find(upgrade.requestedProtocols.contains)
+      .map(name =>
+        upgrade.handleMessages(whole(show.limits, counts).via(ViewerStage(show, clock, counts)), Some(name))
+      )
+
+  /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
+  private def whole(limits: Limits, counts: Counts)(using ActorSystem): Flow[Message, Message, ?] =
+    given ExecutionContext = ExecutionContext.parasitic
+    def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
+      parts
+        .limitWeighted(limits.messageBytes)(size(_))
+        .completionTimeout(PartsWithin)
+        .runFold(none)(add)
+        .map(all => Some(message(all)))
+        .recover: _ =>
+          counts.refusedMessage()
+          None
+    Flow[Message]
+      .mapAsync(1):
+        case whole: (TextMessage.Strict | BinaryMessage.Strict) => Future.successful(Some(whole))
+        case text: TextMessage    => gathered(text.textStream, "")(_.length, _ + _)(TextMessage.Strict(_))
+        case bytes: BinaryMessage =>
+          gathered(bytes.dataStream, ByteString.empty)(_.length, _ ++ _)(BinaryMessage.Strict(_))
+      .takeWhile(_.isDefined)
+      .map(_.get)
+
+  private val PartsWithin = 5.seconds

@@ -1,0 +1,63 @@
+package skein.view
+
+import org.apache.pekko.util.ByteString
+import skein.units.Instant
+
+/** What is sent to a viewer: WebSocket messages. */
+private[view] sealed trait ServerMessage
+private[view] final case class ServerText(text: String)       extends ServerMessage
+private[view] final case class ServerBytes(bytes: ByteString) extends ServerMessage
+
+/** One who looks: what it subscribed to, and what waits for it. From any thread.
+  *
+  * @param wake
+  *   called where something waits again, after [[take]] has found nothing
+  */
+private[view] final class Viewer(limits: Limits, channels: Set[Long], wake: () => Unit):
+  @volatile private var subscriptions = Subscriptions.none(limits, channels)
+  private var outbox                  = Outbox.empty[ServerMessage](limits)
+  private var idle                    = false
+  private var toldLost                = 0L
+
+  def subscriptionsTo(channel: Long): Iterable[Long] = subscriptions.of(channel)
+
+  def subscribe(subscription: Long, channel: Long): Either[String, Unit] = synchronized:
+    subscriptions.added(subscription, channel).map(subscriptions = _)
+
+  def unsubscribe(subscription: Long): Either[String, Unit] = synchronized:
+    subscriptions.removed(subscription).map: left =>
+      subscriptions = left
+      outbox = outbox.unsubscribed(subscription)
+
+  def offer(subscription: Long, logTime: Instant, payload: ByteString): Unit =
+    val message = ServerBytes(Protocol.messageData(subscription, logTime, payload))
+    put(_.offered(subscription, message, message.bytes.length))
+
+  def notice(key: String, message: ServerMessage): Unit = put(_.noticed(key, message))
+
+  def lost: Long = synchronized(outbox.lost)
+
+  /** The next message. What was lost is said before the next one. */
+  def take(): Option[ServerMessage] = synchronized:
+    if outbox.lost > toldLost then
+      toldLost = outbox.lost
+      Some(ServerText(Protocol.warning(
+        "lost",
+        s"$toldLost messages were lost: this viewer is slower than the flight"
+      )))
+    else
+      outbox.taken match
+        case Some((message, rest)) =>
+          outbox = rest
+          Some(message)
+        case None =>
+          idle = true
+          None
+
+  private def put(change: Outbox[ServerMessage] => Outbox[ServerMessage]): Unit =
+    val wakes = synchronized:
+      outbox = change(outbox)
+      val was = idle
+      idle = false
+      was
+    if wakes then wake()

@@ -1,0 +1,52 @@
+package skein.view
+
+import scala.util.Random
+
+class OutboxSuite extends munit.FunSuite:
+  private val limits = Limits(waiting = 3, waitingBytes = 100)
+
+  private def drained(outbox: Outbox[String]): Vector[String] =
+    Vector.unfold(outbox)(_.taken)
+
+  test("what waits goes in the order in which it came, whatever it belongs to"):
+    val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).offered(1, "c", 1)
+    assertEquals(drained(outbox), Vector("a", "b", "c"))
+
+  test("of a subscription that has too much the oldest is lost, and only of that"):
+    val outbox = (1 to 5).foldLeft(Outbox.empty[String](limits).offered(2, "quiet", 1))((all, at) =>
+      all.offered(1, at.toString, 1)
+    )
+    assertEquals(drained(outbox), Vector("quiet", "3", "4", "5"))
+    assertEquals(outbox.lost, 2L)
+
+  test("where all is too much the oldest of all is lost, but the newest is kept, however large"):
+    val outbox = Outbox.empty[String](limits).offered(1, "old", 60).offered(2, "newer", 50)
+    assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("newer"), 1L, 50L))
+    assertEquals(drained(outbox.offered(3, "huge", 1000)), Vector("huge"))
+
+  test("a notice goes first, and a newer one takes its place"):
+    val outbox =
+      Outbox.empty[String](limits).offered(1, "row", 1).noticed(
+        "time",
+        "5"
+      ).noticed("info", "i").noticed("time", "6")
+    assertEquals(drained(outbox), Vector("6", "i", "row"))
+
+  test("nothing of a subscription that has ended is sent, and it is not counted as lost"):
+    val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).unsubscribed(1)
+    assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("b"), 0L, 1L))
+
+  test("every message is taken once or lost, and what waits stays within its bounds"):
+    val random = Random(3)
+    var outbox = Outbox.empty[Int](limits)
+    var taken  = 0
+    for number <- 1 to 20_000 do
+      outbox = outbox.offered(random.nextInt(5), number, random.nextInt(40))
+      if random.nextInt(3) == 0 then
+        outbox.taken.foreach: (_, rest) =>
+          taken += 1
+          outbox = rest
+      assert(outbox.bytes <= limits.waitingBytes, s"${outbox.bytes} bytes after $number")
+      assertEquals(outbox.bytes, outbox.waiting.values.map(_.size.toLong).sum)
+      assert(outbox.places.values.forall(_.size <= limits.waiting))
+    assertEquals(taken + outbox.lost + outbox.waiting.size, 20_000L)

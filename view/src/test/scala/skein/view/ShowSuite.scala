@@ -1,0 +1,111 @@
+package skein.view
+
+import java.nio.ByteOrder
+import skein.record.*
+import skein.units.*
+
+class ShowSuite extends munit.FunSuite:
+
+  /** Topic and JSON of every message of data that waits for a viewer. */
+  private def seen(show: Show, viewer: Viewer): Vector[(topic: String, row: ujson.Value)] =
+    val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
+    Vector
+      .unfold(())(_ => viewer.take().map((_, ())))
+      .collect { case ServerBytes(bytes) if bytes(0) == 1 => bytes }
+      .map: bytes =>
+        (
+          topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
+          ujson.read(bytes.drop(13).utf8String)
+        )
+
+  /** Subscribes by the channels' own numbers. */
+  private def watching(show: Show, topics: String*): Viewer =
+    val viewer = Viewer(show.limits, show.channels.map(_.id).toSet, () => ())
+    show.entered(viewer)
+    for channel <- show.channels if topics.contains(channel.topic.name) do
+      assertEquals(viewer.subscribe(channel.id, channel.id), Right(()))
+      show.subscribed(viewer, channel.id, channel.id)
+    viewer
+
+  private def at(seconds: Double) = Instant.ofNanos((seconds * 1e9).toLong)
+
+  private val heading = Samples.heading
+  private val rows    = heading.records ++ (1 to 5).map(step => Samples.reading(step))
+  private def replay  = RecordedShow(
+    "flight",
+    Vector("Pursuer", "Evader"),
+    rows.zipWithIndex.map((row, at) => (at.toLong, row)).toVector
+  )
+
+  test(
+    "a flight that flies shows its heading to whoever comes, then every record as it is taken from the feed"
+  ):
+    val feed   = Feed()
+    val show   = LiveShow(heading, feed)
+    val viewer = watching(show, "/skein/vehicle", "/skein/reading", "/vehicles/Pursuer/pose")
+    assertEquals(seen(show, viewer).map(_.row("name").str), Vector("Pursuer", "Evader"))
+    feed.offer(Samples.reading(7))
+    assertEquals(seen(show, viewer), Vector.empty)
+    show.turn(at(1))
+    val told = seen(show, viewer)
+    assertEquals(told.map(_.topic), Vector("/skein/reading", "/vehicles/Pursuer/pose"))
+    assertEquals(told.head.row("sequence").num, 7.0)
+
+  test("whoever comes late sees the newest of every vehicle"):
+    val feed = Feed()
+    val show = LiveShow(heading, feed)
+    for step <- 1 to 3; name <- Seq("Pursuer", "Evader") do feed.offer(Samples.reading(step, name))
+    show.turn(at(1))
+    val told = seen(show, watching(show, "/skein/reading"))
+    assertEquals(
+      told.map(one => (one.row("vehicle").str, one.row("sequence").num)),
+      Vector(("Pursuer", 3.0), ("Evader", 3.0))
+    )
+
+  test("a gauge is asked no more often than it wants"):
+    var asked = 0
+    val gauge =
+      Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), () => { asked += 1; "{}" })
+    val show = LiveShow(heading, Feed(), Vector(gauge))
+    for turn <- 0 to 40 do show.turn(at(10) + Span.ofMillis(25) * turn)
+    assertEquals(asked, 3)
+
+  test("a recording stands at its start, plays at its speed, and ends"):
+    val show   = replay
+    val viewer = watching(show, "/skein/reading")
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(1.0))
+    show.turn(at(1))
+    assertEquals(seen(show, viewer), Vector.empty)
+    assertEquals(show.control(ClientMessage.Playback(playing = true, 2, None, ""), at(1)), Right(()))
+    show.turn(at(1.11))
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(2.0, 3.0))
+    show.turn(at(9))
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(4.0, 5.0))
+
+  test("after a jump back the rows before it are there again, and the later ones come again"):
+    val show         = replay
+    val Some((a, b)) = show.recorded: @unchecked
+    val viewer       = watching(show, "/skein/reading")
+    show.control(ClientMessage.Playback(playing = false, 1, Some(b), ""), at(1)): Unit
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(1.0, 2, 3, 4, 5))
+    show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(150)), ""), at(1)): Unit
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(1.0, 2))
+
+  test("the answer to a jump names the request and the time"):
+    val show         = replay
+    val Some((a, _)) = show.recorded: @unchecked
+    val viewer       = watching(show)
+    Vector.unfold(())(_ => viewer.take().map((_, ()))): Unit
+    show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(150)), "me"), at(1)): Unit
+    val expected = Protocol.Playing(Protocol.Status.Paused, a + Span.ofMillis(150), 1, seeked = true, "me")
+    assertEquals(viewer.take(), Some(ServerBytes(Protocol.playbackState(expected))))
+
+  test("a viewer that takes nothing loses what is oldest, and is told how much when it looks again"):
+    val feed   = Feed()
+    val show   = LiveShow(heading, feed, limits = Limits(waiting = 10))
+    val viewer = watching(show, "/skein/reading")
+    for step <- 1 to 30 do feed.offer(Samples.reading(step))
+    show.turn(at(1))
+    val Some(ServerText(told)) = viewer.take(): @unchecked
+    assert(told.contains("20 messages were lost"), told)
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), (21 to 30).map(_.toDouble).toVector)

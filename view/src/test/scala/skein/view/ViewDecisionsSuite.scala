@@ -1,0 +1,41 @@
+package skein.view
+
+import skein.record.Event
+import skein.record.EventKind
+import skein.units.Instant
+
+class ViewDecisionsSuite extends munit.FunSuite:
+
+  test("a subscription is to a channel that there is, once, and within the limit"):
+    val none = Subscriptions.none(Limits(subscriptions = 2), Set(1, 2))
+    val two  = none.added(10, 1).flatMap(_.added(11, 1)).toOption.get
+    assertEquals(two.of(1).toSet, Set(10L, 11L))
+    assertEquals(two.of(2).toSet, Set.empty[Long])
+    assertEquals(none.added(10, 3), Left("there is no channel 3"))
+    assertEquals(two.added(10, 2), Left("there is a subscription 10 already"))
+    assertEquals(two.added(12, 2), Left("a viewer has at most 2 subscriptions"))
+    assertEquals(two.removed(12).map(_ => ()), Left("there is no subscription 12"))
+    assertEquals(two.removed(10).map(_.of(1).toSet), Right(Set(11L)))
+
+  test("this machine's own names and pages may look, others only where they were let"):
+    val access = Access(8765, Set("https://app.foxglove.dev"))
+    assertEquals(access.refusal("127.0.0.1:8765", None), None)
+    assertEquals(access.refusal("localhost:8765", Some("http://localhost:8765")), None)
+    assertEquals(access.refusal("localhost:8765", Some("https://app.foxglove.dev")), None)
+    for (host, origin) <- Seq(
+        ("evil.example:8765", None),
+        ("127.0.0.1:80", None),
+        ("", None),
+        ("localhost:8765", Some("https://evil.example")),
+        ("localhost:8765", Some("http://localhost:9999")),
+        ("localhost:8765", Some("null")),
+        ("localhost:8765", Some("http://localhost:8765 https://evil.example"))
+      )
+    do assert(access.refusal(host, origin).isDefined, s"$host $origin")
+
+  test("a feed that nobody empties keeps the newest, and counts the others"):
+    val feed           = Feed(capacity = 3)
+    def event(at: Int) = Event(Instant.ofNanos(at), EventKind.Dropped, None, "")
+    (1 to 5).foreach(at => feed.offer(event(at)))
+    assertEquals(Vector.unfold(())(_ => feed.poll().map((_, ()))), Vector(3, 4, 5).map(event))
+    assertEquals(feed.lost, 2L)

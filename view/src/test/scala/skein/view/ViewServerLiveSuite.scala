@@ -1,0 +1,151 @@
+package skein.view
+
+import java.net.Socket
+import java.nio.ByteOrder
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.http.scaladsl.Http
+import org.apache.pekko.http.scaladsl.model.*
+import org.apache.pekko.http.scaladsl.model.headers.{Host, Origin}
+import org.apache.pekko.http.scaladsl.model.ws.*
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, SinkQueueWithCancel, Source, SourceQueueWithComplete}
+import org.apache.pekko.stream.OverflowStrategy
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{Await, ExecutionContext, Future}
+import scala.concurrent.duration.*
+import scala.util.Try
+import skein.record.*
+import skein.units.Clock
+
+/** The server on a real socket, looked at by Pekko's own client. */
+class ViewServerLiveSuite extends munit.FunSuite:
+  private given system: ActorSystem = ActorSystem("viewers")
+
+  override def afterAll(): Unit = await(system.terminate()): Unit
+
+  private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
+
+  private final class Served(limits: Limits):
+    val feed: Feed     = Feed()
+    val show: LiveShow = LiveShow(Samples.heading, feed, limits = limits)
+    val shows: Shows   = Shows()
+    shows.add(show)
+    val server: ViewServer = await(
+      ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0, limits = limits)
+    )
+
+  private def serving(limits: Limits = Limits()) =
+    FunFixture[Served](_ => Served(limits), served => await(served.server.close()): Unit)
+
+  private final class Connection(
+      val answer: WebSocketUpgradeResponse,
+      out: SourceQueueWithComplete[Message],
+      in: SinkQueueWithCancel[Message]
+  ):
+    def send(text: String): Unit                         = await(out.offer(TextMessage(text))): Unit
+    def send(bytes: ByteString): Unit                    = await(out.offer(BinaryMessage(bytes))): Unit
+    def pull(): Option[Message]                          = await(in.pull())
+    def until[A](wanted: PartialFunction[Message, A]): A =
+      Iterator.continually(pull().getOrElse(fail("the connection ended"))).collectFirst(wanted).get
+    def close(): Unit = out.complete()
+
+  private def connect(port: Int, protocols: String*)(headers: HttpHeader*): Connection =
+    val request = WebSocketRequest(s"ws://127.0.0.1:$port/flights/stream-vpn", headers).copy(subprotocol =
+      Option.when(protocols.nonEmpty)(protocols.mkString(", "))
+    )
+    val flow = Flow.fromSinkAndSourceMat(
+      Sink.queue[Message](),
+      Source.queue[Message](64, OverflowStrategy.fail)
+    )((_, _))
+    val (answer, (in, out)) = Http().singleWebSocketRequest(request, flow)
+    Connection(await(answer), out, in)
+
+  private def text: PartialFunction[Message, ujson.Value] = { case TextMessage.Strict(text) =>
+    ujson.read(text)
+  }
+
+  private def get(port: Int, path: String, headers: HttpHeader*): (Int, String, HttpResponse) =
+    val response =
+      await(Http().singleRequest(HttpRequest(uri = s"http://127.0.0.1:$port$path", headers = headers)))
+    (response.status.intValue, await(response.entity.toStrict(10.seconds)).data.utf8String, response)
+
+  serving().test("a client is told of the topics, subscribes, and gets what the flight records"): served =>
+    val client = connect(served.server.port, Protocol.Names*)()
+    assertEquals(client.answer.isInstanceOf[ValidUpgrade], true)
+    val info = client.until(text)
+    assertEquals((info("op").str, info("capabilities").arr.map(_.str).toSeq), ("serverInfo", Seq("time")))
+    val channels =
+      client.until(text.andThen { case said if said("op").str == "advertise" => said("channels").arr })
+    val readings = channels.find(_("topic").str == "/skein/reading").get
+    assertEquals(readings("schemaEncoding").str, "jsonschema")
+    client.send(s"""{"op":"subscribe","subscriptions":[{"id":77,"channelId":${readings("id").num.toInt}}]}""")
+    served.feed.offer(Samples.reading(5))
+    val data = client.until { case BinaryMessage.Strict(bytes) if bytes(0) == 1 => bytes }
+    assertEquals(data.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt, 77)
+    assertEquals(ujson.read(data.drop(13).utf8String)("sequence").num, 5.0)
+    client.send("""{"op":"subscribe","subscriptions":[{"id":77,"channelId":1}]}""")
+    val said = client.until(text.andThen { case said if said("op").str == "status" => said("message").str })
+    assertEquals(said, "there is a subscription 77 already")
+    client.close()
+
+  serving().test(
+    "without a protocol that it speaks, from a foreign page, or by a foreign name nobody is let in"
+  ): served =>
+    val port     = served.server.port
+    val accepted = Seq(
+      connect(port)(),
+      connect(port, "foxglove.sdk.v9")(),
+      connect(port, Protocol.Names*)(Origin("https://evil.example")),
+      connect(port, Protocol.Names*)(Host("evil.example", port))
+    ).map(_.answer.response.status.intValue)
+    assertEquals(accepted, Seq(400, 400, 403, 403))
+    assertEquals(get(port, "/", Host("evil.example", port))._1, 403)
+    assertEquals(get(port, "/flights", Origin("http://evil.example"))._1, 403)
+    assertEquals(
+      connect(port, Protocol.Names.last)(Origin(s"http://localhost:$port")).answer.response.status.intValue,
+      101
+    )
+    assertEquals(served.server.counts.refusedRequests, 6L)
+
+  serving().test("the page and all it names are there, and nothing of it is elsewhere"): served =>
+    val port              = served.server.port
+    val (ok, html, asked) = get(port, "/")
+    assertEquals(ok, 200)
+    assert(asked.headers.exists(_.is("content-security-policy")))
+    val named = """(?:src|href)="([^"]+)"""".r.findAllMatchIn(html).map(_.group(1)).toVector
+    val files = named ++ named.filter(_.endsWith("page.js")).flatMap(path =>
+      """from "([^"]+)"""".r.findAllMatchIn(get(port, path)._2).map(_.group(1))
+    )
+    assert(files.size >= 8, files)
+    for path <- files do
+      val (status, text, _) = get(port, path)
+      assertEquals((path, status), (path, 200))
+      if !path.startsWith("/uplot") then
+        assert(
+          !text.replace("http://www.w3.org/2000/svg", "").contains("://") || path == "/connection.js",
+          path
+        )
+    assertEquals(get(port, "/flights")._2, """["stream-vpn"]""")
+    for path <- Seq("/../build.sbt", "/page.js/", "/nothing", "//etc/passwd") do
+      assertEquals(get(port, path)._1, 404)
+
+  serving(Limits(refusals =
+    3
+  )).test("a viewer that speaks nonsense is told so, and then turned out; others look on"): served =>
+    val other = connect(served.server.port, Protocol.Names*)()
+    val bad   = connect(served.server.port, Protocol.Names*)()
+    for _ <- 0 to 3 do bad.send("nonsense")
+    assert(Iterator.continually(bad.pull()).takeWhile(_.isDefined).size < 1000)
+    val large = connect(served.server.port, Protocol.Names*)()
+    large.send(ByteString(new Array[Byte](200_000)))
+    assertEquals(other.until(text)("op").str, "serverInfo")
+    assertEquals(served.server.counts.refusedMessages >= 4, true)
+
+  serving(Limits(connections =
+    5
+  )).test("of a thousand connections all but the most that may are closed at once"): served =>
+    val port    = served.server.port
+    val sockets = Vector.fill(1000)(Socket("127.0.0.1", port))
+    // They are accepted in their order; the end of a stream, or a reset, is what one sees that was closed.
+    for socket <- sockets.drop(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
+    sockets.foreach(_.close())
+    assertEquals(served.server.counts.refusedConnections, 995L)
