@@ -53,11 +53,18 @@ final case class Forecast private (
     yield tracks.flatten.map(_.legsTo(delays.expectedArrival(now), delays, now))
 
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
+    // What a simulator told before it started again says nothing of what will be.
+    if alignment.exists(_.isOfFormerRun(reading)) then this else seenOfPresent(vehicle, reading)
+
+  private def seenOfPresent(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))
     // While the simulator's clock stood still, delays to it meant nothing.
     val goesOn  = alignment.exists(before => before.restarts == aligned.restarts && !before.standsStill)
     val current = delays.filter(_ => goesOn).fold(OneWayDelays.of(reading))(_.updated(reading))
-    val track   = tracks(vehicle).fold(firstSeen(vehicle, reading))(_.seen(reading, current))
+    val track   = tracks(vehicle).fold(firstSeen(vehicle, reading)): track =>
+      if reading.validAt < track.newest.validAt && aligned.isNewer(reading, track.newest) then
+        track.startedAgain(reading)
+      else track.seen(reading, current)
     copy(
       tracks = tracks.updated(vehicle, Some(track)),
       alignment = Some(aligned),

@@ -43,6 +43,12 @@ final case class Track[S] private (
         commands = needed
       )
 
+  /** Takes the first reading by a simulator that has started again with an earlier clock: where the vehicle is does not
+    * follow from where it was, and what was predicted before is never read.
+    */
+  def startedAgain(reading: Stamped[Kinematics]): Track[S] =
+    copy(state = model.start(reading.value), readings = Vector(reading))
+
   def sent(command: Commanded): Track[S] =
     copy(commands = (commands :+ command).takeRight(Track.CommandLimit))
 

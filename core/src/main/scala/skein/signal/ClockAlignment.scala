@@ -12,7 +12,9 @@ import skein.units.*
   *
   * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates neither
   * contradict themselves nor hold the estimate back. If readings contradict each other none the less, the simulator
-  * stood still or was restarted: estimation starts afresh, and that is counted.
+  * stood still or was restarted: estimation starts afresh, and that is counted. The bounds of the last few runs are
+  * kept: an answer of a run before that comes late contradicts the present bounds and agrees with the former ones. It
+  * tells nothing of the present clock, and is older than all of the present run, whatever its simulator's time.
   *
   * @param lower
   *   the offset is at least this
@@ -28,6 +30,10 @@ import skein.units.*
   *   whether the simulator's clock did not advance between the last two readings
   * @param restarts
   *   how often estimation started afresh
+  * @param since
+  *   when the first reading of the present run arrived
+  * @param former
+  *   the runs before, the newest last; of each what was known at its end
   */
 final case class ClockAlignment private (
     lower: Span,
@@ -36,9 +42,11 @@ final case class ClockAlignment private (
     validAt: Instant,
     receivedAt: Instant,
     standsStill: Boolean,
-    restarts: Int
+    restarts: Int,
+    since: Instant,
+    former: Vector[ClockAlignment]
 ):
-  import ClockAlignment.{MaxDrift, Memory, Tick, lowQuartile}
+  import ClockAlignment.{FormerRuns, Memory, Tick, drift, lowQuartile}
 
   /** Controller's clock minus simulator's. */
   lazy val offset: Span =
@@ -52,23 +60,62 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
+  /** Whether one reading tells of a later moment than another: it was asked for when the other had come, or else the
+    * later run of the simulator sampled it, or else the simulator's clock says so. Two readings alone cannot tell: where
+    * the simulator has started again with an earlier clock, a late answer of its former run has the later time.
+    */
+  def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    if one.sentAt > other.receivedAt then true
+    else if other.sentAt > one.receivedAt then false
+    else
+      val (run, otherRun) = (runOf(one), runOf(other))
+      run > otherRun || (run == otherRun && one.validAt > other.validAt)
+
+  /** Whether a reading was sampled by a run of the simulator before the present one. */
+  def isOfFormerRun(reading: Stamped[?]): Boolean = runOf(reading) < former.size
+
+  /** A reading of a former run changes nothing. */
   def updated(reading: Stamped[?]): ClockAlignment =
-    val one    = ClockAlignment.of(reading)
-    val still  = reading.validAt == validAt && reading.sentAt > receivedAt + Tick
-    val passed = reading.receivedAt.since(receivedAt).max(Span.Zero)
-    val slack  = Span.ofNanos(math.ceil(passed.toNanos * MaxDrift).toLong)
-    val least  = (lower - slack).max(one.lower)
-    val most   = (upper + slack).min(one.upper)
-    val agreed = least <= most && !still && !standsStill
-    ClockAlignment(
-      if agreed then least else one.lower,
-      if agreed then most else one.upper,
-      if agreed then (latest ++ one.latest).takeRight(Memory) else one.latest,
-      if agreed then validAt.max(reading.validAt) else reading.validAt,
-      receivedAt.max(reading.receivedAt),
-      still,
-      if agreed || standsStill then restarts else restarts + 1
-    )
+    if isOfFormerRun(reading) then this
+    else
+      val one   = ClockAlignment.of(reading)
+      val still = reading.validAt == validAt && reading.sentAt > receivedAt + Tick
+      val slack = drift(since = receivedAt, until = reading.receivedAt)
+      val least = (lower - slack).max(one.lower)
+      val most  = (upper + slack).min(one.upper)
+      if least <= most && !still && !standsStill then
+        copy(
+          lower = least,
+          upper = most,
+          latest = (latest ++ one.latest).takeRight(Memory),
+          validAt = validAt.max(reading.validAt),
+          receivedAt = receivedAt.max(reading.receivedAt)
+        )
+      else
+        one.copy(
+          receivedAt = receivedAt.max(reading.receivedAt),
+          standsStill = still,
+          restarts = if standsStill then restarts else restarts + 1,
+          former =
+            if standsStill then former else (former :+ copy(former = Vector.empty)).takeRight(FormerRuns)
+        )
+
+  /** By place among the runs that are known, the present one last. What was asked for when that had begun is its own. */
+  private def runOf(reading: Stamped[?]): Int =
+    if reading.sentAt > since || hasTold(reading) then former.size
+    else
+      former.lastIndexWhere(_.hasTold(reading)) match
+        case -1  => former.size
+        case run => run
+
+  /** Whether a reading can be of this run: it came when the run had been heard of, and its bounds and these may hold at
+    * once.
+    */
+  private def hasTold(reading: Stamped[?]): Boolean =
+    val slack = drift(since = receivedAt, until = reading.receivedAt)
+    reading.receivedAt >= since &&
+    reading.sentAt.since(reading.validAt) <= upper + slack &&
+    reading.receivedAt.since(reading.validAt) >= lower - slack
 
 object ClockAlignment:
 
@@ -77,6 +124,9 @@ object ClockAlignment:
 
   /** Readings that the estimate between the bounds is made from. */
   val Memory = 128
+
+  /** Runs of the simulator before the present one that are remembered: more cannot end within one answer's time. */
+  val FormerRuns = 4
 
   /** Of one clock against the other, seconds a second: about twice what quartz clocks differ by. */
   val MaxDrift = 100e-6
@@ -94,8 +144,14 @@ object ClockAlignment:
       reading.validAt,
       reading.receivedAt,
       standsStill = false,
-      restarts = 0
+      restarts = 0,
+      since = reading.receivedAt,
+      former = Vector.empty
     )
+
+  /** By which two clocks drift apart between two instants, at most. */
+  private def drift(since: Instant, until: Instant): Span =
+    Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)
 
   /** Sorts numbers, not objects: it is asked for at every reading, and would take a tenth of a virtual flight. */
   private inline def lowQuartile(latest: Vector[Bounds])(inline leg: Bounds => Span): Span =

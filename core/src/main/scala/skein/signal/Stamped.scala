@@ -15,8 +15,8 @@ import skein.units.*
 final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): Stamped[B] = copy(value = f(value))
 
-  /** Whether this tells of a later moment: the simulator's clock says so, or it was asked for when the other had come.
-    * The latter holds also where the simulator has started again with an earlier clock.
+  /** Whether this tells of a later moment, by two readings alone: the simulator's clock says so, or it was asked for when
+    * the other had come. Over a restart of the simulator [[ClockAlignment.isNewer]] knows better.
     */
   def isNewerThan(other: Stamped[?]): Boolean = validAt > other.validAt || sentAt > other.receivedAt
 

@@ -1,7 +1,7 @@
 package skein.signal
 
 import org.scalacheck.Gen
-import org.scalacheck.Prop.forAll
+import org.scalacheck.Prop.{forAll, forAllNoShrink}
 import skein.units.*
 
 class ClockAlignmentLaws extends munit.ScalaCheckSuite:
@@ -105,3 +105,50 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
       math.ceil(slow.receivedAt.since(reading(0, (1, 1)).receivedAt).toNanos * ClockAlignment.MaxDrift).toLong
     )
     assertEquals((after.lower, after.upper), (fast.lower - slack, fast.upper + slack))
+
+  private def ms(at: Double) = Instant.Epoch + Span.ofMillis(at)
+
+  test("a late answer of the simulator's former run is older than the new run's, whatever its clock says"):
+    // Of torture's seed 4876: the second run's clock is 19.96 s behind the first's.
+    def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
+      Stamped((), ms(validMs), ms(sentMs), ms(receivedMs))
+    val before = answer(21659.429, 1700, 1700)
+    val next   = answer(1900, 1900, 1900)
+    val late   = answer(21559.429, 1600, 1988.846)
+    val known  = ClockAlignment.of(before).updated(next)
+    assert(ClockAlignment.of(next).isNewer(late, next), "two readings alone cannot tell")
+    assert(known.isNewer(next, late) && !known.isNewer(late, next))
+    assert(known.isNewer(before, late) && !known.isNewer(late, before))
+    assert(!known.isNewer(next, next), "nothing is newer than itself, be it answered at once")
+    assert(known.isOfFormerRun(late) && !known.isOfFormerRun(next))
+    assertEquals(known.updated(late), known)
+    assertEquals((known.restarts, known.updated(late).updated(answer(2000, 2000, 2000)).restarts), (1, 1))
+
+  property("which of two readings is newer is known over restarts, in whatever order the answers come"):
+    val restarts = Gen.listOfN(3, Gen.choose(1000.0, 20000.0).flatMap(jump => Gen.oneOf(jump, -jump)))
+    forAllNoShrink(Gen.listOfN(40, Gen.zip(Gen.choose(0.0, 300.0), Gen.choose(0.0, 300.0))), restarts):
+      (legs, jumps) =>
+        val aheadMs  = jumps.scanLeft(0.0)(_ + _)
+        val readings = legs.zipWithIndex.map: (leg, at) =>
+          val sampledMs = 1000 + 100.0 * at
+          val stamped   =
+            Stamped(at, ms(sampledMs + aheadMs(at / 10)), ms(sampledMs - leg._1), ms(sampledMs + leg._2))
+          if at % 10 == 0 then stamped.copy(receivedAt = ms(sampledMs)) else stamped
+        val arrived = readings.sortBy(_.receivedAt.toNanos)
+        val known   = arrived.tail.foldLeft(ClockAlignment.of(arrived.head))(_.updated(_))
+        val wrong   =
+          for one <- readings; other <- readings if known.isNewer(one, other) != one.value > other.value
+          yield (one, other)
+        wrong == Nil
+
+  test("of the runs before, the last few are remembered"):
+    def first(run: Int) = Stamped((), ms(100.0 * run - 5000.0 * run), ms(100.0 * run), ms(100.0 * run + 1))
+    val runs            = (0 to ClockAlignment.FormerRuns + 1).map(first)
+    val known           = runs.tail.foldLeft(ClockAlignment.of(runs.head))(_.updated(_))
+    assertEquals(known.former.size, ClockAlignment.FormerRuns)
+    assert(known.former.forall(_.former.isEmpty))
+    assertEquals(known.restarts, ClockAlignment.FormerRuns + 1)
+    assertEquals(
+      runs.map(known.isOfFormerRun),
+      false +: Vector.fill(ClockAlignment.FormerRuns)(true) :+ false
+    )

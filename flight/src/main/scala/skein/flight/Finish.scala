@@ -47,10 +47,11 @@ private object Finish:
       from: Option[Instant]
   ):
     def read(vehicle: String, state: Stamped[Kinematics]): Heard =
-      val isNews = states.get(vehicle).forall(state.isNewerThan)
+      val aligned = alignment.fold(ClockAlignment.of(state))(_.updated(state))
+      val isNews  = states.get(vehicle).forall(aligned.isNewer(state, _))
       copy(
         states = if isNews then states.updated(vehicle, state) else states,
-        alignment = Some(alignment.fold(ClockAlignment.of(state))(_.updated(state)))
+        alignment = Some(aligned)
       )
 
     def begun(at: Instant): Heard = if from.isDefined then this else copy(from = Some(at))

@@ -56,7 +56,7 @@ object StreamLoop:
         team.ticks(start + offset),
         settings.window,
         settings.early,
-        isNewer = (answered, held) => answered.state.isNewerThan(held.state)
+        isNewer = (answered, held) => team.isNewer(answered.state, held.state)
       )(() => team.read(vehicle))(
         onSkip = _.foreach(reading =>
           team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
@@ -71,7 +71,7 @@ object StreamLoop:
     Flow
       .fromGraph(
         JoinLatest[Int, Reading](everyone, team.settings.patience)(
-          isNewer = (arrived, held) => arrived.state.isNewerThan(held.state),
+          isNewer = (arrived, held) => team.isNewer(arrived.state, held.state),
           onStale = (vehicle, reading) =>
             team.log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
         )

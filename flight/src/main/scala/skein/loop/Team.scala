@@ -1,6 +1,6 @@
 package skein.loop
 
-import java.util.concurrent.atomic.{AtomicLongArray, AtomicReferenceArray}
+import java.util.concurrent.atomic.{AtomicLongArray, AtomicReference, AtomicReferenceArray}
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
@@ -13,6 +13,7 @@ import skein.loop.planning.{Plan, PlanWorkers}
 import skein.policy.{Action, AgentPolicy, Fleet, Policy}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, Recorder}
+import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 import skein.vehicle.Setpoint
 
@@ -35,6 +36,9 @@ final class Team(
   // `futures` asks one vehicle from several threads at once.
   private val asked = AtomicLongArray(crafts.size)
 
+  // Known as answers come, before anything is made of them.
+  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+
   // The newest moves of each vehicle, oldest first: as many as may be unanswered.
   private val moves = AtomicReferenceArray(Array.fill(crafts.size)(Vector.empty[Future[Any]]))
 
@@ -45,12 +49,17 @@ final class Team(
       .read()
       .map:
         case Right(state) =>
+          val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
           val reading = Reading(vehicle, sequence, state)
           log.read(reading)
           Right(reading)
         case Left(error) =>
           log.failed(vehicle, s"reading $sequence", error)
           Left(error)
+
+  /** Whether one answer tells of a later moment than another, by all that the team's vehicles have told. */
+  def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
   private val sensors = vehicles.toVector.flatMap: vehicle =>
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
@@ -64,7 +73,7 @@ final class Team(
       .at[VehicleError, SensorReading, NotUsed](
         ticks(start + settings.period / 4),
         settings.window,
-        isNewer = (answered, held) => answered.values.isNewerThan(held.values)
+        isNewer = (answered, held) => isNewer(answered.values, held.values)
       )(() => sensor.read())(
         onSkip = _.foreach(reading =>
           log.note(

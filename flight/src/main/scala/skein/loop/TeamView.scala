@@ -42,13 +42,14 @@ final case class TeamView(
   def withReading(reading: Reading): TeamView =
     copy(
       readings = readings.updated(reading.vehicle, Some(reading)),
-      alignment = Some(alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state)))
+      alignment = Some(aligned(reading))
     ).withEvidence(Evidence.Seen(reading.vehicle, reading.state))
 
   /** Nothing changes where a newer one is held already. */
   def withSensorReading(reading: SensorReading): TeamView =
-    val held = sensed(reading.vehicle)
-    if held.get(reading.sensor).exists(known => !reading.values.isNewerThan(known.values)) then this
+    val held   = sensed(reading.vehicle)
+    val clocks = alignment.getOrElse(ClockAlignment.of(reading.values))
+    if held.get(reading.sensor).exists(known => !clocks.isNewer(reading.values, known.values)) then this
     else copy(sensed = sensed.updated(reading.vehicle, held.updated(reading.sensor, reading)))
 
   def withMove(move: Move): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
@@ -65,7 +66,10 @@ final case class TeamView(
 
   /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
   def isNews(reading: Reading): Boolean =
-    readings(reading.vehicle).forall(held => reading.state.isNewerThan(held.state))
+    readings(reading.vehicle).forall(held => aligned(reading).isNewer(reading.state, held.state))
+
+  private def aligned(reading: Reading): ClockAlignment =
+    alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state))
 
   /** Whether every vehicle was seen at least once; only then can be decided. */
   def isComplete: Boolean = readings.forall(_.isDefined)

@@ -144,20 +144,21 @@ private[torture] object KnowledgeChecks:
 
   private def where(decision: Decision) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
-  /** Whether one state was sampled after another, said without the loop's own word for it: so that the controller could
-    * know it, and truly. Of a simulator that was started again with an earlier clock, an answer of the old run that comes
-    * late looks newer, and is not.
+  /** Whether one state was truly sampled after another, said without the loop's own word for it. Where the simulator was
+    * started again between them with nearly the same clock, only if what they tell shows it.
     */
   private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
+    val offsets                               = clockOffset(runs, one).zip(clockOffset(runs, other))
     def follows(a: Stamped[?], b: Stamped[?]) = a.validAt > b.validAt || a.sentAt > b.receivedAt
-    def truly = sampledAt(runs, one).zip(sampledAt(runs, other)).forall((mine, its) => mine > its)
-    follows(one, other) && !follows(other, one) && truly
+    val isShown = offsets.exists((mine, its) => (mine - its).max(its - mine) >= Noticed) ||
+      (follows(one, other) && !follows(other, one))
+    isShown && offsets.forall((mine, its) => one.validAt + mine > other.validAt + its)
 
-  /** On the controller's clock: by the run of the simulator whose answer can have come from within the question's time. */
-  private def sampledAt(runs: Vector[Run], state: Stamped[?]): Option[Instant] =
-    runs
-      .map(run => state.validAt + run.clockOffset)
-      .find(at => at >= state.sentAt && at <= state.receivedAt)
+  /** Of the run of the simulator whose answer can have come from within the question's time. */
+  private def clockOffset(runs: Vector[Run], state: Stamped[?]): Option[Span] =
+    runs.map(_.clockOffset).find: offset =>
+      val at = state.validAt + offset
+      at >= state.sentAt && at <= state.receivedAt
 
   /** What one vehicle told, in the order in which it came. */
   private final class History(answers: Vector[Answer]):

@@ -54,6 +54,18 @@ class TeamViewSuite extends munit.FunSuite:
     assert(view.isNews(reading(0, 3, 111, 90, 160)))
     assert(view.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
+  test("a late answer of the simulator's former run is no news, nor does it move the clocks' estimate"):
+    val next = reading(0, 3, 20, 200, 230)
+    val view = TeamView.empty(2).withReading(later).withReading(next)
+    assert(!view.isNews(reading(0, 2, 170, 160, 240)), "by its clock alone it would be")
+    assert(view.isNews(reading(1, 2, 170, 160, 240)), "of another vehicle nothing newer is held")
+    assertEquals(view.withReading(reading(1, 2, 170, 160, 240)).alignment, view.alignment)
+    val held = reading(0, 3, 20, 200, 230).state.map(_ => Vector(1.0))
+    val said = view.withSensorReading(SensorReading(0, "gps", 3, Vector("x"), held))
+    val old  =
+      SensorReading(0, "gps", 2, Vector("x"), reading(0, 2, 170, 160, 240).state.map(_ => Vector(0.0)))
+    assertEquals(said.withSensorReading(old), said)
+
   test("a vehicle is taken to be where it was read, or estimated, and to head where it was last told"):
     val fleet = PaperDuel().fleet
     val view  = TeamView.empty(2).withReading(first).withReading(other)

@@ -206,7 +206,11 @@ class ChecksSuite extends munit.FunSuite:
     val next           = answer(30594.875, 35000, 35129.657)
     val later          = answer(30665.453, 35100, 35196.082)
     assert(!KnowledgeChecks.isNewer(runs)(late, next))
+    assert(KnowledgeChecks.isNewer(runs)(next, late), "though its clock is the earlier one")
     assert(KnowledgeChecks.isNewer(runs)(later, next))
+    val atOnce = answer(34992.9, 34900, 35100)
+    val again  = answer(34992.9 - 4466.95, 34990, 35110)
+    assert(!KnowledgeChecks.isNewer(runs)(again, atOnce) && !KnowledgeChecks.isNewer(runs)(atOnce, again))
     assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")
 
   test("a reading on record that no vehicle gave"):
