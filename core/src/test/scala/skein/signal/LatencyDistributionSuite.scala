@@ -52,8 +52,15 @@ class LatencyDistributionSuite extends munit.FunSuite:
   test("one sample is a constant"):
     assertEquals(ofSamples(List(30)), Constant(Span.ofMillis(30)))
 
-  test("the paper's links have the quantiles that were published of them"):
+  test("the paper's links have the quantiles that were published of them, in percent and ms"):
+    val percent                               = Seq(0, 1, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99, 100)
     def ms(distribution: LatencyDistribution) =
-      Seq(0.0, 0.05, 0.5, 0.95, 0.99, 1.0).map(p => (distribution.quantile(p).toMillis * 10).round / 10.0)
-    assertEquals(ms(Direct), Seq(17.8, 22.4, 35.9, 53.8, 58.3, 85.4))
-    assertEquals(ms(Vpn), Seq(38.3, 64.8, 99.4, 148.2, 165.5, 207.4))
+      percent.map(p => (distribution.quantile(p / 100.0).toMillis * 10).round / 10.0)
+    assertEquals(
+      ms(Direct),
+      Seq(17.8, 20.8, 22.4, 23.8, 26.1, 28.2, 31.2, 35.9, 40.1, 44.0, 47.6, 51.3, 53.8, 58.3, 85.4)
+    )
+    assertEquals(
+      ms(Vpn),
+      Seq(38.3, 53.7, 64.8, 74.2, 81.3, 87.2, 94.9, 99.4, 106.3, 113.2, 124.8, 137.9, 148.2, 165.5, 207.4)
+    )

@@ -29,5 +29,13 @@ object Equivalent:
     Equivalent("Ordeal.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
     Equivalent("Ordeal.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
     Equivalent("Ordeal.scala", "random.nextDouble() < 0.6", "<", "<=", Never),
-    Equivalent("Ordeal.scala", "random.nextDouble() < p", "<", "<=", Never)
+    Equivalent("Ordeal.scala", "random.nextDouble() < p", "<", "<=", Never),
+    Equivalent("LatencySampler.scala", "random.nextDouble() < busyShare", "<", "<=", Never),
+    Equivalent(
+      "ScenarioTables.scala",
+      "measures.head.measure.isCount",
+      "head",
+      "last",
+      "one measure of several flights"
+    )
   )

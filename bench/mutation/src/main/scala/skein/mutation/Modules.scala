@@ -28,6 +28,11 @@ private object Modules:
     ),
     Module("report", "cli/src/main/scala/skein/report", Vector("skein.report.*")),
     Module("measure", "flight/src/main/scala/skein/measure", Vector("skein.measure.*", "skein.report.*")),
+    Module(
+      "scenario",
+      "core/src/main/scala/skein/scenario",
+      Vector("skein.scenario.*", "skein.measure.*", "skein.report.*")
+    ),
     Module("torture", "flight/src/main/scala/skein/torture", Vector("skein.torture.*Suite"))
   )
 

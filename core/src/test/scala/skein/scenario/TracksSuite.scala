@@ -1,0 +1,143 @@
+package skein.scenario
+
+import skein.policy.Role
+import skein.units.*
+
+/** Where vehicles were, and what of it is measured, on flights whose numbers are known without computing them. */
+class TracksSuite extends munit.FunSuite:
+
+  private def s(seconds: Double) = Instant.Epoch + Span.ofSeconds(seconds)
+
+  /** North by a number of metres a second. */
+  private def flying(name: String, fromS: Double, toS: Double, northMps: Double, eastM: Double = 0) =
+    Track.ofPositions(
+      name,
+      "Scout",
+      Vector(fromS, toS).map(at => (s(at), Vector3(northMps * at, eastM, -10)))
+    )
+
+  private def tracks(all: Track*): Tracks = Tracks.of(all.toVector).getOrElse(fail("no tracks"))
+
+  test("a track is straight between its samples, and stands before the first and after the last"):
+    val track = Track.of(
+      "One",
+      "Leader",
+      Vector(
+        (s(3), Vector3(5, 1, -2), Vector3(4, 0, 0)),
+        (s(1), Vector3(1, 0, -1), Vector3(2, 0, 0)),
+        (s(1), Vector3(9, 9, 9), Vector3.Zero)
+      )
+    )
+    assertEquals(Seq(0.0, 1.0, 1.5, 3.0, 4.0).map(at => track.at(s(at)).x), Seq(1.0, 1.0, 2.0, 5.0, 5.0))
+    assertEquals(track.velocityAt(s(2)), Vector3(3, 0, 0))
+    assertEquals((track.from, track.to), (s(1), s(3)))
+    assert(track.isA(Role.Leader) && !track.isA(Role.Follower))
+
+  test("where velocities were not measured they are those of the way to the next sample, the last as before"):
+    val track = Track.ofPositions(
+      "One",
+      "Scout",
+      Vector((s(0), Vector3.Zero), (s(2), Vector3(4, 0, 0)), (s(3), Vector3(4, 5, 0)))
+    )
+    assertEquals(track.velocitiesNed, Vector(Vector3(2, 0, 0), Vector3(0, 5, 0), Vector3(0, 5, 0)))
+    assertEquals(
+      Track.ofPositions("One", "Scout", Vector((s(0), Vector3.Zero))).velocitiesNed,
+      Vector(Vector3.Zero)
+    )
+
+  test("vehicles are compared every 20 ms for as long as all were seen"):
+    val both = tracks(flying("One", 0, 2, 1), flying("Two", 0.5, 3, 2, eastM = 4))
+    assertEquals((both.instants.size, both.lastS, both.stepS), (76, 1.5, 0.02))
+    assertEqualsDouble(both.northM(0)(0), 0.5, 1e-9)
+    // At 1 s: 1 m and 2 m north.
+    assertEqualsDouble(both.distanceM(0, 1, 25), math.sqrt(17), 1e-9)
+    assertEqualsDouble(both.distanceM(0, 1, 0, 25), 0, 1e-9)
+    assertEquals(both.places(25).count, 2)
+    assertEqualsDouble(both.places(25).distanceM(1, 0), math.sqrt(17), 1e-9)
+    assertEquals(both.altitudeM(1, 3), 10.0)
+    assertEquals(both.velocityNed(1, 10), Vector3(2, 0, 0))
+    assertEquals(both.first(1).instants.size, 101)
+    assert(both.first(2) eq both)
+
+  test("vehicles that were never seen at one time have no common flight"):
+    assertEquals(Tracks.of(Vector(flying("One", 0, 1, 1), flying("Two", 1, 2, 1))), None)
+    assertEquals(Tracks.of(Vector.empty), None)
+
+  test("how far a flight is from another counts as long as both flew, with the height where it is asked for"):
+    def at(height: Double, seconds: Double) =
+      tracks(Track.ofPositions("One", "Scout", Vector(0.0, seconds).map(t => (s(t), Vector3(3, 0, -height)))))
+    val off = tracks(Track.ofPositions("One", "Scout", Vector(0.0, 9.0).map(t => (s(t), Vector3(6, 0, -14)))))
+    assertEqualsDouble(at(10, 2).rmsFrom(off, inSpace = true), 5, 1e-9)
+    assertEqualsDouble(off.rmsFrom(at(10, 2), inSpace = false), 3, 1e-9)
+
+  test("windows: the whole, all but the begin, the last seconds; what was too short has none, or is whole"):
+    val flight             = tracks(flying("One", 0, 10, 1))
+    def of(window: Window) = window.of(flight).map(range => (range.head, range.last))
+    assertEquals(of(Window.Whole), Some((0, 500)))
+    assertEquals(of(Window.After(4)), Some((200, 500)))
+    assertEquals(of(Window.After(11)), Some((0, 500)))
+    assertEquals(of(Window.Last(2)), Some((400, 500)))
+    // A flight of 10 s that lost half a second at its ends still has its last 10.5.
+    assertEquals(of(Window.Last(10.5)), Some((0, 500)))
+    assertEquals(of(Window.Last(10.6)), None)
+
+  test("reductions of 3, 4 and 8"):
+    val values = Vector(3.0, 4.0, 8.0)
+    assertEquals(Reduction.Mean.of(values), 5.0)
+    assertEqualsDouble(Reduction.Rms.of(values), math.sqrt(89 / 3.0), 1e-12)
+    assertEqualsDouble(Reduction.Sd.of(values), math.sqrt(14 / 3.0), 1e-12)
+    assertEquals((Reduction.Least.of(values), Reduction.Most.of(values)), (3.0, 8.0))
+
+  private def places(northEastM: (Double, Double)*) = Places(
+    IArray.from(northEastM.map(_._1)),
+    IArray.from(northEastM.map(_._2)),
+    IArray.fill(northEastM.size)(-5.0)
+  )
+
+  test("quantities of places: off the ring, the widest gap, the nearest two"):
+    val around = places((1, 1), (1, 6), (1, -6), (-6, 1))
+    // 5, 7 and 7 m from the evader.
+    assertEqualsDouble(OffRing(6).of(around), 1, 1e-9)
+    assertEqualsDouble(OffRing(5).of(around), math.sqrt(8 / 3.0), 1e-9)
+    assertEqualsDouble(WidestGap.of(around), 180, 1e-9)
+    assertEqualsDouble(WidestGap.of(places((0, 0), (5, 0), (5, 5), (0, 5))), 270, 1e-9)
+    assertEqualsDouble(WidestGap.of(places((0, 0), (0, 5), (-5, 0), (0, -5), (5, 0))), 90, 1e-9)
+    assertEqualsDouble(Separation.of(around), 5, 1e-9)
+    assertEqualsDouble(Separation.of(places((0, 0), (9, 0), (40, 0), (43, 4))), 5, 1e-9)
+
+  test("slots turn with the leader: on the way back, ahead is south and right is west"):
+    val circuit = Formation(straightM = 50, radiusM = 20).circuit
+    val slots   = OffSlots(circuit, IArray(-4.0, -4.0), IArray(4.0, -4.0))
+    assertEqualsDouble(slots.of(places((25, 0), (21, 4), (21, -4))), 0, 1e-9)
+    assertEqualsDouble(slots.of(places((25, 40), (29, 36), (29, 44))), 0, 1e-9)
+    assertEqualsDouble(slots.of(places((25, 40), (29, 36), (32, 44))), math.sqrt(4.5), 1e-9)
+
+  test("a series over time: when it was most, how long it was low, and its root of the mean square"):
+    val flight = tracks(flying("One", 0, 10, 1), flying("Two", 0, 10, -1))
+    val apart  = Series("apart", "m")(tracks => tracks.distanceM(0, 1, _))
+    assertEquals(apart.mostAt("at").of(flight), Some(10.0))
+    assertEqualsDouble(apart.mean("mean").of(flight).get, 10, 1e-9)
+    // Of a line from 0 to 20: 20 / √3, and 20 / √12 about its middle.
+    assertEqualsDouble(apart.rms("rms").of(flight).get, 20 / math.sqrt(3), 0.02)
+    assertEqualsDouble(apart.sd("sd").of(flight).get, 20 / math.sqrt(12), 0.02)
+    assertEqualsDouble(apart.timeWhere("low", Window.After(2))(_ <= 8).of(flight).get, 2.02, 1e-9)
+    assertEquals(apart.curve(flight).points.last, (10.0, 20.0))
+    assertEquals((apart.title, Series("ratio", "")(_ => _ => 1).title), ("apart, m", "ratio"))
+    val arrived = Measure.count("arrived")(_.vehicles.size)
+    assertEquals((arrived.title, arrived.isCount, arrived.of(flight)), ("arrived", true, Some(2.0)))
+
+  test("a result finds its measures by name, and lists violations in the order of their times"):
+    final case class Near() extends Scenario:
+      def agents            = Vector.empty
+      override def measures = Vector(Measure("apart", "m")(tracks => Some(tracks.distanceM(0, 1, 500))))
+      override def limits   = Vector(Limit.speed(MetresPerSecond(0.5)), Limit.separation(Metres(4)))
+    val flight = tracks(flying("One", 0, 10, 1), flying("Two", 0, 10, 0, eastM = 0))
+    val result = Result.of(Near(), flight)
+    assertEqualsDouble(result.value("apart").get, 10, 1e-9)
+    assertEquals(result.violations.map(_.fromS), result.violations.map(_.fromS).sorted)
+    assertEquals(
+      result.violations.map(one => (one.limit.name, one.vehicles)),
+      Vector("speed" -> Vector(0), "separation" -> Vector(0, 1))
+    )
+    val error = intercept[IllegalArgumentException](result.value("nearest"))
+    assert(error.getMessage.contains("there are: apart"), error.getMessage)
