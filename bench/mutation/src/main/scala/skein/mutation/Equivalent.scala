@@ -32,6 +32,20 @@ object Equivalent:
     Equivalent("Ordeal.scala", "random.nextDouble() < p", "<", "<=", Never),
     Equivalent("LatencySampler.scala", "random.nextDouble() < busyShare", "<", "<=", Never),
     Equivalent(
+      "Quantity.scala",
+      "values.map(value => (value - mean) * (value - mean))",
+      "-",
+      "+",
+      "the sum of squares less the mean's is the same sum"
+    ),
+    Equivalent(
+      "SpreadTable.scala",
+      "truths.get(groups(group).head.policy)",
+      "head",
+      "last",
+      "a group's flights share their policy, which is in its name"
+    ),
+    Equivalent(
       "ScenarioTables.scala",
       "measures.head.measure.isCount",
       "head",
