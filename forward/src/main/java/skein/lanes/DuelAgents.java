@@ -15,9 +15,13 @@ final class DuelAgents extends TimetableAgents {
   private final int self;
   private final LaneObservation sight;
 
+  /** Whether somebody outside looks at what it sees. */
+  private final boolean isTold;
+
   /**
    * @param self the vehicle's number, 0 or 1
    * @param effort where the changes of the heading are added up
+   * @param isTold whether somebody outside looks at all that it sees
    */
   DuelAgents(
       int self,
@@ -25,8 +29,10 @@ final class DuelAgents extends TimetableAgents {
       TimetableModel model,
       LanePolicy policy,
       float[] effort,
-      LaneObservation sight) {
+      LaneObservation sight,
+      boolean isTold) {
     super(model.vehicles(duelist));
+    this.isTold = isTold;
     this.self = self;
     this.policy = policy;
     this.effort = effort;
@@ -43,9 +49,24 @@ final class DuelAgents extends TimetableAgents {
     Arrays.fill(effort, 0f);
   }
 
+  /** One world begins anew where its vehicle starts, commanded along a heading all the while. */
+  void restart(int world, float headingRad) {
+    vehicles.restart(world);
+    policy.restart(world, headingRad);
+    float cos = (float) StrictMath.cos(headingRad), sin = (float) StrictMath.sin(headingRad);
+    for (int i = world; i < headings.cos.length; i += WORLDS) {
+      headings.cos[i] = cos;
+      headings.sin[i] = sin;
+    }
+  }
+
   @Override
   boolean needsVelocity() {
-    return policy.needsVelocity();
+    return isTold || policy.needsVelocity();
+  }
+
+  private boolean needsAges() {
+    return isTold || policy.needsAges();
   }
 
   @Override
@@ -58,24 +79,29 @@ final class DuelAgents extends TimetableAgents {
       int after,
       float[] times,
       int number) {
+    see(all, views, view, times, number);
     TimetableAgents opponent = all[1 - self];
-    TimetableVehicles ours = vehicles, theirs = opponent.vehicles;
+    policy.decide(sight, headings, before, opponent.headings, known, headings, after);
+    policy.commit();
+    add(policy.turned, effort);
+  }
+
+  /** Looks at what a decision is made upon. */
+  void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
+    TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
     difference(theirs.seenX, opponentSeen, ours.seenX, ownSeen, sight.dx);
     difference(theirs.seenY, opponentSeen, ours.seenY, ownSeen, sight.dy);
-    if (policy.needsVelocity()) {
+    if (needsVelocity()) {
       difference(theirs.seenVx, opponentSeen, ours.seenVx, ownSeen, sight.dvx);
       difference(theirs.seenVy, opponentSeen, ours.seenVy, ownSeen, sight.dvy);
     }
     Arrays.fill(sight.elapsed, times[number]);
-    if (policy.needsAges()) {
+    if (needsAges()) {
       Arrays.fill(sight.ownAge, times[number + 1]);
       Arrays.fill(sight.opponentAge, times[number + 2]);
     }
-    policy.decide(sight, headings, before, opponent.headings, known, headings, after);
-    policy.commit();
-    add(policy.turned, effort);
   }
 
   private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {

@@ -73,6 +73,15 @@ final class LaneDragFlight {
     Arrays.fill(vy, 0f);
   }
 
+  /** Places one world's at rest. */
+  void rest(int world, float startX, float startY) {
+    x[world] = fromX[world] = startX;
+    y[world] = fromY[world] = startY;
+    for (float[] zero :
+        new float[][] {vx, vy, alongX, alongY, goalX, goalY, lackX, lackY, crossX, crossY})
+      zero[world] = 0f;
+  }
+
   /** Commands act from now on. */
   void act(Directions commanded, int from) {
     System.arraycopy(commanded.cos, from, alongX, 0, WORLDS);

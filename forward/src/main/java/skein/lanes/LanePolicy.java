@@ -131,6 +131,17 @@ class LanePolicy {
     System.arraycopy(initial, 0, memory, 0, initial.length);
   }
 
+  /** One world's policy begins anew. */
+  void restart(int world, float headingRad) {
+    heading[world] = headingRad;
+    for (int i = world; i < memory.length; i += WORLDS) memory[i] = initial[i];
+  }
+
+  /** Tells one world's policy of a single number that number. */
+  void tell(int world, float number) {
+    parameters[world] = number;
+  }
+
   /** All worlds' decisions become commands. */
   void commit() {
     System.arraycopy(newHeading, 0, heading, 0, WORLDS);

@@ -26,6 +26,11 @@ final class TimetableDragVehicles extends TimetableVehicles {
   }
 
   @Override
+  void rest(int world) {
+    flight.rest(world, startX[world], startY[world]);
+  }
+
+  @Override
   void look(float[] times, int at, int into, boolean withVelocity) {
     flyTo(times, at);
     System.arraycopy(flight.x, 0, seenX, into, WORLDS);

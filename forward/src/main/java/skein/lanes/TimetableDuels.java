@@ -36,8 +36,8 @@ final class TimetableDuels extends DuelKernel implements TimetableScores {
       LanePolicy evaderPolicy) {
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     LaneObservation sight = new LaneObservation();
-    DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight),
-        pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight);
+    DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight, false),
+        pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight, false);
     evaders = evader.vehicles;
     pursuers = pursuer.vehicles;
     kernel = new TimetableKernel(new TimetableAgents[] {evader, pursuer}, this);

@@ -20,6 +20,12 @@ final class TimetableKernel {
   private final TimetableScores scores;
   private final boolean withVelocity;
 
+  // Of the episode's timetable.
+  private int[] operations, views;
+  private float[] times;
+  private Courses courses;
+  private boolean readsVelocity;
+
   /**
    * @param agents by the vehicle's number in the timetable
    */
@@ -38,54 +44,63 @@ final class TimetableKernel {
    * @param worlds those that count are the first
    */
   void fly(Timetable timetable, int worlds) {
+    start(timetable, worlds);
+    for (int i = 0; i < timetable.size(); i++) perform(i);
+    scores.finish();
+  }
+
+  /** Back to the start of an episode. */
+  void start(Timetable timetable, int worlds) {
     if (timetable.vehicles() != agents.length)
       throw new IllegalArgumentException(
           "a timetable of " + timetable.vehicles() + " vehicles for " + agents.length);
     for (TimetableAgents each : agents) each.start(timetable, worlds);
     scores.start();
-    int[] operations = timetable.operations(), views = timetable.views();
-    float[] times = timetable.times();
-    Courses courses = timetable.courses();
+    operations = timetable.operations();
+    views = timetable.views();
+    times = timetable.times();
+    courses = timetable.courses();
     // Predictions start from velocities, whoever looks at them.
-    boolean readsVelocity = withVelocity || !courses.isEmpty();
-    for (int i = 0; i < timetable.size(); i++) {
-      int field = i * Timetable.Fields(), number = i * Timetable.Numbers();
-      TimetableAgents agent = agents[operations[field + 1]];
-      int first = operations[field + 2];
-      switch (operations[field]) {
-        case LOOK ->
-            agent.vehicles.look(
-                times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
-        case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
-        case SCORE ->
-            scores.score(
-                agents, views, first * agents.length, operations[field + 3] != 0, times[number]);
-        case PREDICT ->
-            agent.vehicles.predicted.predict(
-                agent.vehicles.seenX,
-                agent.vehicles.seenY,
-                agent.vehicles.seenVx,
-                agent.vehicles.seenVy,
-                agent.headings,
-                first * WORLDS,
-                operations[field + 3] * WORLDS,
-                courses,
-                operations[field + 4],
-                withVelocity);
-        case CORRECT ->
-            agent.vehicles.predicted.correct(agent.headings, first * WORLDS, courses, operations[field + 3]);
-        default ->
-            agent.decide(
-                agents,
-                views,
-                first * agents.length,
-                operations[field + 3] * WORLDS,
-                operations[field + 4] * WORLDS,
-                operations[field + 5] * WORLDS,
-                times,
-                number);
-      }
+    readsVelocity = withVelocity || !courses.isEmpty();
+  }
+
+  /** Does the timetable's next operation. */
+  void perform(int operation) {
+    int field = operation * Timetable.Fields(), number = operation * Timetable.Numbers();
+    TimetableAgents agent = agents[operations[field + 1]];
+    int first = operations[field + 2];
+    switch (operations[field]) {
+      case LOOK ->
+          agent.vehicles.look(
+              times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
+      case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
+      case SCORE ->
+          scores.score(
+              agents, views, first * agents.length, operations[field + 3] != 0, times[number]);
+      case PREDICT ->
+          agent.vehicles.predicted.predict(
+              agent.vehicles.seenX,
+              agent.vehicles.seenY,
+              agent.vehicles.seenVx,
+              agent.vehicles.seenVy,
+              agent.headings,
+              first * WORLDS,
+              operations[field + 3] * WORLDS,
+              courses,
+              operations[field + 4],
+              withVelocity);
+      case CORRECT ->
+          agent.vehicles.predicted.correct(agent.headings, first * WORLDS, courses, operations[field + 3]);
+      default ->
+          agent.decide(
+              agents,
+              views,
+              first * agents.length,
+              operations[field + 3] * WORLDS,
+              operations[field + 4] * WORLDS,
+              operations[field + 5] * WORLDS,
+              times,
+              number);
     }
-    scores.finish();
   }
 }

@@ -44,6 +44,13 @@ final class TimetableLagVehicles extends TimetableVehicles {
   }
 
   @Override
+  void rest(int world) {
+    x[world] = startX[world];
+    y[world] = startY[world];
+    for (float[] zero : new float[][] {askedX, askedY, errorX, errorY}) zero[world] = 0f;
+  }
+
+  @Override
   void look(float[] times, int at, int into, boolean withVelocity) {
     lookAtPosition(into, times[at], times[at + 1]);
     if (withVelocity) lookAtVelocity(into, times[at + 1]);

@@ -39,6 +39,11 @@ final class TimetableQuadrotors extends TimetableVehicles {
   }
 
   @Override
+  void rest(int world) {
+    kernel.hover(world, hold);
+  }
+
+  @Override
   void look(float[] times, int at, int into, boolean withVelocity) {
     kernel.fly((int) times[at]);
     float sinceS = times[at + 1];

@@ -48,6 +48,20 @@ abstract class TimetableVehicles {
 
   abstract void start(int worlds);
 
+  /** One world's vehicle is at its start, at rest, and so tell all its readings. */
+  final void restart(int world) {
+    for (int i = world; i < seenX.length; i += WORLDS) {
+      seenX[i] = startX[world];
+      seenY[i] = startY[world];
+      seenVx[i] = 0f;
+      seenVy[i] = 0f;
+    }
+    rest(world);
+  }
+
+  /** Puts one world's vehicle to its start, at rest. */
+  abstract void rest(int world);
+
   /**
    * Reads the vehicles.
    *
