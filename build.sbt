@@ -46,8 +46,8 @@ addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
 lazy val root =
   project
     .in(file("."))
-    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, cli, bench, benchJmh)
-    .aggregate(mcap, view, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
+    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
+    .aggregate(mcap, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -137,10 +137,16 @@ lazy val flight = project
   .settings(underAgent)
   .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
 
+/** Episodes step by step, for learners. */
+lazy val environment = project
+  .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
+  .dependsOn(flight)
+  .settings(libraryDependencies ++= munit)
+
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view)
+  .dependsOn(flight % "compile->compile;test->test", view, environment)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
@@ -197,6 +203,15 @@ lazy val cli = project
       """esac""",
       """addJava "-Xlog:disable""""
     )
+  )
+
+/** From Python: `skein_uav`. Its tests run by `pytest python`, and from here where its packages can be installed. */
+lazy val python = project
+  .dependsOn(cli)
+  .settings(
+    publish / skip := true,
+    Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / stage).value, target.value, streams.value.log),
+    libraryDependencies ++= munit
   )
 
 /** Measurements: plain programs that print a witness of what they did. */

@@ -1,7 +1,7 @@
 package skein.cli
 
 import mainargs.{ParserForClass, arg}
-import skein.policy.{PolicyFamily, Role}
+import skein.policy.Role
 import skein.scenario.PaperDuel
 import skein.search.{Conditions, SearchQuestion}
 import skein.settings.PolicyFile
@@ -74,15 +74,4 @@ object ForwardOptions:
 
   /** A policy file, or a family with its defaults. */
   def policy(option: String, text: String, role: Role): Either[String, PolicyFile] =
-    val read = PolicyFamily.parse(text).toOption match
-      case Some(family) => PolicyFile.roleOf(
-          family,
-          Some(PolicyFile.name(role))
-        ).map(PolicyFile.ofDefaults(_, family))
-      case None => PolicyFile.read(text)
-    read.left
-      .map(mistake => s"$option: $mistake")
-      .filterOrElse(
-        _.role == role,
-        s"$option: expected a policy for the ${PolicyFile.name(role)}, came one for the other role: $text"
-      )
+    PolicyFile.chosen(role, text).left.map(mistake => s"$option: $mistake")

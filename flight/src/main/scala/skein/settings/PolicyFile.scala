@@ -83,6 +83,20 @@ object PolicyFile:
             s"family ${family.name} is for ${several.map(name).mkString(" and ")}: expected one of them, came none"
           )
 
+  /** A policy for a role: of a file, or of a family with its defaults.
+    *
+    * @return
+    *   or what was expected and came
+    */
+  def chosen(role: Role, text: String): Either[String, PolicyFile] =
+    val read = PolicyFamily.parse(text) match
+      case Right(family) => roleOf(family, Some(name(role))).map(ofDefaults(_, family))
+      case Left(_)       => PolicyFile.read(text)
+    read.filterOrElse(
+      _.role == role,
+      s"expected a policy for the ${name(role)}, came one for the other role: $text"
+    )
+
   /** Reads a file.
     *
     * @return

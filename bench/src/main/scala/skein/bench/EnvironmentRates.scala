@@ -1,0 +1,53 @@
+package skein.bench
+
+import java.nio.{ByteBuffer, ByteOrder}
+import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
+import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+
+/** How fast environments fly where nobody looks at them, beside the engine's own flights: what
+  * `bench/python/environments.py` is held against. The duel over `vpn`, under `stream`.
+  */
+@main def EnvironmentRates(): Unit =
+  for count <- Seq(64, 1024, 4096) do
+    val (steps, distance) = environments(count)
+    println(f"environments n=$count: ${steps / 1e6}%.1f M steps/s, first ends at $distance%.3f m")
+  val (steps, distance) = flights(4096)
+  println(f"flights of a search n=4096: ${steps / 1e6}%.1f M steps/s, first comes to $distance%.3f m")
+
+private val periods = 600
+
+private def environments(count: Int): (Double, Float) =
+  val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count)).order(ByteOrder.nativeOrder)
+  val batch =
+    EnvironmentBatch.of(EnvironmentSettings(), count, Autoreset.NextStep, block).fold(sys.error(_), identity)
+  batch.reset(Array.tabulate(count)(_.toLong))
+  val rate = bestRate(() => (0 until 200).foreach(_ => batch.step()))
+  (rate * 200 * count, block.getFloat(4 * (2 + 2 * 9) * count))
+
+private def flights(count: Int): (Double, Float) =
+  val batch  = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced.AirSim)
+  val worlds = new DuelWorlds:
+    def size                        = count
+    override def shareEpisodes      = true
+    def key(world: Int): Int        = world / 128
+    def link(world: Int): Delays    = DelayTable.vpn
+    def pursuer(world: Int): Policy = pursuing
+    def evader(world: Int): Policy  = evading
+    private val (pursuing, evading) = (PaperPursuer(), PaperEvader())
+  var last = 0f
+  val rate = bestRate(() => last = batch.fly(worlds).meanLast10sM(0))
+  (rate * periods * count, last)
+
+/** Calls a second: the best of ten stretches of 0.3 s, after 3 s that do not count. */
+private def bestRate(call: () => Unit): Double =
+  def stretch(seconds: Double): Double =
+    val from  = System.nanoTime()
+    var calls = 0
+    while System.nanoTime() - from < seconds * 1e9 do
+      call()
+      calls += 1
+    calls / ((System.nanoTime() - from) * 1e-9)
+  stretch(3): Unit
+  Seq.fill(10)(stretch(0.3)).max

@@ -1,0 +1,116 @@
+package skein.environment
+
+import java.nio.ByteBuffer
+import java.util.stream.IntStream
+import scala.util.Try
+import skein.lanes.SteppedDuels.WORLDS
+
+/** Many episodes of the duel, step by step: one side or both decide from outside, at the moments at which the loop lets
+  * them, on readings as old as the link makes them. [[EnvironmentSettings]] says which, [[EnvironmentBuffers]] what is
+  * seen and done.
+  *
+  * A step is one decision. Its reward is, for a pursuer, minus the distances scored meanwhile (once a period) over 10 m,
+  * and 10 for a capture; for an evader the opposite. So the rewards of an episode without a capture add up to its mean
+  * distance as `./skein search` tells it, times the number of periods over 10 m.
+  *
+  * One call at a time. Allocates nothing at a step but where many groups share the processors.
+  *
+  * @param count
+  *   of environments
+  * @param block
+  *   of [[EnvironmentBuffers.bytes]]
+  */
+final class EnvironmentBatch private (
+    config: EnvironmentSettings.Resolved,
+    val count: Int,
+    autoreset: Autoreset,
+    block: ByteBuffer
+):
+  private val timetables = EnvironmentTimetables(config)
+  private val buffers    = EnvironmentBuffers(block, config.learners.size, count)
+  private val groups     = Array.tabulate((count + WORLDS - 1) / WORLDS): group =>
+    EnvironmentGroup(
+      config,
+      timetables,
+      autoreset,
+      group * WORLDS,
+      (count - group * WORLDS).min(WORLDS),
+      buffers
+    )
+  private var isReset = false
+
+  /** Every environment begins anew.
+    *
+    * @param seeds
+    *   one each; a negative one: the environment goes on with its own
+    */
+  def reset(seeds: Array[Long]): Unit =
+    require(seeds.length == count, s"expected $count seeds, came ${seeds.length}")
+    groups.foreach(_.reset(seeds))
+    isReset = true
+
+  /** Those of the mask begin anew. */
+  def reset(seeds: Array[Long], mask: Array[Boolean]): Unit =
+    require(seeds.length == count && mask.length == count, s"expected $count seeds and as long a mask")
+    require(isReset, "expected a reset of all environments before one of some")
+    groups.foreach(_.reset(seeds, mask))
+
+  /** One step of every environment.
+    *
+    * @throws IllegalArgumentException
+    *   if an action is not finite; then nothing was done
+    * @throws IllegalStateException
+    *   if an episode has ended, and was not reset
+    */
+  def step(): Unit =
+    if !isReset then throw IllegalStateException("expected reset() before the first step()")
+    var i = 0
+    while i < groups.length do
+      val misfit = groups(i).misfit()
+      if misfit >= 0 then
+        throw IllegalArgumentException(
+          s"action of environment $misfit: expected a number from -1 to 1, came none"
+        )
+      val ended = groups(i).ended
+      if ended >= 0 then
+        throw IllegalStateException(s"environment $ended has ended; reset it before the next step()")
+      i += 1
+    if groups.length < EnvironmentBatch.Together then groups.foreach(_.step())
+    else IntStream.range(0, groups.length).parallel().forEach(groups(_).step())
+
+object EnvironmentBatch:
+  val Most = 1 << 20
+
+  /** Fewer groups are flown by the caller's thread alone. */
+  private val Together = 4
+
+  /** @return or what was expected and came */
+  def of(
+      settings: EnvironmentSettings,
+      count: Int,
+      autoreset: Autoreset,
+      block: ByteBuffer
+  ): Either[String, EnvironmentBatch] =
+    for
+      config <- settings.resolved
+      _      <- Either.cond(count >= 1 && count <= Most, (), s"num_envs: expected 1 to $Most, came $count")
+      made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
+    yield made
+
+  /** The same from names and texts, for callers of other languages.
+    *
+    * @param settings
+    *   by the names of [[EnvironmentSettings]] in snake case; what is missing is the default
+    * @throws IllegalArgumentException
+    *   with what was expected and came
+    */
+  def make(
+      settings: java.util.Map[String, String],
+      count: Int,
+      autoreset: Int,
+      block: ByteBuffer
+  ): EnvironmentBatch =
+    EnvironmentSettings
+      .read(settings)
+      .flatMap(of(_, count, Autoreset.fromOrdinal(autoreset), block))
+      .fold(mistake => throw IllegalArgumentException(mistake), identity)

@@ -1,0 +1,109 @@
+package skein.environment
+
+import java.io.{DataInputStream, DataOutputStream, EOFException, IOException}
+import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
+import java.nio.channels.{Channels, FileChannel, ServerSocketChannel, SocketChannel}
+import java.nio.file.{Files, Path, StandardOpenOption}
+import java.nio.file.attribute.PosixFilePermissions
+import scala.jdk.CollectionConverters.*
+import scala.util.Try
+import scala.util.control.NonFatal
+
+/** Environments behind a Unix socket, for processes that fork, or that no Java should live in. What is seen and done
+  * stands in a file that both sides map ([[EnvironmentBuffers]]); over the socket go only words:
+  *
+  * A connection is one batch. It begins with a text of `name=value` lines: `count`, `autoreset` (0 next step, 1 same
+  * step, 2 disabled), `file`, and the settings. Then each request is a byte: 1 for a step; 2 for a reset, and a seed an
+  * environment (64 bits); 3 for a reset of some, with a byte an environment behind the seeds. Every answer, also the
+  * one to the text, is a byte: 0 done; 1 wrong arguments, 2 not now, both with a text. A text is its length in bytes
+  * (32 bits) and UTF-8. Numbers are big-endian.
+  *
+  * It ends with its standard input: when whoever started it ends.
+  */
+object EnvironmentServer:
+  private val MostText = 1 << 16
+
+  def main(arguments: Array[String]): Unit = arguments match
+    case Array(path) =>
+      val server = ServerSocketChannel.open(StandardProtocolFamily.UNIX)
+      server.bind(UnixDomainSocketAddress.of(path)): Unit
+      Files.setPosixFilePermissions(Path.of(path), PosixFilePermissions.fromString("rw-------")): Unit
+      daemon(() => while true do accept(server))
+      println("ready")
+      while System.in.read() >= 0 do ()
+      server.close()
+      val _ = Files.deleteIfExists(Path.of(path))
+    case _ =>
+      Console.err.println("expected the path of a socket")
+      sys.exit(2)
+
+  private def accept(server: ServerSocketChannel): Unit =
+    val client = server.accept()
+    daemon: () =>
+      try serve(client)
+      catch case _: IOException => () // Whoever asked has gone.
+      finally client.close()
+
+  private def daemon(body: () => Unit): Unit =
+    val thread = Thread(() => body())
+    thread.setDaemon(true)
+    thread.start()
+
+  private def serve(client: SocketChannel): Unit =
+    val in  = DataInputStream(Channels.newInputStream(client))
+    val out = DataOutputStream(Channels.newOutputStream(client))
+    opened(text(in)) match
+      case Left(mistake) => answer(out, 1, mistake)
+      case Right(batch)  =>
+        out.write(0)
+        var going = true
+        while going do
+          val request = in.read()
+          if request < 0 then going = false
+          else
+            try
+              request match
+                case 1 => batch.step()
+                case 2 => batch.reset(seeds(in, batch.count))
+                case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
+                case _ => throw EOFException(s"expected 1, 2 or 3, came $request")
+              out.write(0)
+            catch
+              case mistake: IllegalArgumentException => answer(out, 1, mistake.getMessage)
+              case mistake: IOException              => throw mistake
+              case NonFatal(mistake)                 => answer(out, 2, mistake.getMessage)
+
+  private def opened(words: String): Either[String, EnvironmentBatch] =
+    val told = words.linesIterator.map(_.split("=", 2)).collect { case Array(name, value) =>
+      name -> value
+    }.toMap
+    for
+      count     <- told.get("count").flatMap(_.toIntOption).toRight("count: expected a whole number")
+      autoreset <- told
+        .get("autoreset")
+        .flatMap(_.toIntOption)
+        .filter(Autoreset.values.indices.contains)
+        .toRight("autoreset: expected 0, 1 or 2")
+      file     <- told.get("file").toRight("file: expected the path of a file")
+      settings <- EnvironmentSettings.read((told - "count" - "autoreset" - "file").asJava)
+      block    <- Try:
+        val channel = FileChannel.open(Path.of(file), StandardOpenOption.READ, StandardOpenOption.WRITE)
+        try channel.map(FileChannel.MapMode.READ_WRITE, 0, channel.size)
+        finally channel.close()
+      .toEither.left.map(reason => s"file: expected one to read and write, came $reason")
+      batch <- EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)
+    yield batch
+
+  private def seeds(in: DataInputStream, count: Int) = Array.fill(count)(in.readLong())
+
+  private def text(in: DataInputStream): String =
+    val length = in.readInt()
+    if length < 0 || length > MostText then
+      throw IOException(s"expected at most $MostText bytes, came $length")
+    String(in.readNBytes(length), "UTF-8")
+
+  private def answer(out: DataOutputStream, status: Int, message: String): Unit =
+    val bytes = message.getBytes("UTF-8")
+    out.write(status)
+    out.writeInt(bytes.length)
+    out.write(bytes)

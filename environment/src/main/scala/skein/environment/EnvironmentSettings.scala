@@ -1,0 +1,144 @@
+package skein.environment
+
+import scala.jdk.CollectionConverters.*
+import skein.flight.FlightRigs
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
+import skein.lanes.{SteppedDuels, TimetableModel}
+import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.settings.{FlySettings, PolicyFile, TextFile, VehicleChoice}
+import skein.signal.LatencyProfile
+import skein.units.Span
+
+/** What an environment is, as users name it.
+  *
+  * @param learners
+  *   `pursuer`, `evader`, or `both`
+  * @param opponent
+  *   a policy file or a family's name; empty: the paper's. Not asked for where both learn
+  * @param plant
+  *   see [[VehicleChoice.parse]]
+  * @param captureRadiusM
+  *   a distance of at most this ends an episode; 0: none does
+  * @param startWithinM
+  *   an episode begins with the evader so far from the pursuer, least and most, in any direction, each commanded in any
+  *   direction; both 0: as the paper's duel begins
+  * @param movesInFlight
+  *   of one vehicle
+  */
+final case class EnvironmentSettings(
+    learners: String = "pursuer",
+    opponent: String = "",
+    loop: String = "stream",
+    link: String = "vpn",
+    periodMs: Double = 100,
+    plant: String = "reduced",
+    altitudeM: Double = 20,
+    episodeS: Double = 60,
+    captureRadiusM: Double = 0,
+    startWithinM: (Double, Double) = (0, 0),
+    movesInFlight: Int = LoopTiming.MostOutstanding
+):
+  import EnvironmentSettings.*
+
+  /** @return or what was expected and came */
+  private[environment] def resolved: Either[String, Resolved] =
+    for
+      roles <- Learners.get(learners).toRight(
+        s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
+      )
+      kind    <- LoopKind.parse(loop).left.map("loop: " + _)
+      _       <- within("period_ms", periodMs, 1, 10_000)
+      _       <- within("altitude_m", altitudeM, 1e-3, FlySettings.MostAltitudeM)
+      _       <- within("episode_s", episodeS, 1, 3600)
+      _       <- within("capture_radius_m", captureRadiusM, 0, MostM)
+      _       <- within("start_within_m", startWithinM._1, 0, MostM)
+      _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
+      _       <- within("moves_in_flight", movesInFlight, 1, 16)
+      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("plant: " + _)
+      delays  <- delaysOf(link).left.map("link: " + _)
+      loopSettings = LoopSettings
+        .every(Span.ofMillis(periodMs))
+        .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
+      timing <- LoopTimings
+        .of(kind, loopSettings, FlightRigs.askTimeout)
+        .toRight(
+          s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
+        )
+      paper = Duel.paperAt(altitudeM, episodeS + SpareS)
+      model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
+      against <- opponentFile(roles)
+      (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
+        if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
+      _ <- Option(
+        SteppedDuels.refusal(evader)
+      ).orElse(Option(SteppedDuels.refusal(pursuer))).map("opponent: " + _).toLeft(())
+    yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
+
+  private def delaysOf(link: String): Either[String, Delays] =
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap:
+      case steady: LatencyProfile.Steady           => Right(LinkDelays.of(steady))
+      case alternating: LatencyProfile.Alternating => Right(LinkDelays.of(alternating))
+      case other => Left(s"expected a link that forward simulation flies, came ${other.name}")
+
+  private def opponentFile(roles: Vector[Role]): Either[String, Option[PolicyFile]] =
+    if opponent.isEmpty then Right(None)
+    else if roles.size == 2 then Left(s"opponent: expected none where both sides learn, came '$opponent'")
+    else
+      val role = if roles.head == Role.Pursuer then Role.Evader else Role.Pursuer
+      PolicyFile
+        .chosen(role, opponent)
+        .left
+        .map("opponent: " + _)
+        .map(Some(_))
+
+object EnvironmentSettings:
+  /** What settings come to. The duel lasts a little longer than an episode: who sees its end must be due once more. */
+  private[environment] final case class Resolved(
+      settings: EnvironmentSettings,
+      learners: Vector[Role],
+      evader: Policy,
+      pursuer: Policy,
+      duel: Duel,
+      timing: LoopTiming,
+      link: Delays,
+      model: TimetableModel
+  )
+
+  private val Learners: Map[String, Vector[Role]] = Map(
+    "pursuer" -> Vector(Role.Pursuer),
+    "evader"  -> Vector(Role.Evader),
+    "both"    -> Vector(Role.Evader, Role.Pursuer)
+  )
+
+  /** Within this long after its end somebody is due again, unless nothing is heard of the vehicles any more. */
+  private val SpareS = 3.0
+
+  private val MostM = 1000.0
+
+  /** @return or what was expected and came */
+  private[environment] def read(texts: java.util.Map[String, String]): Either[String, EnvironmentSettings] =
+    texts.asScala.foldLeft[Either[String, EnvironmentSettings]](Right(EnvironmentSettings())):
+      case (before, (name, text)) =>
+        before.flatMap: settings =>
+          def number(set: Double => EnvironmentSettings) =
+            text.toDoubleOption.map(set).toRight(s"$name: expected a number, came '$text'")
+          name match
+            case "learners"         => Right(settings.copy(learners = text))
+            case "opponent"         => Right(settings.copy(opponent = text))
+            case "loop"             => Right(settings.copy(loop = text))
+            case "link"             => Right(settings.copy(link = text))
+            case "plant"            => Right(settings.copy(plant = text))
+            case "period_ms"        => number(value => settings.copy(periodMs = value))
+            case "altitude_m"       => number(value => settings.copy(altitudeM = value))
+            case "episode_s"        => number(value => settings.copy(episodeS = value))
+            case "capture_radius_m" => number(value => settings.copy(captureRadiusM = value))
+            case "start_least_m"    =>
+              number(value => settings.copy(startWithinM = (value, settings.startWithinM._2)))
+            case "start_most_m" =>
+              number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
+            case "moves_in_flight" => number(value => settings.copy(movesInFlight = value.toInt))
+            case _                 => Left(s"no setting '$name'")
+
+  private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
+    Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")

@@ -1,0 +1,35 @@
+package skein.environment
+
+import skein.policy.Policy
+
+/** Turns at a rate that somebody outside tells before each decision.
+  *
+  * @param rateRadPerS
+  *   to the right
+  */
+private[environment] final case class Steered(rateRadPerS: Double) extends Policy:
+  def heading(
+      dxM: Double,
+      dyM: Double,
+      dvxMps: Double,
+      dvyMps: Double,
+      ownHeadingRad: Double,
+      opponentHeadingRad: Double,
+      elapsedS: Double
+  ): Double = ownHeadingRad + rateRadPerS * elapsedS
+
+/** Turns at once by an angle that somebody outside tells before each decision.
+  *
+  * @param turnRad
+  *   to the right
+  */
+private[environment] final case class Turned(turnRad: Double) extends Policy:
+  def heading(
+      dxM: Double,
+      dyM: Double,
+      dvxMps: Double,
+      dvyMps: Double,
+      ownHeadingRad: Double,
+      opponentHeadingRad: Double,
+      elapsedS: Double
+  ): Double = ownHeadingRad + turnRad

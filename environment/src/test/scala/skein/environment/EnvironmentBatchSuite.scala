@@ -1,0 +1,179 @@
+package skein.environment
+
+import java.nio.{ByteBuffer, ByteOrder}
+import skein.forward.{Delays, Duel, Outcome, Reduced, Rollout}
+import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.lanes.SteppedDuels.FIELDS
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.signal.SplitMix64
+
+class EnvironmentBatchSuite extends munit.FunSuite:
+
+  /** A batch, and what a learner reads and writes. */
+  private final class Learner(
+      settings: EnvironmentSettings,
+      count: Int,
+      autoreset: Autoreset = Autoreset.NextStep
+  ):
+    val agents: Int   = if settings.learners == "both" then 2 else 1
+    private val block =
+      ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(agents, count)).order(ByteOrder.nativeOrder)
+    private val floats          = block.asFloatBuffer
+    private val seenAt          = agents * count
+    private val finalsAt        = seenAt + agents * FIELDS * count
+    private val rewardsAt       = finalsAt + agents * FIELDS * count
+    private val endsAt          = 4 * (rewardsAt + agents * count + 2 * count)
+    val batch: EnvironmentBatch =
+      EnvironmentBatch.of(settings, count, autoreset, block).fold(fail(_), identity)
+
+    def act(number: Int, action: Float, agent: Int = 0): Unit =
+      floats.put(agent * count + number, action): Unit
+    def seen(number: Int, field: Int, agent: Int = 0): Float =
+      floats.get(seenAt + (agent * FIELDS + field) * count + number)
+    def last(number: Int, field: Int): Float       = floats.get(finalsAt + field * count + number)
+    def reward(number: Int, agent: Int = 0): Float = floats.get(rewardsAt + agent * count + number)
+    def distance(number: Int): Float               = floats.get(rewardsAt + agents * count + number)
+    def timeS(number: Int): Float                  = floats.get(rewardsAt + agents * count + count + number)
+    def terminated(number: Int): Boolean           = block.get(endsAt + number) != 0
+    def truncated(number: Int): Boolean            = block.get(endsAt + count + number) != 0
+    def isDue(agent: Int): Boolean                 = block.get(endsAt + 2 * count + agent * count) != 0
+    def reset(seeds: Long*): Unit                  = batch.reset(seeds.toArray)
+
+    /** The paper's pursuer, by what is seen. */
+    def paper(number: Int, agent: Int = 0): Float =
+      val (ahead, right) = (seen(number, 0, agent), seen(number, 1, agent))
+      if right != 0 then math.signum(right) else if ahead < 0 then 1 else 0
+
+  /** What the engine says of the paper's pursuer over the link of a run. */
+  private def engine(settings: EnvironmentSettings, seed: Long): (Outcome, Float, Float) =
+    val config = settings.resolved.fold(fail(_), identity)
+    val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
+    val runKey = EnvironmentTimetables.keyOf(EnvironmentTimetables.indexOf(SplitMix64.seedOf(seed, 0)))
+    val worlds = new DuelWorlds:
+      def size                        = 1
+      override def shareEpisodes      = true
+      def key(world: Int): Int        = runKey
+      def link(world: Int): Delays    = config.link
+      def pursuer(world: Int): Policy = PaperPursuer()
+      def evader(world: Int): Policy  = PaperEvader()
+    val flown = DuelBatch(duel, config.timing, Reduced.AirSim, 1).fly(worlds)
+    (
+      Rollout(duel, config.timing, config.link, Reduced.AirSim).fly(runKey),
+      flown.minDistanceM(0),
+      flown.meanDistanceM(0)
+    )
+
+  for (loop, link) <-
+      Seq("stream" -> "vpn", "predictive" -> "vpn", "sequential" -> "direct", "paused" -> "none")
+  do
+    test(
+      s"driven by the paper's pursuer under $loop over $link it flies what the engine and the reference fly"
+    ):
+      val settings = EnvironmentSettings(loop = loop, link = link, episodeS = 20)
+      val learner  = Learner(settings, 2)
+      learner.reset(0, 1)
+      var (sum, least, steps) = (0.0, Float.PositiveInfinity, 0)
+      while !learner.truncated(0) do
+        for number <- 0 to 1 do learner.act(number, learner.paper(number))
+        learner.batch.step()
+        sum += learner.reward(0)
+        least = least.min(learner.distance(0))
+        steps += 1
+        assert(!learner.terminated(0) && steps < 1000)
+      val (reference, leastByLanes, meanByLanes) = engine(settings, 0)
+      val mean                                   = -sum * EnvironmentGroup.PerM / 200
+      // Sums of 200 floats of up to 25 m, added up in two orders.
+      assertEqualsDouble(mean, meanByLanes, 200 * 25 * math.ulp(1f) * 2)
+      assertEqualsDouble(mean, reference.meanDistanceM, 0.02)
+      assert(least == leastByLanes, s"$least m, by the lanes $leastByLanes m")
+
+  test("equal seeds and actions give equal episodes, to the bit, whatever flies beside them in other groups"):
+    def flown(count: Int) =
+      val learner =
+        Learner(EnvironmentSettings(startWithinM = (3, 9), episodeS = 4, captureRadiusM = 3), count)
+      learner.reset((0 until count).map(_ + 7L)*)
+      Vector.tabulate(60): step =>
+        for number <- 0 until count do learner.act(number, math.sin(step * 0.3 + number).toFloat)
+        learner.batch.step()
+        Vector.tabulate(8, FIELDS)((number, field) => learner.seen(number, field)) ->
+          Vector.tabulate(8)(number =>
+            (learner.reward(number), learner.terminated(number), learner.truncated(number))
+          )
+    val first = flown(128)
+    assertEquals(flown(128), first)
+    assertEquals(flown(300), first)
+    assert(first.exists(_._2.exists(_._2)), "nobody was captured")
+
+  test("an episode that ends shows the next one's first observation with the next step, or with the same"):
+    val settings =
+      EnvironmentSettings(startWithinM = (6, 8), episodeS = 10, captureRadiusM = 5, link = "direct")
+    for mode <- Seq(Autoreset.NextStep, Autoreset.SameStep) do
+      val learner = Learner(settings, 40, mode)
+      learner.reset((1 to 40).map(_.toLong)*)
+      var (captured, after) = (0, Set.empty[Int])
+      for _ <- 0 until 250 do
+        for number <- 0 until 40 do learner.act(number, learner.paper(number))
+        learner.batch.step()
+        for number <- 0 until 40 do
+          val begins = math.hypot(learner.seen(number, 0), learner.seen(number, 1))
+          val ended  = learner.terminated(number) || learner.truncated(number)
+          if after(number) || mode == Autoreset.SameStep && ended then
+            assert(begins > 5.5 && begins < 8.1, s"$mode: begins at $begins m")
+          if after(number) then assertEqualsFloat(learner.timeS(number), 0, 0.5f)
+          if learner.terminated(number) then
+            captured += 1
+            assert(learner.reward(number) > 5)
+            assert(learner.distance(number) < 7, s"$mode: captured at ${learner.distance(number)} m")
+            if mode == Autoreset.SameStep then
+              assert(math.hypot(learner.last(number, 0), learner.last(number, 1)) < 12)
+        after =
+          if mode == Autoreset.NextStep then
+            (0 until 40).filter(number => learner.terminated(number) || learner.truncated(number)).toSet
+          else Set.empty
+      assert(captured > 20, s"$mode: $captured captures")
+
+  test("ages are those of the link"):
+    def age(link: String) =
+      val learner = Learner(EnvironmentSettings(link = link, episodeS = 10), 1)
+      learner.reset(3)
+      val ages = Vector.fill(80):
+        learner.act(0, 0)
+        learner.batch.step()
+        learner.seen(0, 7)
+      ages.sum / ages.size
+    assertEqualsFloat(age("none"), 0, 1e-6f)
+    assert(age("direct") < 0.06 && age("vpn") > 0.05 && age("constant:400ms") > 0.2)
+
+  test("both sides learn at once, and somebody is due at every step: both, where nothing takes time"):
+    for (loop, link, least) <- Seq(("paused", "none", 40), ("stream", "vpn", 1)) do
+      val learner = Learner(EnvironmentSettings(learners = "both", loop = loop, link = link, episodeS = 5), 3)
+      learner.reset(1, 2, 3)
+      val together = (0 until 40).count(_ => due(learner))
+      assert(together >= least, s"$loop: due together $together times of 40")
+
+  private def due(learner: Learner): Boolean =
+    val (evader, pursuer) = (learner.isDue(0), learner.isDue(1))
+    assert(evader || pursuer)
+    for number <- 0 until 3 do
+      learner.act(number, 0.1f, agent = 0)
+      learner.act(number, learner.paper(number, agent = 1), agent = 1)
+    learner.batch.step()
+    assertEquals(learner.reward(0, 0), -learner.reward(0, 1))
+    evader && pursuer
+
+  test(
+    "what cannot be flown is refused with what was expected, and an action that is no number changes nothing"
+  ):
+    def refused(settings: EnvironmentSettings) = settings.resolved.swap.getOrElse("accepted")
+    assert(refused(EnvironmentSettings(learners = "x")).startsWith("learners: expected "))
+    assert(refused(EnvironmentSettings(loop = "plan")).contains("which plans"))
+    assert(refused(EnvironmentSettings(link = "no")).startsWith("link: "))
+    assert(refused(EnvironmentSettings(plant = "ideal")).startsWith("plant: the lanes fly"))
+    assert(refused(EnvironmentSettings(startWithinM = (5, 2))).startsWith("start_within_m: expected 5.0"))
+    val learner = Learner(EnvironmentSettings(), 2, Autoreset.Disabled)
+    intercept[IllegalStateException](learner.batch.step())
+    learner.reset(1, 2)
+    val before = learner.seen(1, 0)
+    learner.act(1, Float.NaN)
+    assert(intercept[IllegalArgumentException](learner.batch.step()).getMessage.contains("environment 1"))
+    assertEquals(learner.seen(1, 0), before)
