@@ -1,0 +1,33 @@
+import sbt.*
+import scala.sys.process.Process
+
+/** The Python package as one file: `./sbtw python/wheel`. */
+object Wheel {
+  val wheel: TaskKey[File] = taskKey[File]("Builds the Python package with all the jars that it runs")
+
+  /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's first day. */
+  private val firstDay = "315532800"
+
+  /** @param sources
+    *   with `pyproject.toml`
+    * @param stage
+    *   with `bin/skein` and `lib`
+    */
+  def build(sources: File, stage: File, target: File, log: Logger): File = {
+    val (copy, out) = (target / "package", target / "dist")
+    IO.delete(Seq(copy, out))
+    for (name <- Seq("pyproject.toml", "README.md")) IO.copyFile(sources / name, copy / name)
+    val code = sources / "src" / "skein_uav"
+    for (file <- (code ** ("*.py" || "py.typed")).get)
+      IO.copyFile(file, copy / "src" / "skein_uav" / IO.relativize(code, file).get)
+    val home = copy / "src" / "skein_uav" / "skein"
+    IO.copyFile(stage / "bin" / "skein", home / "bin" / "skein")
+    IO.copyDirectory(stage / "lib", home / "lib")
+    val pip    = Seq("python3", "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", out.getPath, copy.getPath)
+    val status = Process(pip, sources, "SOURCE_DATE_EPOCH" -> firstDay).!(log)
+    val built  = (out ** "*.whl").get
+    if (status != 0 || built.isEmpty) sys.error(s"${pip.mkString(" ")} ended with status $status")
+    log.info(s"${built.head}: ${built.head.length >> 20} MiB")
+    built.head
+  }
+}

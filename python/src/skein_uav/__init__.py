@@ -1,0 +1,22 @@
+"""Control loops for teams of drones under real latency: flights, searches and environments.
+
+>>> import skein_uav as skein
+>>> skein.spread(loop=["stream", "predictive"], link="vpn", seeds=20)       # doctest: +SKIP
+"""
+
+from .commands import Flights, Found, fly, run, search, spread
+from .errors import NotFound, SkeinError
+from .recording import Recording, load
+
+__all__ = [
+    "Flights",
+    "Found",
+    "NotFound",
+    "Recording",
+    "SkeinError",
+    "fly",
+    "load",
+    "run",
+    "search",
+    "spread",
+]

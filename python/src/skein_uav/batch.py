@@ -1,0 +1,118 @@
+"""Many episodes in lockstep: the memory that Java and numpy share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import jvm
+from .errors import SkeinError
+
+#: Numbers of an observation.
+FIELDS = 9
+
+Floats = NDArray[np.float32]
+Flags = NDArray[np.bool_]
+
+
+class Backend(Protocol):
+    """Who flies a batch."""
+
+    def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None: ...
+
+    def step(self) -> None: ...
+
+    def close(self) -> None: ...
+
+
+class Block:
+    """The arrays that a batch of environments shares with who flies it, all views of one block of bytes.
+
+    Parameters
+    ----------
+    memory : ndarray of uint8, shape (Block.size(agents, count),)
+    agents : int
+        Learners; the evader first where both sides learn.
+    count : int
+        Environments.
+
+    Attributes
+    ----------
+    actions : (agents, count) float32
+    observations, finals : (agents, FIELDS, count) float32
+    rewards : (agents, count) float32
+    distance, time : (count,) float32
+        In m and s.
+    terminated, truncated : (count,) bool
+    due : (agents, count) bool
+        Who decides now.
+    """
+
+    def __init__(self, memory: NDArray[np.uint8], agents: int, count: int) -> None:
+        self.memory = memory
+        at = 0
+
+        def part(kind: type, *shape: int) -> NDArray[Any]:
+            nonlocal at
+            size = int(np.prod(shape)) * np.dtype(kind).itemsize
+            at += size
+            return memory[at - size : at].view(kind).reshape(shape)
+
+        self.actions: Floats = part(np.float32, agents, count)
+        self.observations: Floats = part(np.float32, agents, FIELDS, count)
+        self.finals: Floats = part(np.float32, agents, FIELDS, count)
+        self.rewards: Floats = part(np.float32, agents, count)
+        self.distance: Floats = part(np.float32, count)
+        self.time: Floats = part(np.float32, count)
+        self.terminated: Flags = part(np.bool_, count)
+        self.truncated: Flags = part(np.bool_, count)
+        self.due: Flags = part(np.bool_, agents, count)
+
+    @staticmethod
+    def size(agents: int, count: int) -> int:
+        """Bytes that a block has."""
+        return (4 * (2 * agents + 2 * agents * FIELDS + 2) + 2 + agents) * count
+
+
+class InProcess:
+    """Flies by Java in this process, on the very memory of `block`."""
+
+    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, block: Block) -> None:
+        jpype = jvm.start()
+        self._jpype = jpype
+        self._block = block  # Java writes to it as long as this lives.
+        buffer = jpype.nio.convertToDirectBuffer(memoryview(block.memory))
+        made = jpype.JClass("skein.environment.EnvironmentBatch").make
+        self._batch = self._told(lambda: made(jpype.java.util.HashMap(settings), count, autoreset, buffer))
+        self._step = self._batch.step
+
+    def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:
+        if mask is None:
+            self._told(lambda: self._batch.reset(seeds))
+        else:
+            self._told(lambda: self._batch.reset(seeds, mask))
+
+    def step(self) -> None:
+        if jvm._forked:
+            jvm.start()
+        try:
+            self._step()
+        except self._jpype.JException as mistake:
+            raise _translated(mistake) from None
+
+    def close(self) -> None:
+        pass
+
+    def _told(self, call: Any) -> Any:
+        try:
+            return call()
+        except self._jpype.JException as mistake:
+            raise _translated(mistake) from None
+
+
+def _translated(mistake: Any) -> Exception:
+    message = str(mistake.getMessage())
+    return ValueError(message) if mistake.getClass().getSimpleName() == "IllegalArgumentException" else SkeinError(message)

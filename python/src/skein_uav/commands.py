@@ -1,0 +1,344 @@
+"""Skein's commands as functions: what they show comes as data frames."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from .errors import SkeinError
+from .installation import find
+from .recording import Recording, load
+
+Tables = dict[str, pd.DataFrame]
+
+
+@dataclass(frozen=True)
+class Flights:
+    """What :func:`fly` flew.
+
+    Attributes
+    ----------
+    tables : dict of str to DataFrame
+        What the report shows, by title; units stand in the columns' names.
+    recordings : list of Path
+        One DuckDB file a flight; :func:`skein_uav.load` opens one.
+    report : Path
+        A page with tables and pictures.
+    """
+
+    tables: Tables
+    recordings: list[Path]
+    report: Path
+
+    def load(self, number: int = 0) -> Recording:
+        """Opens one of the recordings."""
+        return load(self.recordings[number])
+
+
+@dataclass(frozen=True)
+class Found:
+    """What :func:`search` found.
+
+    Attributes
+    ----------
+    result : DataFrame
+        The policy found and the one it started from, each with its mean on fresh episodes and a 95 % interval.
+    policy : Path or None
+        A policy file for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
+    landscape : DataFrame or None
+        The objective around the policy found; None if the search was stopped before.
+    folder : Path
+        State, policy and pictures.
+    """
+
+    result: pd.DataFrame
+    policy: Path | None
+    landscape: pd.DataFrame | None
+    folder: Path
+
+
+def fly(
+    *,
+    loop: str | Iterable[str] = "stream",
+    link: str | Iterable[str] = "direct",
+    duration_s: float = 60.0,
+    seed: int = 1,
+    clock: str = "virtual",
+    scenario: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    policy: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    verbose: bool = False,
+    **options: Any,
+) -> Flights:
+    """Flies a scenario under each loop over each link.
+
+    Parameters
+    ----------
+    loop : str or iterable of str
+        ``paused``, ``sequential``, ``futures``, ``stream``, ``predictive`` or ``plan``.
+    link : str or iterable of str
+        A latency profile: ``none``, ``direct``, ``vpn``, ``constant:200ms``, …
+    duration_s : float
+        Of each flight, s.
+    seed : int
+        Of every random choice. In virtual time, equal seeds give equal flights, to the last bit.
+    clock : str
+        ``virtual`` (many times faster) or ``real``.
+    scenario : str, optional
+        The paper's duel unless named; ``surround``, ``formation``, ``crossing``.
+    settings : mapping, optional
+        Of the scenario, for example ``{"ring-m": 10}``.
+    policy : path, optional
+        A policy file, as :func:`search` writes one: flown beside the scenario's own.
+    out : path, optional
+        Folder for recordings and report; a new temporary one unless named.
+    verbose : bool
+        Shows on ``stderr`` what the command says meanwhile.
+    **options
+        Any other option of ``./skein fly``, for example ``moves_in_flight=6``.
+
+    Returns
+    -------
+    Flights
+
+    Raises
+    ------
+    SkeinError
+        With what the command said, if it failed.
+    """
+    folder = _folder(out)
+    tables = run(
+        "fly",
+        loop=loop,
+        link=link,
+        duration=_ms(duration_s),
+        seed=seed,
+        clock=clock,
+        scenario=scenario,
+        set=_settings(settings),
+        policy=policy,
+        out=folder,
+        verbose=verbose,
+        **options,
+    )
+    return Flights(tables, sorted(folder.glob("*.duckdb")), folder / "report.html")
+
+
+def spread(
+    *,
+    loop: str | Iterable[str] = "stream",
+    link: str | Iterable[str] = "direct",
+    seeds: int = 20,
+    duration_s: float = 60.0,
+    scenario: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    verbose: bool = False,
+    **options: Any,
+) -> Tables:
+    """Flies each loop over each link many times in virtual time.
+
+    Parameters
+    ----------
+    seeds : int
+        Flights for each loop and link.
+    loop, link, duration_s, scenario, settings, verbose
+        As in :func:`fly`.
+    **options
+        Any other option of ``./skein spread``.
+
+    Returns
+    -------
+    dict of str to DataFrame
+        Mean and spread over the seeds, by title; units stand in the columns' names.
+    """
+    return run(
+        "spread",
+        loop=loop,
+        link=link,
+        seeds=seeds,
+        duration=_ms(duration_s),
+        scenario=scenario,
+        set=_settings(settings),
+        verbose=verbose,
+        **options,
+    )
+
+
+def search(
+    *,
+    family: str | None = None,
+    link: str = "vpn",
+    candidates: int = 1000,
+    episodes: int = 20,
+    scenario: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    vary: Mapping[str, tuple[float, float]] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    verbose: bool = False,
+    **options: Any,
+) -> Found:
+    """Looks for the best of many policies by forward simulation under a loop's real timing.
+
+    Parameters
+    ----------
+    family : str, optional
+        Of the policies to choose from: ``paper-pursuer`` unless named, ``lead-pursuit``, ``neural-pursuer:8x8``, …
+    link : str
+        A latency profile.
+    candidates : int
+        To try in all.
+    episodes : int
+        That each candidate flies.
+    scenario : str, optional
+        Searches settings of a team's scenario, instead of a duel's policy.
+    settings : mapping, optional
+        Of the scenario, fixed.
+    vary : mapping, optional
+        Settings to search, each with its least and its greatest value.
+    out : path, optional
+        Folder for state, policy and pictures; a new temporary one unless named.
+    verbose : bool
+        Shows on ``stderr`` what the command says meanwhile.
+    **options
+        Any other option of ``./skein search``, for example ``objective="0.7*last10s + 0.3*effort"``.
+
+    Returns
+    -------
+    Found
+    """
+    folder = _folder(out)
+    tables = run(
+        "search",
+        family=family,
+        link=link,
+        candidates=candidates,
+        episodes=episodes,
+        scenario=scenario,
+        set=_settings(settings),
+        vary=[f"{name}={low}..{high}" for name, (low, high) in (vary or {}).items()],
+        out=folder,
+        verbose=verbose,
+        **options,
+    )
+    policy, landscape = folder / "policy.conf", folder / "landscape.csv"
+    return Found(
+        next(iter(tables.values())),
+        policy if policy.exists() else None,
+        pd.read_csv(landscape) if landscape.exists() else None,
+        folder,
+    )
+
+
+def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tables:
+    """Runs a command of ``./skein`` and reads the tables that it shows.
+
+    Parameters
+    ----------
+    command : str
+        One that has ``--json``: ``fly``, ``spread``, ``search``, ``report``, ``budget``, …
+    *words : str
+        What stands behind the options, such as files.
+    verbose : bool
+        Shows on ``stderr`` what it says meanwhile.
+    **options
+        ``moves_in_flight=6`` is ``--moves-in-flight 6``; a list is the option several times, True a bare flag, None
+        no option.
+
+    Returns
+    -------
+    dict of str to DataFrame
+
+    Raises
+    ------
+    SkeinError
+        With what the command said, if it failed.
+    """
+    installed = find()
+    arguments = [command, "--json", *_flags(options), *words]
+    environment = {**os.environ, "JAVA_HOME": str(installed.java)}
+    process = subprocess.Popen(
+        ["bash", str(installed.launcher), *arguments],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment,
+        text=True,
+        encoding="utf-8",
+    )
+    try:
+        said, complained = _communicate(process, verbose)
+    except BaseException:
+        # A notebook interrupts Python alone; the command then hovers its vehicles and ends by itself.
+        process.send_signal(signal.SIGINT)
+        process.wait()
+        raise
+    if process.returncode != 0:
+        raise SkeinError(_reason(complained) or f"skein {command} ended with status {process.returncode}")
+    return {table["title"]: _frame(table) for table in json.loads(said)["tables"]}
+
+
+def _communicate(process: subprocess.Popen[str], verbose: bool) -> tuple[str, str]:
+    if not verbose:
+        return process.communicate()
+    assert process.stdout is not None and process.stderr is not None
+    # The tables come at the end, in one piece that is read behind the last line.
+    lines = []
+    for line in process.stderr:
+        sys.stderr.write(line)
+        lines.append(line)
+    said = process.stdout.read()
+    process.wait()
+    return said, "".join(lines)
+
+
+def _reason(complained: str) -> str:
+    """What a command said against its arguments or its world, without what it said of its progress."""
+    lines = [line for line in complained.splitlines() if line.strip()]
+    first = next((number for number, line in enumerate(lines) if line.startswith("skein")), max(len(lines) - 1, 0))
+    return "\n".join(lines[first:])
+
+
+def _flags(options: Mapping[str, Any]) -> list[str]:
+    flags: list[str] = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        several = value if isinstance(value, (list, tuple, set)) else [value]
+        for one in several:
+            if one is True:
+                flags.append(option)
+            elif one is not None and one is not False:
+                flags += [option, os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
+    return flags
+
+
+def _frame(table: Mapping[str, Any]) -> pd.DataFrame:
+    names: list[str] = []
+    for name in table["columns"]:
+        again = sum(known == name or known.startswith(f"{name} (") for known in names)
+        names.append(f"{name} ({again + 1})" if again else name)
+    frame = pd.DataFrame(table["rows"], columns=names)
+    frame.attrs["note"] = table["note"]
+    return frame
+
+
+def _folder(out: str | os.PathLike[str] | None) -> Path:
+    return Path(tempfile.mkdtemp(prefix="skein-")) if out is None else Path(out)
+
+
+def _ms(seconds: float) -> str:
+    return f"{seconds * 1000:.12g}ms"
+
+
+def _settings(settings: Mapping[str, Any] | None) -> list[str]:
+    return [f"{name}={str(value).lower() if isinstance(value, bool) else value}" for name, value in (settings or {}).items()]

@@ -1,0 +1,361 @@
+"""Environments of Gymnasium: a duel under a loop's real timing, over a link.
+
+``skein_uav/Pursuit-v0`` teaches the pursuer, ``skein_uav/Evasion-v0`` the evader; the other side flies any policy.
+
+A step is one decision of the learner, at the moment at which the loop lets it decide: what it sees was sampled some time
+ago, and what it does acts some time later. Both times are the link's.
+
+Observation, 9 numbers (float32), in the frame whose x-axis is the own heading commanded last:
+
+== ================= ===== ====================================================
+0  ahead             m     where the opponent is, as the readings tell
+1  right             m
+2  ahead             m/s   its velocity minus the own one
+3  right             m/s
+4  cosine            1     of its heading commanded last, from the own one
+5  sine              1
+6  elapsed           s     since the own last decision; 0 at the first
+7  own age           s     of the own reading, since physics was sampled
+8  opponent's age    s     of the opponent's
+== ================= ===== ====================================================
+
+Action, 1 number from -1 to 1 (what is beyond is taken for the bound): the pursuer's share of 1 rad/s to turn right by,
+the evader's share of half a turn to turn right at once.
+
+Reward: of the pursuer minus the distance over 10 m, once a period, and 10 for a capture; of the evader the opposite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from .batch import Backend, Block, Flags, Floats, InProcess
+from .errors import SkeinError
+from .pictures import picture
+from .served import Served
+
+_LARGEST_M = 1e5
+_LARGEST_MPS = 1e3
+_LARGEST_S = 1e4
+
+
+def observation_space() -> gym.spaces.Box:
+    """Of one environment; the module says what its numbers are."""
+    most = np.array(
+        [_LARGEST_M, _LARGEST_M, _LARGEST_MPS, _LARGEST_MPS, 1.001, 1.001, _LARGEST_S, _LARGEST_S, _LARGEST_S],
+        dtype=np.float32,
+    )
+    least = np.where(np.arange(9) < 6, -most, np.float32(0))
+    return gym.spaces.Box(least, most, dtype=np.float32)
+
+
+def action_space() -> gym.spaces.Box:
+    """Of one environment; the module says what its number is."""
+    return gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
+
+
+class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
+    """Many duels side by side, in one of which each row of the arrays flies.
+
+    Up to 128 environments fly over one link together: what befalls their messages is the same in all of them, and they
+    begin together. Where one ends before, by a capture, its next episode begins in the loop that runs already and lasts
+    until the others'.
+
+    Parameters
+    ----------
+    num_envs : int
+        Environments.
+    learner : {'pursuer', 'evader'}
+        Who is taught.
+    opponent : str
+        A policy file or a family's name; the paper's policy unless told.
+    loop : {'stream', 'predictive', 'sequential', 'futures', 'paused'}
+        Whose timing it is.
+    link : str
+        A latency profile: ``none``, ``direct``, ``vpn``, ``vpn-mixed``, ``constant:200ms``, …
+    period_ms : float
+        Between decisions for one vehicle, ms.
+    plant : str
+        What flies: ``reduced``, ``drag``, ``quadrotor``, or a model file.
+    altitude_m, episode_s : float
+        In m and s.
+    capture_radius_m : float
+        A distance of at most this ends an episode; 0: none does.
+    start_within_m : (float, float)
+        How far from the pursuer the evader begins, least and most, in any direction, with any headings; (0, 0): as the
+        paper's duel begins.
+    moves_in_flight : int
+        Commands to a vehicle that may be unanswered.
+    autoreset_mode : AutoresetMode or str
+        As Gymnasium defines them.
+    copy : bool
+        Whether observations are copies; without, the next step overwrites them.
+    render_mode : {None, 'rgb_array'}
+        A picture of each environment, seen by the learner.
+    backend : {'process', 'socket', 'unix:PATH'}
+        Java in this process; in one of its own; in that of a :class:`skein_uav.served.Server`, for processes that fork.
+
+    Raises
+    ------
+    ValueError
+        If a setting is not what was expected; the message says both.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        learner: str = "pursuer",
+        opponent: str = "",
+        loop: str = "stream",
+        link: str = "vpn",
+        period_ms: float = 100.0,
+        plant: str = "reduced",
+        altitude_m: float = 20.0,
+        episode_s: float = 60.0,
+        capture_radius_m: float = 0.0,
+        start_within_m: tuple[float, float] = (0.0, 0.0),
+        moves_in_flight: int = 2,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        render_mode: str | None = None,
+        backend: str = "process",
+    ) -> None:
+        if not isinstance(num_envs, int) or num_envs < 1:
+            raise ValueError(f"num_envs: expected a whole number from 1, came {num_envs!r}")
+        if learner not in ("pursuer", "evader"):
+            raise ValueError(f"learner: expected pursuer or evader, came {learner!r}")
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
+        self.num_envs = num_envs
+        self.copy = copy
+        self.render_mode = render_mode
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
+        self.single_observation_space = observation_space()
+        self.single_action_space = action_space()
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        settings = {
+            "learners": learner,
+            "opponent": opponent,
+            "loop": loop,
+            "link": link,
+            "period_ms": period_ms,
+            "plant": plant,
+            "altitude_m": altitude_m,
+            "episode_s": episode_s,
+            "capture_radius_m": capture_radius_m,
+            "start_most_m": start_within_m[1],
+            "start_least_m": start_within_m[0],
+            "moves_in_flight": moves_in_flight,
+        }
+        self._block, self._backend = open_batch(settings, 1, num_envs, self.autoreset_mode, backend)
+        self._observations = self._block.observations[0].T
+        self._finals = self._block.finals[0].T
+        self._actions = self._block.actions[0]
+        self._all = np.ones(num_envs, dtype=np.bool_)
+        self._is_reset = False
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
+        """Begins new episodes.
+
+        Parameters
+        ----------
+        seed : int, sequence of int, or None
+            Environment i takes ``seed + i``, or the i-th; equal seeds give equal episodes, to the last bit. None: goes on.
+        options : dict, optional
+            ``reset_mask``, an array of bool: only these begin anew.
+
+        Returns
+        -------
+        observations : ndarray, shape (num_envs, 9)
+        infos : dict
+            ``distance_m`` and ``time_s``, one number an environment.
+        """
+        self._assert_open()
+        super().reset(seed=seed if isinstance(seed, int) else None)
+        mask = _mask(options, self.num_envs)
+        if mask is not None and not self._is_reset:
+            raise ValueError("reset_mask: expected a reset of all environments before one of some")
+        self._backend.reset(seeds_of(seed, self.num_envs, self._is_reset, self.np_random), mask)
+        self._is_reset = True
+        return self._seen(), self._infos()
+
+    def step(self, actions: Floats) -> tuple[Floats, Floats, Flags, Flags, dict[str, Any]]:
+        """Decides once in every environment.
+
+        Parameters
+        ----------
+        actions : ndarray of numbers, shape (num_envs, 1)
+
+        Returns
+        -------
+        observations : ndarray of float32, shape (num_envs, 9)
+        rewards : ndarray of float32, shape (num_envs,)
+        terminations, truncations : ndarray of bool, shape (num_envs,)
+        infos : dict
+            ``distance_m`` at the last score, ``time_s`` of the episode; under same-step autoreset those of the episode
+            that ended, beside ``final_obs`` and ``final_info``.
+
+        Raises
+        ------
+        ValueError
+            If actions are of another shape or kind, or not finite; then nothing is done.
+        SkeinError
+            If the environment is closed, or an episode has ended and was not reset.
+        """
+        self._assert_open()
+        chosen = np.asarray(actions)
+        if chosen.shape != (self.num_envs, 1) or chosen.dtype.kind not in "fiu":
+            raise ValueError(
+                f"actions: expected numbers of shape {(self.num_envs, 1)}, came {chosen.dtype} of shape {chosen.shape}"
+            )
+        self._actions[:] = chosen[:, 0]
+        self._backend.step()
+        block = self._block
+        terminated, truncated = block.terminated.copy(), block.truncated.copy()
+        infos = self._infos()
+        if self.autoreset_mode is AutoresetMode.SAME_STEP:
+            done = terminated | truncated
+            if done.any():
+                self._tell_finals(done, infos)
+        return self._seen(), block.rewards[0].copy(), terminated, truncated, infos
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """One picture an environment, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
+        if self.render_mode is None:
+            return None
+        return tuple(picture(seen) for seen in self._observations)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Gives the batch up."""
+        self._backend.close()
+
+    def _assert_open(self) -> None:
+        if self.closed:
+            raise SkeinError("the environment is closed")
+
+    def _seen(self) -> Floats:
+        return self._observations.copy() if self.copy else self._observations
+
+    def _infos(self) -> dict[str, Any]:
+        block = self._block
+        return {
+            "distance_m": block.distance.copy(),
+            "_distance_m": self._all,
+            "time_s": block.time.copy(),
+            "_time_s": self._all,
+        }
+
+    def _tell_finals(self, done: Flags, infos: dict[str, Any]) -> None:
+        finals = np.full(self.num_envs, None, dtype=object)
+        for number in np.flatnonzero(done):
+            finals[number] = self._finals[number].copy()
+        infos["final_obs"], infos["_final_obs"] = finals, done
+        infos["final_info"] = {name: infos[name] for name in ("distance_m", "time_s")} | {
+            "_distance_m": done,
+            "_time_s": done,
+        }
+        infos["_final_info"] = done
+
+
+class PursuitEnv(gym.Env[Floats, Floats]):
+    """One duel; see :class:`PursuitVectorEnv`, whose parameters it takes."""
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
+
+    def __init__(self, render_mode: str | None = None, **settings: Any) -> None:
+        self._one = PursuitVectorEnv(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **settings)
+        self.render_mode = render_mode
+        self.observation_space = self._one.single_observation_space
+        self.action_space = self._one.single_action_space
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
+        """Begins a new episode; equal seeds give equal ones."""
+        super().reset(seed=seed)
+        seen, infos = self._one.reset(seed=seed)
+        return seen[0], self._info(infos)
+
+    def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
+        """Decides once."""
+        chosen = np.asarray(action)
+        if chosen.shape != (1,):
+            raise ValueError(f"action: expected a number of shape (1,), came {chosen.dtype} of shape {chosen.shape}")
+        seen, reward, terminated, truncated, infos = self._one.step(chosen[None, :])
+        return seen[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(infos)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """A picture, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
+        pictures = self._one.render()
+        return None if pictures is None else pictures[0]
+
+    def close(self) -> None:
+        """Gives the environment up."""
+        self._one.close()
+
+    def _info(self, infos: dict[str, Any]) -> dict[str, Any]:
+        return {name: float(infos[name][0]) for name in ("distance_m", "time_s")}
+
+
+def open_batch(
+    settings: dict[str, Any], agents: int, count: int, autoreset: AutoresetMode, backend: str
+) -> tuple[Block, Backend]:
+    """A batch and the memory that is shared with it."""
+    texts = {name: str(value) for name, value in settings.items()}
+    number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
+    if backend == "process":
+        block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
+        return block, InProcess(texts, count, number, block)
+    if backend == "socket" or backend.startswith("unix:"):
+        served = Served(texts, agents, count, number, backend[5:] if backend.startswith("unix:") else None)
+        return served.block, served
+    raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', came {backend!r}")
+
+
+def seeds_of(
+    seed: int | Sequence[int | None] | None, count: int, is_reset: bool, random: np.random.Generator
+) -> NDArray[np.int64]:
+    """A seed an environment; -1 where it goes on with its own."""
+    if isinstance(seed, (int, np.integer)):
+        return np.arange(seed, seed + count, dtype=np.int64)
+    if seed is not None:
+        if len(seed) != count:
+            raise ValueError(f"seed: expected {count} of them, came {len(seed)}")
+        if any(one is not None and one < 0 for one in seed):
+            raise ValueError("seed: expected none below 0")
+        return np.array([-1 if one is None else one for one in seed], dtype=np.int64)
+    if is_reset:
+        return np.full(count, -1, dtype=np.int64)
+    return random.integers(0, 2**62, count)
+
+
+def _mask(options: dict[str, Any] | None, count: int) -> Flags | None:
+    if options is None or "reset_mask" not in options:
+        return None
+    mask = np.asarray(options["reset_mask"])
+    if mask.shape != (count,) or mask.dtype != np.bool_:
+        raise ValueError(f"reset_mask: expected bool of shape {(count,)}, came {mask.dtype} of shape {mask.shape}")
+    return mask
+
+
+for _name, _learner in (("Pursuit", "pursuer"), ("Evasion", "evader")):
+    gym.register(
+        f"skein_uav/{_name}-v0",
+        entry_point="skein_uav.environments:PursuitEnv",
+        vector_entry_point="skein_uav.environments:PursuitVectorEnv",
+        kwargs={"learner": _learner},
+    )

@@ -1,0 +1,136 @@
+"""The duel as a ParallelEnv of PettingZoo: both sides decide from outside.
+
+Observations, actions and rewards are those of :mod:`skein_uav.environments`. The sum of both rewards is 0.
+
+A step lasts until the loop lets somebody decide. Under ``paused`` both always decide at the same moments. Over a link one
+may still wait until it may be commanded again while the other decides alone; then its observation stays as it was and
+its action is not used: ``infos[agent]["decides"]`` says so.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+from pettingzoo import ParallelEnv
+
+from .batch import Floats
+from .environments import action_space, observation_space, open_batch, seeds_of
+from .errors import SkeinError
+from .pictures import picture
+
+_AGENTS = ("evader", "pursuer")
+
+
+class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
+    """One duel in which both sides decide from outside.
+
+    Parameters
+    ----------
+    render_mode : {None, 'rgb_array'}
+        What the pursuer sees, as a picture.
+    backend : {'process', 'socket', 'unix:PATH'}
+        As in :class:`skein_uav.environments.PursuitVectorEnv`.
+    **settings
+        ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
+        ``start_within_m`` and ``moves_in_flight``, as there.
+    """
+
+    metadata = {"name": "skein_uav_duel_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
+
+    def __init__(self, *, render_mode: str | None = None, backend: str = "process", **settings: Any) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
+        within = settings.pop("start_within_m", (0.0, 0.0))
+        texts = {"learners": "both", "start_most_m": within[1], "start_least_m": within[0], **settings}
+        self._block, self._backend = open_batch(texts, len(_AGENTS), 1, AutoresetMode.DISABLED, backend)
+        self.possible_agents = list(_AGENTS)
+        self.agents: list[str] = []
+        self.render_mode = render_mode
+        self._spaces = {agent: (observation_space(), action_space()) for agent in _AGENTS}
+        self._random = np.random.default_rng()
+        self._is_reset = self._is_closed = False
+
+    def observation_space(self, agent: str) -> gym.spaces.Box:
+        """Of an agent; always the same object."""
+        return self._spaces[agent][0]
+
+    def action_space(self, agent: str) -> gym.spaces.Box:
+        """Of an agent; always the same object."""
+        return self._spaces[agent][1]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Floats], dict[str, dict[str, Any]]]:
+        """Begins a new episode; equal seeds give equal ones."""
+        self._assert_open()
+        if seed is not None:
+            self._random, _ = seeding.np_random(seed)
+        self._backend.reset(seeds_of(seed, 1, self._is_reset, self._random), None)
+        self._is_reset = True
+        self.agents = list(_AGENTS)
+        return self._seen(), self._infos()
+
+    def step(
+        self, actions: dict[str, Floats]
+    ) -> tuple[
+        dict[str, Floats], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
+    ]:
+        """Lets everybody decide whose turn it is."""
+        self._assert_open()
+        if not self.agents:
+            raise SkeinError("the episode has ended, or was not begun: reset() begins one")
+        for number, agent in enumerate(_AGENTS):
+            if agent not in actions:
+                raise ValueError(f"actions: expected one of {agent}, came {', '.join(actions) or 'none'}")
+            chosen = np.asarray(actions[agent])
+            if chosen.shape != (1,) or chosen.dtype.kind not in "fiu":
+                raise ValueError(
+                    f"action of {agent}: expected a number of shape (1,), came {chosen.dtype} of shape {chosen.shape}"
+                )
+            self._block.actions[number, 0] = chosen[0]
+        self._backend.step()
+        block = self._block
+        terminated, truncated = bool(block.terminated[0]), bool(block.truncated[0])
+        result = (
+            self._seen(),
+            {agent: float(block.rewards[number, 0]) for number, agent in enumerate(_AGENTS)},
+            dict.fromkeys(_AGENTS, terminated),
+            dict.fromkeys(_AGENTS, truncated),
+            self._infos(),
+        )
+        if terminated or truncated:
+            self.agents = []
+        return result
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """A picture, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
+        return None if self.render_mode is None else picture(self._block.observations[1, :, 0])
+
+    def close(self) -> None:
+        """Gives the environment up."""
+        if not self._is_closed:
+            self._is_closed = True
+            self._backend.close()
+
+    def _assert_open(self) -> None:
+        if self._is_closed:
+            raise SkeinError("the environment is closed")
+
+    def _seen(self) -> dict[str, Floats]:
+        return {agent: self._block.observations[number, :, 0].copy() for number, agent in enumerate(_AGENTS)}
+
+    def _infos(self) -> dict[str, dict[str, Any]]:
+        block = self._block
+        return {
+            agent: {
+                "distance_m": float(block.distance[0]),
+                "time_s": float(block.time[0]),
+                "decides": bool(block.due[number, 0]),
+            }
+            for number, agent in enumerate(_AGENTS)
+        }

@@ -1,0 +1,134 @@
+"""Environments in a Java process of their own, behind a Unix socket: for processes that fork."""
+
+from __future__ import annotations
+
+import mmap
+import os
+import socket
+import struct
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .batch import Block, Flags
+from .errors import SkeinError
+from .installation import find
+
+
+class Server:
+    """A Java process that flies environments for any process of this machine's user.
+
+    It ends when it is closed, or with the process that started it.
+
+    Attributes
+    ----------
+    path : Path
+        Of the socket: ``PursuitVectorEnv(backend=f"unix:{server.path}")`` flies there.
+    """
+
+    def __init__(self) -> None:
+        installed = find()
+        self._folder = tempfile.TemporaryDirectory(prefix="skein-")
+        self.path = Path(self._folder.name) / "socket"
+        self._process = subprocess.Popen(
+            [
+                str(installed.java / "bin" / "java"),
+                "--add-modules=jdk.incubator.vector",
+                "-Xlog:disable",
+                "-cp",
+                os.pathsep.join(installed.jars),
+                "skein.environment.EnvironmentServer",
+                str(self.path),
+            ],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        assert self._process.stdout is not None
+        if self._process.stdout.readline() != b"ready\n":
+            self.close()
+            raise SkeinError(f"the server of environments ended with status {self._process.returncode}")
+
+    def close(self) -> None:
+        """Ends the process and all that flies there."""
+        assert self._process.stdin is not None and self._process.stdout is not None
+        self._process.stdin.close()
+        self._process.wait()
+        self._process.stdout.close()
+        self._folder.cleanup()
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Served:
+    """A batch behind a socket; what is seen and done stands in a file that both processes map.
+
+    Parameters
+    ----------
+    path : str or None
+        Of a running server's socket; None starts one, for this batch alone.
+    """
+
+    def __init__(
+        self, settings: Mapping[str, str], agents: int, count: int, autoreset: int, path: str | None
+    ) -> None:
+        self._server = None if path else Server()
+        size = Block.size(agents, count)
+        with tempfile.NamedTemporaryFile(prefix="skein-") as file:
+            file.truncate(size)
+            self._map = mmap.mmap(file.fileno(), size)
+            self.block = Block(np.frombuffer(self._map, dtype=np.uint8), agents, count)
+            words = {"count": count, "autoreset": autoreset, "file": file.name, **settings}
+            text = "\n".join(f"{name}={value}" for name, value in words.items()).encode()
+            self._socket = socket.socket(socket.AF_UNIX)
+            at = path or str(self._server.path)  # type: ignore[union-attr]
+            try:
+                self._socket.connect(at)
+                self._ask(struct.pack(">i", len(text)) + text)
+            except OSError as mistake:
+                self.close()
+                raise SkeinError(f"expected a server of environments at {at}: {mistake}") from None
+            except (SkeinError, ValueError):
+                self.close()
+                raise
+
+    def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:
+        told = seeds.astype(">i8").tobytes()
+        self._ask(b"\x02" + told if mask is None else b"\x03" + told + mask.tobytes())
+
+    def step(self) -> None:
+        self._ask(b"\x01")
+
+    def close(self) -> None:
+        self._socket.close()
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+
+    def _ask(self, request: bytes) -> None:
+        try:
+            self._socket.sendall(request)
+            status = self._receive(1)[0]
+        except (BrokenPipeError, ConnectionResetError):
+            raise SkeinError("the server of environments has ended") from None
+        if status:
+            (length,) = struct.unpack(">i", self._receive(4))
+            message = self._receive(length).decode()
+            raise ValueError(message) if status == 1 else SkeinError(message)
+
+    def _receive(self, count: int) -> bytes:
+        received = b""
+        while len(received) < count:
+            part = self._socket.recv(count - len(received))
+            if not part:
+                raise SkeinError("the server of environments has ended")
+            received += part
+        return received

@@ -1,0 +1,75 @@
+import pandas as pd
+import pytest
+
+import skein_uav as skein
+from skein_uav import commands, installation
+
+
+@pytest.fixture(scope="module")
+def flights(tmp_path_factory):
+    return skein.fly(link="vpn", duration_s=15, seed=3, out=tmp_path_factory.mktemp("flights"))
+
+
+def test_a_flight_comes_as_frames_with_numbers(flights):
+    distance = next(iter(flights.tables.values()))
+    assert distance["loop"].tolist() == ["stream"]
+    assert 3 < distance["closest m"].iloc[0] < 6
+    assert distance.columns.is_unique and flights.report.exists()
+
+
+def test_a_recording_says_how_old_each_decision_was(flights):
+    with flights.load() as recording:
+        decisions = recording["decision"]
+        assert set(decisions.vehicle) == {"Evader", "Pursuer"}
+        assert 60 < decisions.ownTrueAgeMs.mean() < 150
+        counted = recording.sql("SELECT count(*) AS n FROM decision WHERE vehicle = ?", ["Pursuer"])
+        assert counted.n[0] == (decisions.vehicle == "Pursuer").sum()
+        with pytest.raises(KeyError, match="expected one of .*decision.*, came 'nothing'"):
+            recording["nothing"]
+
+
+def test_equal_seeds_fly_equal_flights(flights, tmp_path):
+    again = skein.fly(link="vpn", duration_s=15, seed=3, out=tmp_path)
+    with flights.load() as one, again.load() as other:
+        pd.testing.assert_frame_equal(one["decision"], other["decision"])
+
+
+def test_spread_and_search_come_as_frames(tmp_path):
+    (spread,) = skein.spread(seeds=2, duration_s=15).values()
+    assert spread["flights"].tolist() == [2]
+    found = skein.search(candidates=8, episodes=2, population=4, fresh=16, out=tmp_path)
+    assert found.result["policy"].iloc[0] == "paper-pursuer"
+    assert found.policy is not None and found.policy.exists()
+    assert found.landscape is not None and len(found.landscape) > 1
+
+
+def test_what_a_command_refuses_is_an_exception_with_its_words():
+    with pytest.raises(skein.SkeinError, match="no loop 'bogus': expected one of paused"):
+        skein.fly(loop="bogus")
+    with pytest.raises(skein.SkeinError, match="--bogus: no such option"):
+        skein.spread(bogus=1)
+
+
+def test_a_file_that_is_no_recording_is_told(tmp_path):
+    with pytest.raises(skein.SkeinError, match="which is no file"):
+        skein.load(tmp_path / "nothing.duckdb")
+    text = tmp_path / "text.duckdb"
+    text.write_text("not a database")
+    with pytest.raises(skein.SkeinError, match="expected a recording"):
+        skein.load(text)
+
+
+def test_a_missing_java_is_told_with_where_it_was_looked_for(monkeypatch, tmp_path):
+    monkeypatch.setenv("JAVA_HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr(installation, "_USUAL", (str(tmp_path / "jvm" / "*"),))
+    with pytest.raises(skein.NotFound, match=f"expected a Java 25 .* JAVA_HOME, on PATH and in {tmp_path}"):
+        installation.find_java()
+
+
+def test_options_become_flags():
+    assert commands._flags({"moves_in_flight": 6, "link": ["vpn", "none"], "as_paper": True, "out": None}) == [
+        *("--moves-in-flight", "6"),
+        *("--link", "vpn", "--link", "none"),
+        "--as-paper",
+    ]
