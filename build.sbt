@@ -47,7 +47,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
-    .aggregate(mcap, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
+    .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -117,6 +117,11 @@ lazy val simulator = project
 lazy val mcap = project
   .settings(artifact("mcap", "MCAP files, read and written"))
   .settings(libraryDependencies ++= zstd +: munit ++: Seq(lz4Oracle, upickle % Test))
+
+/** The field's protocol of vehicles. Depends on nothing of ours. */
+lazy val mavlink = project
+  .settings(artifact("mavlink", "MAVLink 2: frames, signatures, the common messages"))
+  .settings(libraryDependencies ++= munit)
 
 /** Recordings. */
 lazy val record = project

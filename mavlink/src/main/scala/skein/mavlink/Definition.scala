@@ -1,0 +1,82 @@
+package skein.mavlink
+
+import java.nio.{ByteBuffer, ByteOrder}
+import java.nio.charset.StandardCharsets.US_ASCII
+import scala.compiletime.{constValue, constValueTuple}
+import scala.deriving.Mirror
+import scala.reflect.ClassTag
+
+/** One kind of message: its number, its name and how its fields lie in a payload. On the wire the fields are ordered by
+  * the size of their elements, the greatest first, and extensions follow as published.
+  */
+final class Definition[A <: Message] private (
+    val id: Int,
+    label: String,
+    labels: Vector[String],
+    fields: Vector[Field[?]],
+    make: Product => A,
+    private[mavlink] val of: Class[?]
+):
+  /** Such as `LOCAL_POSITION_NED`. */
+  val name: String = Definition.snake(label).toUpperCase(java.util.Locale.ROOT)
+
+  private val (base, extensions) = fields.indices.toVector.partition(!fields(_).isExtension)
+  private val ordered            = base.sortBy(-fields(_).size)
+
+  /** Of a whole payload, bytes. */
+  val length: Int = fields.map(_.length).sum
+
+  /** Two peers whose definitions differ must not understand one another: this goes into every checksum. */
+  val crcExtra: Int =
+    val described = ordered.foldLeft(Checksum.Start.add(s"$name ".getBytes(US_ASCII))): (sum, index) =>
+      val field = fields(index)
+      val named = sum.add(s"${field.typeName} ${Definition.snake(labels(index))} ".getBytes(US_ASCII))
+      if field.count == 0 then named else named.add(field.count)
+    (described.value & 0xff) ^ (described.value >> 8)
+
+  /** The payload, without the zeros at its end; at least one byte. */
+  def encode(message: A): Array[Byte] =
+    val bytes = ByteBuffer.allocate(length).order(ByteOrder.LITTLE_ENDIAN)
+    for index <- ordered ++ extensions do write(fields(index), bytes, message.productElement(index))
+    bytes.array.take(bytes.array.lastIndexWhere(_ != 0).max(0) + 1)
+
+  /** Of any bytes: what is missing is zero, what is too much belongs to extensions that are not known here. */
+  def decode(payload: Array[Byte]): A =
+    val bytes  = ByteBuffer.wrap(payload.padTo(length, 0.toByte)).order(ByteOrder.LITTLE_ENDIAN)
+    val values = new Array[Any](fields.size)
+    for index <- ordered ++ extensions do values(index) = fields(index).read(bytes)
+    make(Tuple.fromArray(values))
+
+  private def write[B](field: Field[B], to: ByteBuffer, value: Any): Unit =
+    field.write(to, value.asInstanceOf[B])
+
+object Definition:
+  /** A message whose class names its fields. */
+  inline def define[A <: Message](id: Int)(using
+      mirror: Mirror.ProductOf[A],
+      tag: ClassTag[A]
+  )(
+      fields: Tuple.Map[mirror.MirroredElemTypes, Field]
+  ): Definition[A] = made(
+    id,
+    constValue[mirror.MirroredLabel],
+    constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector,
+    fields.toList.map(_.asInstanceOf[Field[?]]).toVector,
+    mirror.fromProduct,
+    tag.runtimeClass
+  )
+
+  def made[A <: Message](
+      id: Int,
+      label: String,
+      labels: Vector[String],
+      fields: Vector[Field[?]],
+      make: Product => A,
+      of: Class[?]
+  ): Definition[A] = new Definition(id, label, labels, fields, make, of)
+
+  /** `timeBootMs` is `time_boot_ms`. */
+  private def snake(name: String): String =
+    name.zipWithIndex.map((c, at) =>
+      if c.isUpper then (if at == 0 then "" else "_") + c.toLower else s"$c"
+    ).mkString

@@ -1,0 +1,129 @@
+package skein.mavlink
+
+import scala.collection.mutable
+
+/** What a reader came upon.
+  *
+  * @param frames
+  *   that were right and known
+  * @param lost
+  *   that were missing by the numbers of those that came
+  * @param unknown
+  *   frames of messages that are not known here, and cannot be checked
+  * @param badChecksum
+  *   what looked like a frame and was none, or was damaged
+  * @param badSignature
+  *   frames without a signature, with a wrong one, or sent before
+  * @param notUnderstood
+  *   frames with flags that a receiver must know
+  * @param version1
+  *   frames of MAVLink 1
+  * @param garbageBytes
+  *   outside of frames
+  */
+final case class ReaderCounts(
+    frames: Long = 0,
+    lost: Long = 0,
+    unknown: Long = 0,
+    badChecksum: Long = 0,
+    badSignature: Long = 0,
+    notUnderstood: Long = 0,
+    version1: Long = 0,
+    garbageBytes: Long = 0
+)
+
+/** Bytes in, frames out; whatever comes, it goes on at the next frame. Holds less than one frame. Not thread-safe.
+  *
+  * @param signing
+  *   with it, a frame that is not signed rightly is refused
+  */
+final class FrameReader(signing: Option[Signing] = None):
+  import Frame.*
+
+  private var pending   = Array.emptyByteArray
+  private var counted   = ReaderCounts()
+  private val sequences = mutable.HashMap.empty[(Int, Int), Int]
+
+  def counts: ReaderCounts = counted
+
+  /** A piece of a stream, cut anywhere. */
+  def read(bytes: Array[Byte]): Vector[Frame] =
+    val all    = pending ++ bytes
+    val frames = Vector.newBuilder[Frame]
+    var at     = 0
+    var isCut  = false
+    while at < all.length && !isCut do
+      step(all, at) match
+        case Step.Cut                 => isCut = true
+        case Step.Skip(length)        => at += length
+        case Step.Take(frame, length) =>
+          frames += frame
+          at += length
+    pending = all.drop(at)
+    frames.result()
+
+  /** A datagram: nothing of it belongs to the next. */
+  def readDatagram(bytes: Array[Byte]): Vector[Frame] =
+    val frames = read(bytes)
+    counted = counted.copy(garbageBytes = counted.garbageBytes + pending.length)
+    pending = Array.emptyByteArray
+    frames
+
+  private enum Step:
+    case Cut
+    case Skip(length: Int)
+    case Take(frame: Frame, length: Int)
+
+  private def step(all: Array[Byte], at: Int): Step =
+    def byte(offset: Int) = all(at + offset) & 0xff
+    val left              = all.length - at
+    byte(0) match
+      case Start if left < HeaderLength => Step.Cut
+      case Start                        =>
+        val flags      = byte(2)
+        val frameEnd   = HeaderLength + byte(1) + ChecksumLength
+        val length     = frameEnd + (if (flags & Signed) != 0 then SignatureLength else 0)
+        val id         = byte(7) | byte(8) << 8 | byte(9) << 16
+        val definition = Dialect.of(id)
+        if (flags & ~Signed) != 0 then skip(1)(_.copy(notUnderstood = counted.notUnderstood + 1))
+        else if left < length then Step.Cut
+        else if definition.isEmpty then skip(length)(_.copy(unknown = counted.unknown + 1))
+        else
+          val frame = all.slice(at, at + frameEnd)
+          val sum = Checksum.Start.add(frame, 1, frameEnd - ChecksumLength).add(definition.get.crcExtra).value
+          if sum != (byte(frameEnd - 2) | byte(frameEnd - 1) << 8) then
+            skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
+          else if !signing.forall(sign =>
+              length > frameEnd && sign.accepts(
+                frame,
+                all.slice(at + frameEnd, at + length),
+                byte(5),
+                byte(6)
+              )
+            )
+          then skip(length)(_.copy(badSignature = counted.badSignature + 1))
+          else
+            val message = definition.get.decode(frame.slice(HeaderLength, frameEnd - ChecksumLength))
+            note(byte(5), byte(6), byte(4))
+            Step.Take(Frame(byte(5), byte(6), byte(4), message, signing.isDefined), length)
+      case StartVersion1 if left < 6 => Step.Cut
+      case StartVersion1             =>
+        val length     = 8 + byte(1)
+        val definition = Dialect.of(byte(5))
+        if left < length then Step.Cut
+        else
+          val sum =
+            Checksum.Start.add(all, at + 1, at + length - 2).add(definition.fold(0)(_.crcExtra)).value
+          if definition.isDefined && sum == (byte(length - 2) | byte(length - 1) << 8) then
+            skip(length)(_.copy(version1 = counted.version1 + 1))
+          else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
+      case _ => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
+
+  private def skip(length: Int)(count: ReaderCounts => ReaderCounts): Step =
+    counted = count(counted)
+    Step.Skip(length)
+
+  private def note(system: Int, component: Int, sequence: Int): Unit =
+    val gap = sequences.get((system, component)).fold(0)(before => (sequence - before - 1) & 0xff)
+    sequences((system, component)) = sequence
+    counted = counted.copy(frames = counted.frames + 1, lost = counted.lost + gap)

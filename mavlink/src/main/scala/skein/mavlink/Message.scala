@@ -1,0 +1,383 @@
+package skein.mavlink
+
+/** A message of the common dialect. Fields stand in the published order, by their published names; units are those of
+  * the definitions (mavlink.io, `common.xml`), which are not the same everywhere. Unsigned numbers of up to 32 bits are
+  * positive; of 64 bits they are the bits. Fields with a default are extensions, which older peers do not know.
+  */
+sealed trait Message extends Product
+
+/** Who it is and what state it is in, once a second. */
+final case class Heartbeat(
+    `type`: Int,
+    autopilot: Int,
+    baseMode: Int,
+    customMode: Long,
+    systemStatus: Int,
+    mavlinkVersion: Int
+) extends Message
+
+/** What of it works, and the battery: volts in mV, current in cA, what is left in %. */
+final case class SysStatus(
+    onboardControlSensorsPresent: Long,
+    onboardControlSensorsEnabled: Long,
+    onboardControlSensorsHealth: Long,
+    load: Int,
+    voltageBattery: Int,
+    currentBattery: Int,
+    batteryRemaining: Int,
+    dropRateComm: Int,
+    errorsComm: Int,
+    errorsCount1: Int,
+    errorsCount2: Int,
+    errorsCount3: Int,
+    errorsCount4: Int,
+    onboardControlSensorsPresentExtended: Long = 0,
+    onboardControlSensorsEnabledExtended: Long = 0,
+    onboardControlSensorsHealthExtended: Long = 0
+) extends Message
+
+/** Its clock. */
+final case class SystemTime(timeUnixUsec: Long, timeBootMs: Long) extends Message
+
+/** Asks for a parameter, by its name where the index is −1. */
+final case class ParamRequestRead(targetSystem: Int, targetComponent: Int, paramId: String, paramIndex: Int)
+    extends Message
+
+/** Asks for all parameters. */
+final case class ParamRequestList(targetSystem: Int, targetComponent: Int) extends Message
+
+/** A parameter. An integer stands in the bits of the value (PX4) or as a number (ArduPilot). */
+final case class ParamValue(
+    paramId: String,
+    paramValue: Float,
+    paramType: Int,
+    paramCount: Int,
+    paramIndex: Int
+) extends Message
+
+/** Sets a parameter; answered by its value. */
+final case class ParamSet(
+    targetSystem: Int,
+    targetComponent: Int,
+    paramId: String,
+    paramValue: Float,
+    paramType: Int
+) extends Message
+
+/** A GPS fix: degrees × 10⁷, altitudes in mm, velocities in cm/s, angles in cdeg. */
+final case class GpsRawInt(
+    timeUsec: Long,
+    fixType: Int,
+    lat: Int,
+    lon: Int,
+    alt: Int,
+    eph: Int,
+    epv: Int,
+    vel: Int,
+    cog: Int,
+    satellitesVisible: Int,
+    altEllipsoid: Int = 0,
+    hAcc: Long = 0,
+    vAcc: Long = 0,
+    velAcc: Long = 0,
+    hdgAcc: Long = 0,
+    yaw: Int = 0
+) extends Message
+
+/** Roll, pitch, yaw in rad, rates in rad/s. */
+final case class Attitude(
+    timeBootMs: Long,
+    roll: Float,
+    pitch: Float,
+    yaw: Float,
+    rollspeed: Float,
+    pitchspeed: Float,
+    yawspeed: Float
+) extends Message
+
+/** From body FRD to NED: w, x, y, z; rates in rad/s. */
+final case class AttitudeQuaternion(
+    timeBootMs: Long,
+    q1: Float,
+    q2: Float,
+    q3: Float,
+    q4: Float,
+    rollspeed: Float,
+    pitchspeed: Float,
+    yawspeed: Float,
+    reprOffsetQ: Vector[Float] = Vector.empty
+) extends Message
+
+/** Position in m and velocity in m/s, NED, from the vehicle's own origin. */
+final case class LocalPositionNed(
+    timeBootMs: Long,
+    x: Float,
+    y: Float,
+    z: Float,
+    vx: Float,
+    vy: Float,
+    vz: Float
+) extends Message
+
+/** Degrees × 10⁷, altitudes in mm above the sea and above home, velocities in cm/s, heading in cdeg. */
+final case class GlobalPositionInt(
+    timeBootMs: Long,
+    lat: Int,
+    lon: Int,
+    alt: Int,
+    relativeAlt: Int,
+    vx: Int,
+    vy: Int,
+    vz: Int,
+    hdg: Int
+) extends Message
+
+/** Goes on with this item of the mission. */
+final case class MissionSetCurrent(targetSystem: Int, targetComponent: Int, seq: Int) extends Message
+
+/** The item that is flown to. */
+final case class MissionCurrent(seq: Int, total: Int = 0, missionState: Int = 0, missionMode: Int = 0)
+    extends Message
+
+/** Asks for the mission's items. */
+final case class MissionRequestList(targetSystem: Int, targetComponent: Int, missionType: Int = 0)
+    extends Message
+
+/** So many items follow, to be requested one by one. */
+final case class MissionCount(targetSystem: Int, targetComponent: Int, count: Int, missionType: Int = 0)
+    extends Message
+
+/** Forgets the mission. */
+final case class MissionClearAll(targetSystem: Int, targetComponent: Int, missionType: Int = 0)
+    extends Message
+
+/** An item was reached. */
+final case class MissionItemReached(seq: Int) extends Message
+
+/** How the transfer of a mission ended; 0 is well. */
+final case class MissionAck(targetSystem: Int, targetComponent: Int, `type`: Int, missionType: Int = 0)
+    extends Message
+
+/** Where on the globe the vehicle's local frame has its origin: degrees × 10⁷, mm above the sea. */
+final case class GpsGlobalOrigin(latitude: Int, longitude: Int, altitude: Int, timeUsec: Long = 0)
+    extends Message
+
+/** Asks for one item. */
+final case class MissionRequestInt(targetSystem: Int, targetComponent: Int, seq: Int, missionType: Int = 0)
+    extends Message
+
+/** An item: a command and a place, degrees × 10⁷ or m × 10⁴. */
+final case class MissionItemInt(
+    targetSystem: Int,
+    targetComponent: Int,
+    seq: Int,
+    frame: Int,
+    command: Int,
+    current: Int,
+    autocontinue: Int,
+    param1: Float,
+    param2: Float,
+    param3: Float,
+    param4: Float,
+    x: Int,
+    y: Int,
+    z: Float,
+    missionType: Int = 0
+) extends Message
+
+/** A command with a place. */
+final case class CommandInt(
+    targetSystem: Int,
+    targetComponent: Int,
+    frame: Int,
+    command: Int,
+    current: Int,
+    autocontinue: Int,
+    param1: Float,
+    param2: Float,
+    param3: Float,
+    param4: Float,
+    x: Int,
+    y: Int,
+    z: Float
+) extends Message
+
+/** A command with seven numbers; answered by [[CommandAck]]. */
+final case class CommandLong(
+    targetSystem: Int,
+    targetComponent: Int,
+    command: Int,
+    confirmation: Int,
+    param1: Float,
+    param2: Float,
+    param3: Float,
+    param4: Float,
+    param5: Float,
+    param6: Float,
+    param7: Float
+) extends Message
+
+/** What becomes of a command. */
+final case class CommandAck(
+    command: Int,
+    result: Int,
+    progress: Int = 0,
+    resultParam2: Int = 0,
+    targetSystem: Int = 0,
+    targetComponent: Int = 0
+) extends Message
+
+/** Attitude (w, x, y, z), body rates and thrust to keep; bits of the mask say what to ignore. */
+final case class SetAttitudeTarget(
+    timeBootMs: Long,
+    targetSystem: Int,
+    targetComponent: Int,
+    typeMask: Int,
+    q: Vector[Float],
+    bodyRollRate: Float,
+    bodyPitchRate: Float,
+    bodyYawRate: Float,
+    thrust: Float
+) extends Message
+
+/** Position, velocity, acceleration and yaw to keep, SI; bits of the mask say what to ignore. */
+final case class SetPositionTargetLocalNed(
+    timeBootMs: Long,
+    targetSystem: Int,
+    targetComponent: Int,
+    coordinateFrame: Int,
+    typeMask: Int,
+    x: Float,
+    y: Float,
+    z: Float,
+    vx: Float,
+    vy: Float,
+    vz: Float,
+    afx: Float,
+    afy: Float,
+    afz: Float,
+    yaw: Float,
+    yawRate: Float
+) extends Message
+
+/** What the vehicle flies by. */
+final case class PositionTargetLocalNed(
+    timeBootMs: Long,
+    coordinateFrame: Int,
+    typeMask: Int,
+    x: Float,
+    y: Float,
+    z: Float,
+    vx: Float,
+    vy: Float,
+    vz: Float,
+    afx: Float,
+    afy: Float,
+    afz: Float,
+    yaw: Float,
+    yawRate: Float
+) extends Message
+
+/** The same with a place on the globe. */
+final case class SetPositionTargetGlobalInt(
+    timeBootMs: Long,
+    targetSystem: Int,
+    targetComponent: Int,
+    coordinateFrame: Int,
+    typeMask: Int,
+    latInt: Int,
+    lonInt: Int,
+    alt: Float,
+    vx: Float,
+    vy: Float,
+    vz: Float,
+    afx: Float,
+    afy: Float,
+    afz: Float,
+    yaw: Float,
+    yawRate: Float
+) extends Message
+
+/** A question with `tc1` 0 and the asker's time in `ts1`; its answer repeats `ts1` and has the answerer's time in `tc1`, ns. */
+final case class Timesync(tc1: Long, ts1: Long, targetSystem: Int = 0, targetComponent: Int = 0)
+    extends Message
+
+/** Cells in mV, current in cA, temperature in cdeg C. */
+final case class BatteryStatus(
+    id: Int,
+    batteryFunction: Int,
+    `type`: Int,
+    temperature: Int,
+    voltages: Vector[Int],
+    currentBattery: Int,
+    currentConsumed: Int,
+    energyConsumed: Int,
+    batteryRemaining: Int,
+    timeRemaining: Int = 0,
+    chargeState: Int = 0,
+    voltagesExt: Vector[Int] = Vector.empty,
+    mode: Int = 0,
+    faultBitmask: Long = 0
+) extends Message
+
+/** What it can do and what runs on it. */
+final case class AutopilotVersion(
+    capabilities: Long,
+    flightSwVersion: Long,
+    middlewareSwVersion: Long,
+    osSwVersion: Long,
+    boardVersion: Long,
+    flightCustomVersion: Vector[Int],
+    middlewareCustomVersion: Vector[Int],
+    osCustomVersion: Vector[Int],
+    vendorId: Int,
+    productId: Int,
+    uid: Long,
+    uid2: Vector[Int] = Vector.empty
+) extends Message
+
+/** Where it would return to. */
+final case class HomePosition(
+    latitude: Int,
+    longitude: Int,
+    altitude: Int,
+    x: Float,
+    y: Float,
+    z: Float,
+    q: Vector[Float],
+    approachX: Float,
+    approachY: Float,
+    approachZ: Float,
+    timeUsec: Long = 0
+) extends Message
+
+/** How often a message is sent; −1 is never, 0 the default. */
+final case class MessageInterval(messageId: Int, intervalUs: Int) extends Message
+
+/** On the ground (1), in the air (2), taking off (3) or landing (4). */
+final case class ExtendedSysState(vtolState: Int, landedState: Int) extends Message
+
+/** A line for a person; a long one in several pieces of one `id`. */
+final case class Statustext(severity: Int, text: String, id: Int = 0, chunkSeq: Int = 0) extends Message
+
+/** Position, attitude and velocity, each in the frame that is named; rates in rad/s. */
+final case class Odometry(
+    timeUsec: Long,
+    frameId: Int,
+    childFrameId: Int,
+    x: Float,
+    y: Float,
+    z: Float,
+    q: Vector[Float],
+    vx: Float,
+    vy: Float,
+    vz: Float,
+    rollspeed: Float,
+    pitchspeed: Float,
+    yawspeed: Float,
+    poseCovariance: Vector[Float],
+    velocityCovariance: Vector[Float],
+    resetCounter: Int = 0,
+    estimatorType: Int = 0,
+    quality: Int = 0
+) extends Message
