@@ -48,6 +48,7 @@ lazy val root =
     .in(file("."))
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
+    .aggregate(scene)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -107,10 +108,16 @@ lazy val airsim = project
   .dependsOn(link % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= upickle +: munit ++: Seq(streamTestkit, msgpackOracle))
 
+/** A world to see: scenes, cameras' pictures, lidars' rays. No Pekko, no I/O, no clock. */
+lazy val scene = project
+  .settings(artifact("scene", "Scenes: drawn by software, scanned by rays"))
+  .dependsOn(core)
+  .settings(libraryDependencies ++= hocon +: munit)
+
 /** The built-in simulator, which speaks AirSim's wire. */
 lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
-  .dependsOn(airsim % "compile->compile;test->test", vtime % Test)
+  .dependsOn(scene, airsim % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */

@@ -18,6 +18,7 @@ object Dependencies {
   val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
   val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
   val mainargs      = "com.lihaoyi"           %% "mainargs"             % "0.7.8"
+  val hocon         = "com.typesafe"           % "config"               % "1.4.5"
   val pureconfig    = "com.github.pureconfig" %% "pureconfig-core"      % "0.17.8"
   val logback       = "ch.qos.logback"         % "logback-classic"      % "1.5.18"
   val progressbar   = "me.tongfei"             % "progressbar"          % "0.10.2"

@@ -6,6 +6,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.link.{TcpTransport, TransportError}
+import skein.scene.{Scene, SceneFile}
 import skein.settings.TextFile
 import skein.simulator.{Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
@@ -21,7 +22,9 @@ final case class ServeOptions(
     )
     workers: String = "vehicles+4",
     @arg(doc = "speed of the simulator's clock against the machine's")
-    speed: Double = 1.0
+    speed: Double = 1.0,
+    @arg(doc = "what stands in the world: empty, forest, street, or a file")
+    scene: String = "empty"
 )
 
 object ServeCommand
@@ -44,7 +47,8 @@ object ServeCommand
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
       )
       world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
-      _     <- serve(SimulatorSettings(world, address, overload, options.speed))
+      scene <- sceneOf(options.scene)
+      _     <- serve(SimulatorSettings(world, address, overload, options.speed, scene = scene))
     yield ()
 
   private def overloadOf(text: String): Either[String, Overload] = text match
@@ -62,6 +66,14 @@ object ServeCommand
       world     <- WorldSettings.parse(text).left.map(error => s"$file: ${error.message}")
       supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
     yield supported
+
+  private def sceneOf(name: String): Either[String, Scene] =
+    SceneFile.named(name).map(Right(_)).getOrElse:
+      for
+        text <-
+          TextFile.read(name).left.map(error => s"--scene: no ${SceneFile.Names.mkString(", ")}, and $error")
+        scene <- SceneFile.parse(text, name).left.map(_.message)
+      yield scene
 
   private def serve(settings: SimulatorSettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")

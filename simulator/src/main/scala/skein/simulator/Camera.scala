@@ -3,7 +3,7 @@ package skein.simulator
 import skein.airsim.wire.{CameraInfo, Pose, ProjectionMatrix, Quaternionr, Vector3r}
 import skein.units.{Quaternion, Vector3}
 
-/** A camera that a vehicle carries: where it sits, its lens and its film. It draws nothing yet.
+/** A camera that a vehicle carries: where it sits, its lens and its film.
   *
   * @param position
   *   on the vehicle, front right down, m
@@ -79,7 +79,7 @@ private[simulator] object Camera:
   )
 
   /** Numbers that older clients use, and other names of the same cameras. */
-  private val Aliases = Map(
+  val Aliases: Map[String, String] = Map(
     ""    -> "front_center",
     "fpv" -> "front_center",
     "0"   -> "front_center",
@@ -88,11 +88,6 @@ private[simulator] object Camera:
     "3"   -> "bottom_center",
     "4"   -> "back_center"
   )
-
-  /** The camera's own name, if a multirotor has such a one. */
-  def canonical(name: String): Option[String] =
-    val own = Aliases.getOrElse(name, name)
-    Option.when(Defaults.contains(own))(own)
 
   private def looking(position: Vector3, yawDeg: Double = 0, pitchDeg: Double = 0): Camera =
     val yaw   = math.toRadians(yawDeg) / 2

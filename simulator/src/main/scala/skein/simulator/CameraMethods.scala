@@ -1,10 +1,10 @@
 package skein.simulator
 
 import skein.airsim.wire.*
+import upack.Binary
+import upickle.default.writeMsg
 
-/** Functions of cameras. Where they sit and how they see is kept and told back; pictures, and what is found in them, are
-  * refused.
-  */
+/** Functions of cameras, and of pictures. */
 private[simulator] object CameraMethods:
   import Method.*
 
@@ -17,7 +17,7 @@ private[simulator] object CameraMethods:
         of(simulation, camera, name, external): (index, camera) =>
           val vehicle = simulation.world.vehicles(index)
           answer(
-            simulation.cameras(index, camera).info(
+            cameraOf(simulation, index, camera).info(
               vehicle.positionAt(simulation.world.now),
               vehicle.state.orientation
             )
@@ -80,16 +80,30 @@ private[simulator] object CameraMethods:
     switch("simEnableManualFocus"),
     switch("simEnableFocusPlane"),
     many[(Seq[ImageRequest], String, Boolean)]("simGetImages"):
-      case (simulation, (requests, name, _)) =>
-        simulated(simulation, name)((_, _) => if requests.isEmpty then answer(Seq.empty[Int]) else Blind)
+      case (simulation, (requests, name, external)) =>
+        simulated(simulation, name): (index, _) =>
+          if external then Outcome.Threw("No external cameras exist")
+          else
+            Shots.of(simulation, index, requests) match
+              case Left(refusal) => Outcome.Threw(refusal)
+              case Right(shots)  => Outcome.Draws(() => ImageResponse.encode(shots.take()))
     ,
     many[(String, Int, String, Boolean)]("simGetImage"):
-      case (simulation, (camera, _, name, external)) =>
-        of(simulation, camera, name, external)((_, _) => Blind)
+      case (simulation, (camera, kind, name, external)) =>
+        of(simulation, camera, name, external): (index, camera) =>
+          val request = ImageRequest(camera, kind, pixels_as_float = false, compress = true)
+          Shots.of(simulation, index, Seq(request)) match
+            case Left(refusal) => Outcome.Threw(refusal)
+            case Right(shots)  => Outcome.Draws(() => Binary(shots.take().head.image_data_uint8))
     ,
     many[(String, Int, String, Boolean)]("simGetDetections"):
-      case (simulation, (camera, _, name, external)) =>
-        of(simulation, camera, name, external)((_, _) => Blind)
+      case (simulation, (camera, kind, name, external)) =>
+        of(simulation, camera, name, external): (index, camera) =>
+          Shots.kindOf(kind) match
+            case Left(refusal) => Outcome.Threw(refusal)
+            case Right(_)      =>
+              val found = Detections.of(simulation, index, camera, kind)
+              Outcome.Draws(() => writeMsg(found()))
     ,
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
@@ -109,12 +123,10 @@ private[simulator] object CameraMethods:
   /** Kinds of pictures, from 0. */
   private val ImageTypes = 10
 
-  private val Blind = Outcome.Threw("the built-in simulator draws no images, and finds nothing in them")
-
   private def get(method: String)(read: Camera => Outcome): Method =
     many[(String, String, Boolean)](method):
       case (simulation, (camera, name, external)) =>
-        of(simulation, camera, name, external)((index, camera) => read(simulation.cameras(index, camera)))
+        of(simulation, camera, name, external)((index, camera) => read(cameraOf(simulation, index, camera)))
 
   private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): Method =
     many[(Float, String, String, Boolean)](method):
@@ -146,7 +158,7 @@ private[simulator] object CameraMethods:
       change: Camera => Camera
   ): Outcome =
     of(simulation, camera, name, external): (index, camera) =>
-      simulation.cameras(index, camera) = change(simulation.cameras(index, camera))
+      simulation.cameras(index, camera) = change(cameraOf(simulation, index, camera))
       Nil
 
   private def detecting(simulation: Simulated, camera: String, kind: Int, name: String, external: Boolean)(
@@ -168,8 +180,9 @@ private[simulator] object CameraMethods:
   ): Outcome =
     if external then Outcome.Threw(s"No external camera with name $camera exist")
     else
-      simulated(simulation, name): (index, _) =>
-        Camera.canonical(camera).fold(Outcome.Threw(s"No camera with name $camera exist on vehicle"))(run(
-          index,
-          _
-        ))
+      simulated(simulation, name): (index, vehicle) =>
+        simulation.cameras.canonical(vehicle.settings.name, camera)
+          .fold(Outcome.Threw(Shots.noCamera(camera)))(run(index, _))
+
+  private def cameraOf(simulation: Simulated, vehicle: Int, camera: String): Camera =
+    simulation.cameras(vehicle, simulation.world.vehicles(vehicle).settings.name, camera)

@@ -16,6 +16,9 @@ private[simulator] enum Outcome:
   /** A move: it answers when it ends. */
   case Flies(vehicle: Int, order: Move.Order)
 
+  /** It takes a while and needs nothing of the simulation any more: `work` may run on another thread. */
+  case Draws(work: () => Msg | Encoded)
+
   /** Physics is to run for this long and then stand; that answers. */
   case Steps(span: Span)
 

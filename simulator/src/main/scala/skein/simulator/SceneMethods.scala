@@ -3,9 +3,12 @@ package skein.simulator
 import skein.airsim.VehicleSettings
 import skein.airsim.WorldSettings
 import skein.airsim.wire.*
+import skein.scene.Placement
 import skein.units.*
 
-/** Functions of what is in the scene, and where: vehicles and the ground. There are no assets, levels or meshes. */
+/** Functions of what is in the scene, and where: the ground, the scene's objects and vehicles. There are no assets, levels or
+  * meshes.
+  */
 private[simulator] object SceneMethods:
   import Method.*
 
@@ -31,7 +34,9 @@ private[simulator] object SceneMethods:
     one[String]("simGetObjectPose"): (simulation, name) =>
       answer(
         if name == SceneObjects.Ground then Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0))
-        else simulation.objects.vehicle(name).fold(Nowhere)(simulation.objects.pose)
+        else
+          simulation.objects.thing(name).map(simulation.world.scene.objects).map(simulation.objects.pose)
+            .orElse(simulation.objects.vehicle(name).map(simulation.objects.pose)).getOrElse(Nowhere)
       ),
     many[(String, Pose, Boolean)]("simSetObjectPose"):
       case (simulation, (name, pose, _)) =>
@@ -39,7 +44,13 @@ private[simulator] object SceneMethods:
         for vehicle <- vehicle do
           val position = pose.position.toVector - vehicle.settings.startNed
           vehicle.place(position, pose.orientation.toQuaternion, simulation.world.now)
-        answer(vehicle.nonEmpty)
+        val thing = simulation.objects.thing(name)
+        for index <- thing do
+          simulation.world.scene = simulation.world.scene.moved(
+            index,
+            Placement(pose.position.toVector, Frames.normalized(pose.orientation.toQuaternion))
+          )
+        answer(vehicle.nonEmpty || thing.nonEmpty)
     ,
     one[String]("simGetObjectScale")((simulation, name) =>
       answer(Vector3r(simulation.objects.scale(name).getOrElse(Vector3.Zero)))
@@ -67,12 +78,13 @@ private[simulator] object SceneMethods:
     many[(GeoPoint, String)]("simTestLineOfSightToPoint"):
       case (simulation, (point, name)) =>
         simulated(simulation, name): (index, vehicle) =>
-          val from = vehicle.worldPosition(simulation.world.now)
-          answer(simulation.objects.scene.sees(from, place(simulation, point), except = Some(index)))
+          val from  = vehicle.worldPosition(simulation.world.now)
+          val boxes = simulation.objects.boxes
+          answer(boxes.sees(from, place(simulation, point), except = boxes.itemOf(index)))
     ,
     many[(GeoPoint, GeoPoint)]("simTestLineOfSightBetweenPoints"):
       case (simulation, (from, to)) =>
-        answer(simulation.objects.scene.sees(place(simulation, from), place(simulation, to)))
+        answer(simulation.objects.boxes.sees(place(simulation, from), place(simulation, to)))
     ,
     none("simGetWorldExtents"): simulation =>
       def corner(sign: Int, down: Double) =
@@ -83,7 +95,7 @@ private[simulator] object SceneMethods:
     ,
     many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
       case (simulation, (centre, x, y, z, edge, path)) =>
-        VoxelGrid.render(simulation.objects.scene, centre.toVector, (x, y, z), edge) match
+        VoxelGrid.render(simulation.objects.boxes, centre.toVector, (x, y, z), edge) match
           case Left(refusal) => Outcome.Threw(refusal)
           case Right(grid)   => answer(simulation.save(path, grid))
   )

@@ -2,6 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
+import skein.scene.{Moment, Scene, SceneObject, Shape}
 import skein.units.Vector3
 
 /** The objects of the scene under their names, which are those of the vehicles and `Ground`, and what clients have set
@@ -11,11 +12,16 @@ final private[simulator] class SceneObjects(world: World):
   import SceneObjects.*
 
   private val scales = mutable.Map.empty[String, Vector3]
-  private val ids    = mutable.Map.empty[String, Int]
+  private val chosen = mutable.Map.empty[String, Int]
 
-  def names: Seq[String] = Ground +: world.vehicles.map(_.settings.name)
+  /** As a [[Moment]] counts them. */
+  def names: Seq[String] = Ground +: (world.scene.objects.map(_.name) ++ world.vehicles.map(_.settings.name))
 
-  def exists(name: String): Boolean = name == Ground || vehicle(name).nonEmpty
+  def exists(name: String): Boolean = name == Ground || thing(name).nonEmpty || vehicle(name).nonEmpty
+
+  /** An object of the scene, by its place among them. */
+  def thing(name: String): Option[Int] =
+    Option(world.scene.objects.indexWhere(_.name == name)).filter(_ >= 0)
 
   def vehicle(name: String): Option[SimulatedVehicle] = world.vehicles.find(_.settings.name == name)
 
@@ -29,25 +35,49 @@ final private[simulator] class SceneObjects(world: World):
     known
 
   /** Its segmentation id. */
-  def id(name: String): Option[Int] = Option.when(exists(name))(ids.getOrElse(name, defaultId(name)))
+  def id(name: String): Option[Int] = Option.when(exists(name))(idOf(name))
+
+  /** The ids by item. */
+  def ids: Vector[Int] = names.iterator.map(idOf).toVector
+
+  private def idOf(name: String): Int = chosen.getOrElse(
+    name,
+    thing(name).flatMap(world.scene.objects(_).id).getOrElse(defaultId(name))
+  )
 
   /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from the picture
     * of segmentation in AirSim, and changes nothing here.
     */
   def setId(which: String => Boolean, id: Int): Boolean =
     val found = names.filter(which)
-    if id >= 0 then for name <- found do ids(name) = id.min(LargestId)
+    if id >= 0 then for name <- found do chosen(name) = id.min(LargestId)
     found.nonEmpty
 
-  /** The shapes as they are now. */
-  def scene: Scene = Scene(world.vehicles.map: vehicle =>
-    Scene.Body(vehicle.worldPosition(world.now), vehicle.state.orientation, vehicle.halfLengths))
+  /** Everything as it looks now. */
+  def moment: Moment = Moment(world.scene, world.bodies(world.now))
+
+  /** Everything as it is now, each vehicle the box around it: what hides a line of sight. */
+  def boxes: Moment = Moment(
+    world.scene,
+    world.vehicles.indices.map: index =>
+      val vehicle = world.vehicles(index)
+      SceneObject(
+        vehicle.settings.name,
+        Shape.Box(vehicle.halfLengths),
+        world.placeOf(index, world.now),
+        0,
+        None
+      )
+  )
+
+  def pose(thing: SceneObject): Pose =
+    Pose(Vector3r(thing.place.position), Quaternionr(thing.place.orientation))
 
   def pose(vehicle: SimulatedVehicle): Pose =
     Pose(Vector3r(vehicle.worldPosition(world.now)), Quaternionr(vehicle.state.orientation))
 
 private[simulator] object SceneObjects:
-  val Ground = "Ground"
+  val Ground: String = Scene.Ground
 
   private val LargestId = 255
 

@@ -18,6 +18,8 @@ private[simulator] trait Simulated:
 
   private[simulator] def cameras: Cameras
 
+  private[simulator] def equipment: Equipment
+
   private[simulator] def appearance: Appearance
 
   /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the controller's. */

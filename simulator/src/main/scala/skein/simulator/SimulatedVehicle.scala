@@ -2,6 +2,7 @@ package skein.simulator
 
 import skein.airsim.wire.{KinematicsState, RcData}
 import skein.airsim.VehicleSettings
+import skein.scene.{Contact, Placement, Scene}
 import skein.units.*
 import skein.vehicle.*
 
@@ -37,6 +38,11 @@ final private[simulator] class SimulatedVehicle(
   private var flown       = false
   private var resetAt     = Instant.Epoch
 
+  // Of this scene it can touch nothing until it is so far from there.
+  private var freeOf = Scene.Empty
+  private var freeAt = Vector3.Zero
+  private var freeM  = 0.0
+
   def apiControl: Boolean = controlled
 
   /** The remote control's sticks as last heard of. */
@@ -67,7 +73,7 @@ final private[simulator] class SimulatedVehicle(
   def setWind(windNed: Vector3): Unit = environment = environment.copy(windNed = windNed)
 
   /** One step of physics and firmware, which ends at `at`. */
-  def step(at: Instant): Unit =
+  def step(at: Instant, scene: Scene): Unit =
     if controlled && flown && !goalExpired && at.since(goalSetAt) > SimulatedVehicle.GoalLifetime then
       goal = Setpoint.hold(state.positionNed)
       goalExpired = true
@@ -75,7 +81,49 @@ final private[simulator] class SimulatedVehicle(
     tuned.step(state, goal, environment)
     sampledAt = at
     if state.contacts > contacts then touched = Some(Touch(at, state.positionNed))
+    if scene.objects.nonEmpty then meet(scene, at)
     noticeTakeoffAndLanding()
+
+  /** AirSim's response to a collision, with the contact taken at the centre of mass, so that it turns nothing: what moves
+    * into the object bounces, what slides along it is slowed, and who comes down more than sideways stays.
+    */
+  private def meet(scene: Scene, at: Instant): Unit =
+    val centre = settings.startNed + state.positionNed
+    if (scene ne freeOf) || (centre - freeAt).norm >= freeM then
+      freeOf = scene
+      freeAt = centre
+      freeM = Contact.clearanceM(scene, centre, halfLengths.norm)
+      if freeM <= 0 then
+        for contact <- Contact.of(scene, Placement(centre, state.orientation), halfLengths) do
+          bounce(contact)
+          val thing = scene.objects(contact.item - 1)
+          touched = Some(Touch(
+            at,
+            state.positionNed,
+            contact.normal,
+            contact.depthM,
+            contact.point - settings.startNed,
+            thing.name
+          ))
+
+  private def bounce(contact: Contact): Unit =
+    val n        = contact.normal
+    val inwards  = state.vx * n.x + state.vy * n.y + state.vz * n.z
+    val lands    = n.z < -0.75 && state.vz > math.abs(state.vx) && state.vz > math.abs(state.vy)
+    val returned = if lands then 0 else airframe.restitution
+    val kept     = if lands then 0 else 1 - airframe.friction
+    if inwards < 0 then
+      state.vx = (state.vx - n.x * inwards) * kept - n.x * inwards * returned
+      state.vy = (state.vy - n.y * inwards) * kept - n.y * inwards * returned
+      state.vz = (state.vz - n.z * inwards) * kept - n.z * inwards * returned
+      state.wx *= SimulatedVehicle.SpinKept
+      state.wy *= SimulatedVehicle.SpinKept
+      state.wz *= SimulatedVehicle.SpinKept
+      state.ax = 0; state.ay = 0; state.az = 0
+      state.wxDot = 0; state.wyDot = 0; state.wzDot = 0
+    state.x += n.x * contact.depthM
+    state.y += n.y * contact.depthM
+    state.z += n.z * contact.depthM
 
   /** Sets the goal, if the API has control; it holds for 60 ms. */
   def command(setpoint: Setpoint, at: Instant): Unit =
@@ -213,11 +261,31 @@ final private[simulator] class SimulatedVehicle(
   private def isStill: Boolean =
     Seq(state.vx, state.vy, state.vz, state.wx, state.wy, state.wz).forall(math.abs(_) < 0.08)
 
-/** Where and when a vehicle touched the ground, in its own frame. */
-final private[simulator] case class Touch(at: Instant, positionNed: Vector3)
+/** Where and when a vehicle touched something, in its own frame.
+  *
+  * @param normal
+  *   away from what it touched
+  * @param pointNed
+  *   of contact
+  */
+final private[simulator] case class Touch(
+    at: Instant,
+    positionNed: Vector3,
+    normal: Vector3,
+    depthM: Double,
+    pointNed: Vector3,
+    name: String
+)
+
+private[simulator] object Touch:
+  def apply(at: Instant, positionNed: Vector3): Touch =
+    Touch(at, positionNed, Vector3(0, 0, -1), 0, positionNed, Scene.Ground)
 
 private[simulator] object SimulatedVehicle:
   /** A goal that no command renews within this turns into position hold, once the vehicle flies. */
   val GoalLifetime: Span = Span.ofMillis(60)
 
   private val ArmedThrottle = 0.1
+
+  /** Share of the angular velocity that a bounce leaves: AirSim's rolling friction. */
+  private val SpinKept = 0.9

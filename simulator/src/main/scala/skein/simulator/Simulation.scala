@@ -9,8 +9,14 @@ import upack.{Bool, Msg}
 /** A call as it came: `token` names it in its answer. */
 final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
 
-/** What a call is answered: its result, or the text of its error. */
-final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded])
+/** What a call is answered: its result, or what draws it, or the text of its error. */
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | Drawing])
+
+/** A result that takes a while to compute, such as a picture: of the moment at which it was asked for, whenever and on
+  * whatever thread that is done.
+  */
+final class Drawing(work: () => Msg | Encoded):
+  def result(): Msg | Encoded = work()
 
 /** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
   * ends. A pure function of what it is told; equal calls at equal times give equal answers.
@@ -31,10 +37,12 @@ final class Simulation(
 ) extends Simulated:
   import Simulation.*
 
-  val world: World = World(settings.world, startedAt)
+  private[simulator] val equipment = settings.equipment
+
+  val world: World = World(settings.world, startedAt, scene = settings.scene, equipment = equipment)
 
   private[simulator] val objects    = SceneObjects(world)
-  private[simulator] val cameras    = Cameras()
+  private[simulator] val cameras    = Cameras(equipment)
   private[simulator] val appearance = Appearance()
   private[simulator] var recording  = false
 
@@ -155,6 +163,7 @@ final class Simulation(
       case Some(method) =>
         method(this, call.params) match
           case Outcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
+          case Outcome.Draws(work)           => answers += SimulatorAnswer(call.token, Right(Drawing(work)))
           case Outcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
           case Outcome.Steps(span)           => continueFor(span, call.token, at)
           case Outcome.Flies(vehicle, order) =>

@@ -115,10 +115,12 @@ object SimulatorServer:
     private var wakeAt    = Option.empty[Instant]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
+      given ExecutionContext = context.executionContext
+
       def goOn(): Behavior[Message] =
         takeCalls()
         for answer <- simulation.takeAnswers() do
-          waiting.remove(answer.token).foreach(_.success(answer.result))
+          waiting.remove(answer.token).foreach(complete(_, answer.result))
         behind.set(simulation.behind.toNanos)
         val now = clock.now()
         for at <- simulation.nextWake(now) if wakeAt.forall(at < _) do
@@ -148,6 +150,15 @@ object SimulatorServer:
             simulation.advance(clock.now())
             goOn()
         case Message.Stop => Behaviors.stopped
+
+    /** Pictures are drawn beside the simulation, which goes on meanwhile. */
+    private def complete(
+        promise: Promise[Either[String, Msg | Encoded]],
+        result: Either[String, Msg | Encoded | Drawing]
+    )(using ExecutionContext): Unit = result match
+      case Left(text)                    => promise.success(Left(text))
+      case Right(drawing: Drawing)       => promise.completeWith(Future(Right(drawing.result())))
+      case Right(value: (Msg | Encoded)) => promise.success(Right(value))
 
     /** Runs what waits, as far as a worker is free for it: what is not taken is dropped with its connection. */
     private def takeCalls(): Unit =

@@ -3,6 +3,7 @@ package skein.simulator
 import skein.airsim.{SettingsError, WorldSettings}
 import skein.link.Address
 import skein.rpc.{FrameLimits, ServerLimits}
+import skein.scene.Scene
 import skein.units.*
 
 /** How AirSim's server deals with moves that come faster than they end; see [[Workers]]. */
@@ -25,6 +26,8 @@ enum Overload:
   * @param losesCancel
   *   asked whenever a move comes that replaces another, for tests of clients: where it says so, the other one is not
   *   cancelled. AirSim loses a cancel that comes while a move is about to begin
+  * @param scene
+  *   what stands in the world
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -32,9 +35,13 @@ final case class SimulatorSettings(
     overload: Overload = Overload.AirSim,
     speed: Double = 1.0,
     limits: ServerLimits = SimulatorSettings.Limits,
-    losesCancel: () => Boolean = () => false
+    losesCancel: () => Boolean = () => false,
+    scene: Scene = Scene.Empty
 ):
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
+
+  /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]] says so. */
+  private[simulator] def equipment: Equipment = Equipment.read(world.text).getOrElse(Equipment.None)
 
   private[simulator] def newWorkers[Job, Flight](): Workers[Job, Flight] =
     val vehicles = world.vehicles.size
@@ -44,10 +51,10 @@ final case class SimulatorSettings(
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
-  /** Requests are small: the largest, a path, has 14 values a point. At most 192 MiB are held for all clients. */
+  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all clients: pictures. */
   val Limits: ServerLimits = ServerLimits(
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
-    heldBytesInCommon = 64 << 20
+    heldBytesInCommon = 256 << 20
   )
 
   /** Time from a move's cancellation to its successor's start, measured at AirSim's server: below 0.3 ms. */
@@ -65,3 +72,4 @@ object SimulatorSettings:
         )
       )
       .toLeft(world)
+      .flatMap(_ => Equipment.read(world.text).map(_ => world))

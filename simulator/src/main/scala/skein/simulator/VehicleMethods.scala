@@ -2,6 +2,7 @@ package skein.simulator
 
 import skein.airsim.SensorKind
 import skein.airsim.wire.*
+import skein.scene.Rays
 import skein.units.*
 
 /** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay; AirSim's GPS
@@ -81,8 +82,23 @@ private[simulator] object VehicleMethods:
     sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")((vehicle, at) =>
       answer(magnetometer(vehicle, at))
     ),
-    sensorless("getLidarData", "lidar"),
-    sensorless("getDistanceSensorData", "distance sensor")
+    many[(String, String)]("getLidarData"):
+      case (simulation, (sensor, name)) =>
+        vehicle(simulation, name): (index, vehicle) =>
+          val scan =
+            for
+              (own, lidar) <- simulation.equipment.lidar(vehicle.settings.name, sensor)
+              scan         <- simulation.world.scanOf(index, own, lidar)
+            yield scan
+          scan.fold(missing("lidar", sensor)): scan =>
+            val ids = simulation.objects.ids
+            Outcome.Draws(() => LidarData.encode(scan.data(ids(_))))
+    ,
+    many[(String, String)]("getDistanceSensorData"):
+      case (simulation, (sensor, name)) =>
+        vehicle(simulation, name): (index, vehicle) =>
+          simulation.equipment.ranger(vehicle.settings.name, sensor).fold(missing("distance sensor", sensor)):
+            ranger => answer(distance(simulation, index, ranger))
   )
 
   /** The empty name means the first of its kind. */
@@ -97,10 +113,20 @@ private[simulator] object VehicleMethods:
             read(vehicle, simulation.world.now)
           else missing(called, sensor)
 
-  private def sensorless(method: String, kind: String): Method =
-    many[(String, String)](method):
-      case (simulation, (sensor, name)) =>
-        vehicle(simulation, name)((_, _) => missing(kind, sensor))
+  /** To what the sensor's front points to, at most its greatest distance. */
+  private def distance(simulation: Simulated, index: Int, ranger: Equipment.Ranger): DistanceSensorData =
+    val at     = simulation.world.now
+    val sensor = simulation.world.placeOf(index, at).outside(ranger.place)
+    val moment = simulation.objects.moment
+    val rays   = Rays(moment, sensor.position, ranger.mostM, moment.itemOf(index))
+    val met    = rays.cast(sensor.front.x, sensor.front.y, sensor.front.z)
+    DistanceSensorData(
+      at,
+      math.min(met, ranger.mostM).toFloat,
+      ranger.leastM.toFloat,
+      ranger.mostM.toFloat,
+      Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
+    )
 
   private def missing(kind: String, sensor: String): Outcome =
     Outcome.Threw(s"No $kind with name $sensor exist on vehicle")
@@ -127,8 +153,16 @@ private[simulator] object VehicleMethods:
     Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.state.orientation))
 
   private def collision(touch: Option[Touch]) = touch.fold(CollisionInfo.None): touch =>
-    val place = Vector3r(touch.positionNed)
-    CollisionInfo(true, 0, touch.at, Vector3r(0, 0, -1), place, place, "Ground", -1)
+    CollisionInfo(
+      true,
+      touch.depthM.toFloat,
+      touch.at,
+      Vector3r(touch.normal),
+      Vector3r(touch.pointNed),
+      Vector3r(touch.positionNed),
+      touch.name,
+      -1
+    )
 
   private def imu(vehicle: SimulatedVehicle, at: Instant) =
     // The ground carries a vehicle that stands, and physics does not move it.

@@ -5,6 +5,7 @@ import java.nio.charset.StandardCharsets.US_ASCII
 import java.nio.file.{Files, LinkOption, Path, StandardOpenOption}
 import java.util.BitSet
 import scala.util.Try
+import skein.scene.Moment
 import skein.units.Vector3
 
 /** A grid of cubes, each empty or not, in the `binvox` format (a header in text, then pairs of value and count, runs of
@@ -21,7 +22,7 @@ private[simulator] object VoxelGrid:
     *   the file, or what is wrong with the request
     */
   def render(
-      scene: Scene,
+      moment: Moment,
       centre: Vector3,
       sizeM: (Int, Int, Int),
       edgeM: Float
@@ -49,13 +50,12 @@ private[simulator] object VoxelGrid:
       def index(i: Int, j: Int, k: Int) = i + north.toInt * (k + up.toInt * j)
       // Marked body by body: to ask every cell about every body could take a minute.
       val flying = BitSet()
-      for body <- scene.bodies do
-        val reach = body.reachM + edgeM / 2
-        val apart = body.centre - first
+      for (least, most) <- moment.bounds do
+        val (from, to) = (least - first, most - first)
         for
-          j <- near(apart.y, reach, edgeM, east)
-          k <- near(-apart.z, reach, edgeM, up)
-          i <- near(apart.x, reach, edgeM, north)
+          j <- near(from.y, to.y, edgeM, east)
+          k <- near(-to.z, -from.z, edgeM, up)
+          i <- near(from.x, to.x, edgeM, north)
         do flying.set(index(i, j, k))
       val runs = Runs(out)
       for j <- 0 until east.toInt; k <- 0 until up.toInt do
@@ -64,10 +64,10 @@ private[simulator] object VoxelGrid:
       runs.finish()
       Right(out.toByteArray)
 
-  /** The cells of a row whose centres lie within `reach` of a place, given from the first one's. */
-  private def near(place: Double, reach: Double, edge: Float, cells: Long): Range =
-    val from = math.ceil((place - reach) / edge).max(0).min(cells.toDouble).toInt
-    val to   = math.floor((place + reach) / edge).max(-1).min(cells.toDouble - 1).toInt
+  /** The cells of a row that reach into what lies between two places, given from the first one's centre. */
+  private def near(least: Double, most: Double, edge: Float, cells: Long): Range =
+    val from = math.ceil(least / edge - 0.5).max(0).min(cells.toDouble).toInt
+    val to   = math.floor(most / edge + 0.5).max(-1).min(cells.toDouble - 1).toInt
     from to to
 
   /** Writes a rendered grid, but never over a file that is anything else: the path is a client's. */

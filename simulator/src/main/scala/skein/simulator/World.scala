@@ -2,6 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.scene.{Lidar, Placement, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.Quadrotor
 
@@ -14,7 +15,13 @@ import skein.vehicle.Quadrotor
   * @param start
   *   the clock's first reading
   */
-final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor = Quadrotor.AirSim):
+final class World(
+    settings: WorldSettings,
+    start: Instant,
+    quadrotor: Quadrotor = Quadrotor.AirSim,
+    private[simulator] var scene: Scene = Scene.Empty,
+    equipment: Equipment = Equipment.None
+):
   import World.*
 
   private var flying     = settings.vehicles.map(SimulatedVehicle(_, quadrotor, settings.origin))
@@ -25,6 +32,13 @@ final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor 
   private var nextStep   = start + stepLength
 
   private var wind = settings.windNed
+
+  private val scans = Scans(
+    for
+      (vehicle, index) <- settings.vehicles.zipWithIndex
+      (name, lidar)    <- equipment.lidars.getOrElse(vehicle.name, Vector.empty)
+    yield Scans.Carried(index, name, lidar)
+  )
 
   flying.foreach(_.reset(start))
   setWind(wind)
@@ -88,6 +102,39 @@ final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)
     vehicles.foreach(_.reset(clock))
+    scans.forget()
+    scans.note(clock, scan)
+
+  /** Where a vehicle is at `at` in the world. */
+  private[simulator] def placeOf(vehicle: Int, at: Instant): Placement =
+    Placement(vehicles(vehicle).worldPosition(at), vehicles(vehicle).state.orientation)
+
+  /** The vehicles at `at`, as they look. */
+  private[simulator] def bodies(at: Instant): Vector[SceneObject] =
+    vehicles.zipWithIndex.map: (vehicle, index) =>
+      SceneObject(
+        vehicle.settings.name,
+        VehicleBody.parts(vehicle.airframe, index, scene.vehicleTagM),
+        placeOf(index, at)
+      )
+
+  /** A lidar's newest scan; of now, if it is one that scans when it is asked. */
+  private[simulator] def scanOf(vehicle: Int, name: String, lidar: Lidar): Option[Scan] =
+    if lidar.fresh then Some(scan(Scans.Carried(vehicle, name, lidar), clock, clock.toNanos))
+    else scans.newest(vehicle, name)
+
+  private def scan(carried: Scans.Carried, at: Instant, count: Long): Scan =
+    val vehicle = carried.vehicle
+    Scan(
+      at,
+      count,
+      carried.lidar,
+      vehicle,
+      placeOf(vehicle, at),
+      vehicles(vehicle).settings.startNed,
+      scene,
+      bodies(at)
+    )
 
   /** Velocity of the air, NED, m/s. */
   def setWind(windNed: Vector3): Unit =
@@ -102,9 +149,11 @@ final class World(settings: WorldSettings, start: Instant, quadrotor: Quadrotor 
 
   private def stepTo(to: Instant): Unit =
     while nextStep <= to do
-      vehicles.foreach(_.step(nextStep))
+      scans.note(nextStep - Span.ofNanos(1), scan)
+      vehicles.foreach(_.step(nextStep, scene))
       nextStep = nextStep + stepLength
     clock = clock.max(to)
+    scans.note(clock, scan)
 
   private def takeTurn(vehicle: Int): Unit =
     for running <- moves(vehicle) do

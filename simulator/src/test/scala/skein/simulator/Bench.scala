@@ -3,6 +3,7 @@ package skein.simulator
 import skein.rpc.Encoded
 import skein.airsim.wire.*
 import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.scene.Scene
 import skein.units.*
 import upack.{Bool, Float32, Float64, Int32, Msg, Str}
 import upickle.default.{Reader, readBinary, writeMsg}
@@ -12,16 +13,22 @@ final private[skein] class Bench(
     vehicles: Seq[String] = Seq("Evader"),
     settings: Seq[VehicleSettings] = Seq.empty,
     overload: Overload = Overload.AirSim,
-    speed: Double = 1.0
+    speed: Double = 1.0,
+    scene: Scene = Scene.Empty,
+    text: String = "{}"
 ):
   private val start = Instant.ofNanos(1_000_000_000L)
 
   val simulation: Simulation = Simulation(
     SimulatorSettings(
-      WorldSettings(if settings.isEmpty then vehicles.map(VehicleSettings(_)).toVector
-      else settings.toVector),
+      WorldSettings(
+        if settings.isEmpty then vehicles.map(VehicleSettings(_)).toVector
+        else settings.toVector,
+        text = text
+      ),
       overload = overload,
-      speed = speed
+      speed = speed,
+      scene = scene
     ),
     start
   )
@@ -70,6 +77,10 @@ final private[skein] class Bench(
 
   /** When a call was answered, s since the start; None if it has not been. */
   def answeredAt(token: Long): Option[Double] = answers.get(token).map(_._1)
+
+  private def decoded(value: Msg | Encoded): Msg = value match
+    case Encoded(bytes) => upack.read(bytes.toArray)
+    case value: Msg     => value
 
   def answerOf(token: Long): Either[String, Msg] =
     answers.getOrElse(token, throw AssertionError(s"call $token has no answer yet"))._2
@@ -147,8 +158,8 @@ final private[skein] class Bench(
       answers(token) = (
         elapsedS,
         result.map:
-          case Encoded(bytes) => upack.read(bytes.toArray)
-          case value: Msg     => value
+          case drawing: Drawing       => decoded(drawing.result())
+          case value: (Msg | Encoded) => decoded(value)
       )
 
 private[skein] object Bench:

@@ -95,18 +95,8 @@ class CameraMethodsSuite extends munit.FunSuite:
     val refusal = bench.error("simSetDistortionParam", Str("0"), Str("K9"), Float32(1), Str(""), Bool(false))
     assert(refusal.contains("K1, K2, K3, P1, P2"), refusal)
 
-  test("pictures are refused with a reason, cameras that are not there by name"):
-    val bench   = Bench()
-    val request = writeMsg(ImageRequest("0", 0, pixels_as_float = false, compress = true))
-    assert(bench.error("simGetImages", Arr(request), Str(""), Bool(false)).contains("draws no images"))
-    assert(bench.error("simGetImage", Str("0"), Int32(0), Str(""), Bool(false)).contains("draws no images"))
-    assert(bench.error(
-      "simGetDetections",
-      Str("0"),
-      Int32(0),
-      Str(""),
-      Bool(false)
-    ).contains("draws no images"))
+  test("cameras that are not there are refused by name"):
+    val bench = Bench()
     assert(bench.error(
       "simGetCameraInfo",
       Str("nose"),

@@ -101,13 +101,24 @@ private[simulator] object MethodFuzz:
 
   private def nested(vehicle: String): Seq[Msg] =
     def vector(x: Msg) = Obj(Str("x_val") -> x, Str("y_val") -> Float32(2), Str("z_val") -> Float32(-3))
-    val numbers        =
+    def request(kind: Msg, floats: Msg) = Obj(
+      Str("camera_name")     -> Str("3"),
+      Str("image_type")      -> kind,
+      Str("pixels_as_float") -> floats,
+      Str("compress")        -> Bool(false)
+    )
+    val numbers =
       Seq[Msg](Float32(1), Int32(7), Float32(Float.NaN), Float64(1e300), Null, Str("1"), vector(Null))
     val pose =
       Obj(Str("position") -> vector(Float32(1)), Str("orientation") -> Obj(Str("w_val") -> Float32(1)))
-    numbers.map(vector) ++ numbers.map(x => Arr(vector(x), vector(Float32(4)))) ++ numbers.map(Arr(_)) ++
+    (-1 to 10).map(kind => Arr(request(Int32(kind), Bool(kind % 2 == 0)))) ++ numbers.map(
+      vector
+    ) ++ numbers.map(x => Arr(vector(x), vector(Float32(4)))) ++ numbers.map(Arr(_)) ++
       numbers.map(x => Obj(Str("is_rate") -> x, Str("yaw_or_rate") -> x)) ++
       Seq[Msg](
+        Arr(request(Null, Bool(true))),
+        Arr(request(Int32(0), Int32(1)), Null),
+        Arr(Seq.fill(65)(request(Int32(5), Bool(false)))*),
         pose,
         Arr(pose, pose),
         Obj(Str("position") -> Null),

@@ -2,16 +2,22 @@ package skein.simulator
 
 import scala.util.Random
 import skein.airsim.wire.MultirotorReading
+import skein.scene.SceneFile
 import upack.{Bool, Msg, Str}
 
 /** Fuzz by method, on the workbench: no sockets, no threads. What [[Siege]] does at length over sockets. */
 class MethodFuzzSuite extends munit.FunSuite:
   private val vehicles = Seq("Evader", "Pursuer")
-  private val calls    = MethodFuzz.Calls(Simulation.methods, vehicles.head)
+  private val scene    = SceneFile.named("street").get
+  private val carrying =
+    """{"DefaultSensors": {"L": {"SensorType": 6, "Enabled": true, "PointsPerSecond": 2000},
+      |  "D": {"SensorType": 5, "Enabled": true}}, "Vehicles": {"Evader": {}, "Pursuer": {}},
+      |  "CameraDefaults": {"CaptureSettings": [{"Width": 40, "Height": 24}]}}""".stripMargin
+  private val calls = MethodFuzz.Calls(Simulation.methods, vehicles.head)
 
   /** Every call is answered: at once, but for moves, which the next move of their vehicle or a cancellation ends. */
   private def fuzz(all: Iterator[MethodFuzz.FuzzCall], clue: String): Int =
-    val bench  = Bench(vehicles, overload = Overload.Never).ready()
+    val bench  = Bench(vehicles, overload = Overload.Never, scene = scene, text = carrying).ready()
     var tokens = Vector.empty[(Long, MethodFuzz.FuzzCall)]
     var count  = 0
     for call <- all do

@@ -24,6 +24,15 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
 
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
 
+  /** The pursuer carries a lidar, and a distance sensor that looks down. */
+  private val text =
+    val settings = ujson.read(WorldSettings.render(vehicles))
+    settings("Vehicles")("Pursuer")("Sensors") = ujson.Obj(
+      "Lidar" -> ujson.Obj("SensorType" -> 6, "Enabled" -> true, "Z" -> -1),
+      "Down"  -> ujson.Obj("SensorType" -> 5, "Enabled" -> true, "Pitch" -> -90)
+    )
+    settings.render()
+
   test("the official Python client flies a square, reads every sensor, pauses, steps, lands and resets"):
     fly("fly_square.py")
 
@@ -45,7 +54,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
   private def fly(script: String): Unit =
     val python   = client()
     val settings = SimulatorSettings(
-      WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+      WorldSettings(vehicles, text = text),
       Address("127.0.0.1", 0),
       speed = 5
     )

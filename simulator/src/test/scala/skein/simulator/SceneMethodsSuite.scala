@@ -139,13 +139,6 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(between(Vector3(-5, 0, -11), Vector3(5, 0, -11)))
     assert(!between(Vector3(0, 0, 5), Vector3(1, 0, -1)))
 
-  test("a body is hit where it is, turned as it is"):
-    val quarter = Quaternion(math.cos(math.Pi / 8), 0, 0, math.sin(math.Pi / 8))
-    val long    = Scene.Body(Vector3.Zero, quarter, Vector3(2, 0.1, 0.1))
-    assert(long.cuts(Vector3(1, 0, 0), Vector3(1, 2, 0)))
-    assert(!long.cuts(Vector3(1, 0, 0), Vector3(1, -2, 0)))
-    assert(!long.cuts(Vector3(1, 0, 0), Vector3(1, 0.5, 0)), "the way ends before")
-
   test("the world's extents hold the origin"):
     val corners = Bench().now[Seq[GeoPoint]]("simGetWorldExtents")
     val home    = skein.airsim.WorldSettings.DefaultOrigin

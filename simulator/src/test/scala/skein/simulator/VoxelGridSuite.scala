@@ -2,11 +2,17 @@ package skein.simulator
 
 import java.nio.charset.StandardCharsets.US_ASCII
 import java.nio.file.{Files, Path}
-import skein.units.{Quaternion, Vector3}
+import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
+import skein.units.Vector3
 
 class VoxelGridSuite extends munit.FunSuite:
 
-  private val ground = Scene(Seq.empty)
+  private def boxes(centres: Seq[Vector3]): Moment = Moment(
+    Scene.Empty,
+    centres.toVector.map(at => SceneObject("V", Shape.Box(Vector3(0.3, 0.3, 0.05)), Placement(at), 0, None))
+  )
+
+  private val ground = boxes(Seq.empty)
   private val folder = FunFixture[Path](
     _ => Files.createTempDirectory("voxels"),
     folder =>
@@ -32,17 +38,16 @@ class VoxelGridSuite extends munit.FunSuite:
       assertEquals(cells(i + 2 * (k + 4 * j)), k <= 2, s"$i $j $k")
 
   test("a vehicle fills cells in the air"):
-    val flying     = Scene(Seq(Scene.Body(Vector3(3, 0, -50), Quaternion.Identity, Vector3(0.3, 0.3, 0.05))))
+    val flying     = boxes(Seq(Vector3(3, 0, -50)))
     val (_, cells) = read(VoxelGrid.render(flying, Vector3(0, 0, -50), (10, 10, 10), 1).toOption.get)
     val filled     = cells.indices.filter(cells)
     assert(filled.nonEmpty && filled.size < 30, s"${filled.size} cells")
     assert(filled.contains(8 + 10 * (5 + 10 * 5)))
 
   test("the most vehicles fill a cell each and little more"):
-    val body  = Scene.Body(Vector3(0, 0, -500), Quaternion.Identity, Vector3(0.3, 0.3, 0.05))
-    val crowd = Scene(Seq.tabulate(256)(i => body.copy(centre = Vector3(i % 16, i / 16.0, -500))))
-    def cells(scene: Scene) =
-      read(VoxelGrid.render(scene, Vector3(0, 0, -500), (128, 128, 128), 1).toOption.get)._2.count(identity)
+    val crowd                 = boxes(Seq.tabulate(256)(i => Vector3(i % 16, i / 16, -500)))
+    def cells(moment: Moment) =
+      read(VoxelGrid.render(moment, Vector3(0, 0, -500), (128, 128, 128), 1).toOption.get)._2.count(identity)
     assertEquals(cells(ground), 0)
     val filled = cells(crowd)
     assert(filled >= 256 && filled < 256 * 27, s"$filled cells")

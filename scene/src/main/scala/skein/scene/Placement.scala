@@ -1,0 +1,63 @@
+package skein.scene
+
+import skein.units.{Quaternion, Vector3}
+
+/** Where something is and how it is turned: leads from its own frame (front, right, down) to the one that it is placed
+  * in, such as the world (north, east, down). Metres.
+  *
+  * @param orientation
+  *   a unit quaternion
+  */
+final class Placement(val position: Vector3, val orientation: Quaternion = Quaternion.Identity):
+  import orientation.{w, x, y, z}
+
+  /** Its own axes, in the frame that it is placed in. */
+  val front: Vector3 = Vector3(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
+  val right: Vector3 = Vector3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
+  val down: Vector3  = Vector3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
+
+  /** A place given in its own frame, outside. */
+  def outside(own: Vector3): Vector3 = position + turned(own)
+
+  /** A direction given in its own frame, outside. */
+  def turned(own: Vector3): Vector3 = front * own.x + right * own.y + down * own.z
+
+  /** A place given outside, in its own frame. */
+  def inside(there: Vector3): Vector3 =
+    val from = there - position
+    Vector3(from.dot(front), from.dot(right), from.dot(down))
+
+  /** What is placed in this frame, outside. */
+  def outside(inner: Placement): Placement =
+    val q = inner.orientation
+    Placement(
+      outside(inner.position),
+      Quaternion(
+        w * q.w - x * q.x - y * q.y - z * q.z,
+        w * q.x + x * q.w + y * q.z - z * q.y,
+        w * q.y - x * q.z + y * q.w + z * q.x,
+        w * q.z + x * q.y - y * q.x + z * q.w
+      )
+    )
+
+object Placement:
+  /** Turned by roll, then pitch, then yaw, degrees: the order of AirSim's settings. */
+  def turned(position: Vector3, rollDeg: Double, pitchDeg: Double, yawDeg: Double): Placement =
+    def half(deg: Double) = StrictMath.toRadians(deg) / 2
+    val (cr, sr)          = (StrictMath.cos(half(rollDeg)), StrictMath.sin(half(rollDeg)))
+    val (cp, sp)          = (StrictMath.cos(half(pitchDeg)), StrictMath.sin(half(pitchDeg)))
+    val (cy, sy)          = (StrictMath.cos(half(yawDeg)), StrictMath.sin(half(yawDeg)))
+    Placement(
+      position,
+      Quaternion(
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy
+      )
+    )
+
+extension (a: Vector3)
+  private[scene] def dot(b: Vector3): Double    = a.x * b.x + a.y * b.y + a.z * b.z
+  private[scene] def cross(b: Vector3): Vector3 =
+    Vector3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)

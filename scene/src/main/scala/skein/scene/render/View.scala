@@ -1,0 +1,14 @@
+package skein.scene.render
+
+import skein.scene.Placement
+
+/** A pinhole camera: looks to the front of where it is placed.
+  *
+  * @param fovDeg
+  *   horizontal, below 180
+  */
+final case class View(place: Placement, width: Int, height: Int, fovDeg: Double):
+  require(width > 0 && height > 0 && fovDeg > 0 && fovDeg < 180, s"no view: $width × $height, $fovDeg°")
+
+  /** Pixels from the camera to the picture. */
+  val focalPx: Double = width / 2.0 / StrictMath.tan(StrictMath.toRadians(fovDeg) / 2)

@@ -1,0 +1,56 @@
+package skein.simulator
+
+import skein.airsim.wire.*
+import skein.scene.render.{Extent, Renderer}
+import skein.scene.Placement
+import skein.units.Vector3
+
+/** What a camera sees of the objects that are looked for: those of which at least one pixel shows. */
+private[simulator] object Detections:
+
+  /** What is asked for, of now; found when it is called, on any thread. */
+  def of(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): () => Seq[DetectionInfo] =
+    val filter  = simulation.cameras.detection(vehicle, camera, imageType)
+    val view    = Shots.view(simulation, vehicle, camera, imageType)
+    val moment  = simulation.objects.moment
+    val origin  = simulation.settings.world.origin
+    val wanted  = filter.meshes.toSeq.map(wildcard)
+    val radiusM = filter.radiusCm / 100
+    () =>
+      for
+        extent <- Renderer.extents(moment, view, except = moment.itemOf(vehicle))
+        thing  <- moment.thing(extent.item).toVector
+        if wanted.exists(
+          _.matches(thing.name)
+        ) && (thing.place.position - view.place.position).norm <= radiusM
+      yield
+        val (least, most) = thing.bounds
+        val place         = Globe.locate(thing.place.position, origin)
+        DetectionInfo(
+          thing.name,
+          GeoPoint(place),
+          box(extent),
+          Box3D(Vector3r(least), Vector3r(most)),
+          relative(thing.place, view.place)
+        )
+
+  private def box(extent: Extent): Box2D = Box2D(
+    Vector2r(extent.left.toFloat, extent.top.toFloat),
+    Vector2r(extent.right.toFloat, extent.bottom.toFloat)
+  )
+
+  private def relative(thing: Placement, camera: Placement): Pose =
+    val q       = camera.orientation
+    val inverse = Placement(Vector3.Zero, q.copy(x = -q.x, y = -q.y, z = -q.z))
+    val turned  = inverse.outside(Placement(Vector3.Zero, thing.orientation))
+    Pose(Vector3r(camera.inside(thing.position)), Quaternionr(turned.orientation))
+
+  /** A name in which `*` stands for anything and `?` for one letter, in any case of letters. */
+  private def wildcard(text: String): NamePattern = NamePattern(
+    text.map {
+      case '*' => ".*"
+      case '?' => "."
+      case c   => java.util.regex.Pattern.quote(c.toString)
+    }.mkString,
+    ignoreCase = true
+  )

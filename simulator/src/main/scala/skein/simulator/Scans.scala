@@ -1,0 +1,66 @@
+package skein.simulator
+
+import scala.collection.mutable
+import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
+import skein.scene.{Lidar, Moment, Placement, Scene, SceneObject}
+import skein.units.*
+
+/** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn of one instant; what it is
+  * asked for is the newest. Where everything was at that instant is noted; the rays are only cast if somebody asks.
+  */
+final private[simulator] class Scans(lidars: Vector[Scans.Carried]):
+  private val notes = mutable.Map.empty[Scans.Carried, Scan]
+
+  /** Notes every scan that is due by `until`. */
+  def note(until: Instant, of: (Scans.Carried, Instant, Long) => Scan): Unit =
+    for lidar <- lidars if !lidar.lidar.fresh do
+      var next = dueAt(lidar)
+      // Of those that a long step has passed only the newest will be asked for.
+      if next.forall(_ <= until) then
+        val start = next.getOrElse(until)
+        val late  = until.since(start).toNanos / lidar.period.toNanos
+        next = Some(start + lidar.period * late)
+        val count = notes.get(lidar).fold(0L)(_.count + 1 + late)
+        next.foreach(at => notes(lidar) = of(lidar, at, count))
+
+  def newest(vehicle: Int, name: String): Option[Scan] =
+    lidars.find(lidar => lidar.vehicle == vehicle && lidar.name == name).flatMap(notes.get)
+
+  def forget(): Unit = notes.clear()
+
+  private def dueAt(lidar: Scans.Carried): Option[Instant] = notes.get(lidar).map(_.at + lidar.period)
+
+private[simulator] object Scans:
+  final case class Carried(vehicle: Int, name: String, lidar: Lidar):
+    val period: Span = Span.ofNanos(1_000_000_000L / lidar.rotationsPerSecond)
+
+/** A scan that has been taken: what it needs to be computed, once.
+  *
+  * @param origin
+  *   of the vehicle's own frame in the world
+  */
+final private[simulator] class Scan(
+    val at: Instant,
+    val count: Long,
+    lidar: Lidar,
+    vehicle: Int,
+    place: Placement,
+    origin: Vector3,
+    scene: Scene,
+    vehicles: Vector[SceneObject]
+):
+  private lazy val points: Lidar.Points =
+    val moment = Moment(scene, vehicles)
+    lidar.scan(moment, place, moment.itemOf(vehicle), origin, count)
+
+  /** @param idOf
+    *   the items' segmentation ids
+    */
+  def data(idOf: Int => Int): LidarData =
+    val sensor = place.outside(lidar.place)
+    LidarData(
+      at,
+      points.xyz,
+      Pose(Vector3r(sensor.position - origin), Quaternionr(sensor.orientation)),
+      points.items.map(idOf)
+    )

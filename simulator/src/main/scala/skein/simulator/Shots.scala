@@ -1,0 +1,121 @@
+package skein.simulator
+
+import skein.airsim.wire.*
+import skein.scene.render.{Kind, Picture, Png, Renderer, View}
+import skein.scene.{Moment, Placement}
+
+/** Pictures that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
+  * Taken once, on any thread.
+  */
+final private[simulator] class Shots private (
+    moment: Moment,
+    vehicle: Int,
+    ids: Vector[Int],
+    wanted: Seq[Shots.Wanted]
+):
+  import Shots.*
+
+  def take(): Seq[ImageResponse] =
+    val drawn = wanted.groupBy(_.view).map: (view, shots) =>
+      view -> Renderer.draw(moment, view, shots.map(_.kind).toSet, ids(_), except = moment.itemOf(vehicle))
+    wanted.map(shot => response(shot, drawn(shot.view)(shot.kind)))
+
+  private def response(shot: Wanted, picture: Picture): ImageResponse =
+    val view  = shot.view
+    val empty = shot.response.copy(width = view.width, height = view.height)
+    if shot.response.pixels_as_float then empty.copy(image_data_float = numbers(picture))
+    else if shot.response.compress then
+      empty.copy(image_data_uint8 = Png.encode(bytes(picture), view.width, view.height))
+    else empty.copy(image_data_uint8 = bytes(picture))
+
+  /** Of a coloured picture the red, from 0 to 1, as AirSim. */
+  private def numbers(picture: Picture): Array[Float] = picture match
+    case Picture.Numbers(values) => values
+    case Picture.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
+
+  /** Of a picture of numbers a grey that is white from 1 on, as AirSim. */
+  private def bytes(picture: Picture): Array[Byte] = picture match
+    case Picture.Bytes(bgr)      => bgr
+    case Picture.Numbers(values) => values.flatMap: value =>
+        val grey = (math.min(1f, value) * 255 + 0.5f).toByte
+        Array(grey, grey, grey)
+
+private[simulator] object Shots:
+  /** @param response
+    *   what is known of it before it is drawn
+    */
+  final case class Wanted(view: View, kind: Kind, response: ImageResponse)
+
+  /** Of one call. */
+  val MostPictures = 64
+
+  /** Of one answer: what a client of ours takes. */
+  val MostBytes: Long = 60L << 20
+
+  def noCamera(name: String): String = s"No camera with name $name exist on vehicle"
+
+  /** What is drawn for AirSim's number of an image type. */
+  def kindOf(imageType: Int): Either[String, Kind] =
+    if imageType < 0 || imageType >= ImageType.values.length then
+      Left(s"an image type is 0 to ${ImageType.values.length - 1}, not $imageType")
+    else
+      ImageType.fromOrdinal(imageType) match
+        case ImageType.OpticalFlow | ImageType.OpticalFlowVis =>
+          Left(s"the built-in simulator draws no ${ImageType.fromOrdinal(imageType)}")
+        case kind => Right(Kind.valueOf(kind.toString))
+
+  /** Through a vehicle's camera, now. */
+  def view(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): View =
+    val name    = simulation.world.vehicles(vehicle).settings.name
+    val seen    = simulation.cameras(vehicle, name, camera)
+    val capture = simulation.equipment.capture(name, camera, imageType)
+    val place   = simulation.world.placeOf(vehicle, simulation.world.now)
+    View(
+      place.outside(Placement(seen.position, seen.orientation)),
+      capture.width,
+      capture.height,
+      fovDeg(seen)
+    )
+
+  /** Films and lenses can be set to what no picture has. */
+  private def fovDeg(camera: Camera): Double = math.max(0.01, math.min(179.9, camera.fovDeg.toDouble))
+
+  def of(simulation: Simulated, vehicle: Int, requests: Seq[ImageRequest]): Either[String, Shots] =
+    val asked = requests.map(wanted(simulation, vehicle, _))
+    val size  = asked.iterator.collect { case Right(shot) => bytesOf(shot) }.sum
+    if requests.size > MostPictures then
+      Left(s"at most $MostPictures pictures are drawn at once, not ${requests.size}")
+    else if size > MostBytes then Left(s"pictures of $size bytes in one answer; at most $MostBytes are sent")
+    else
+      asked.collectFirst { case Left(refusal) => refusal }.toLeft:
+        Shots(
+          simulation.objects.moment,
+          vehicle,
+          simulation.objects.ids,
+          asked.collect { case Right(shot) => shot }
+        )
+
+  private def bytesOf(shot: Wanted): Long =
+    shot.view.width.toLong * shot.view.height * (if shot.response.pixels_as_float then 5 else 3)
+
+  private def wanted(simulation: Simulated, vehicle: Int, request: ImageRequest): Either[String, Wanted] =
+    val owner = simulation.world.vehicles(vehicle).settings
+    for
+      kind <- kindOf(request.image_type)
+      name <-
+        simulation.cameras.canonical(owner.name, request.camera_name).toRight(noCamera(request.camera_name))
+    yield
+      val seen = view(simulation, vehicle, name, request.image_type)
+      Wanted(
+        seen,
+        kind,
+        ImageResponse(
+          camera_position = Vector3r(seen.place.position - owner.startNed),
+          camera_name = request.camera_name,
+          camera_orientation = Quaternionr(seen.place.orientation),
+          time_stamp = simulation.world.now,
+          pixels_as_float = request.pixels_as_float,
+          compress = request.compress,
+          image_type = request.image_type
+        )
+      )
