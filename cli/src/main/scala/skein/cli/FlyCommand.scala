@@ -11,12 +11,12 @@ import skein.flight.{FlightRigs, Landed, LiveFlights, ProgressBoard, VirtualFlig
 import skein.link.{Address, TcpTransport}
 import skein.loop.Outcome
 import skein.measure.FlightSet
-import skein.record.{ClockKind, Heading, Record, RecordError}
+import skein.record.{ClockKind, Record, RecordError}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
-import skein.view.{Feed, LiveShow, Shows}
+import skein.view.Shows
 
 /** Options of `./skein fly`. */
 final case class FlyOptions(
@@ -62,7 +62,7 @@ final class FlyCommand(using Scenarios)
             _ <- warmUp(settings)
             shows = Shows()
             flown <-
-              options.view.serving(shows)(flyLive(settings, simulator, out, observed(options.view, shows)))
+              options.view.serving(shows)(flyLive(settings, simulator, out, Option.when(options.view.view.value)(OnShow(shows))))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case ClockKind.Virtual if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
@@ -87,14 +87,6 @@ final class FlyCommand(using Scenarios)
   private def defaultFolder: String =
     s"flights/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
 
-  /** Puts each flight on show as it begins. */
-  private def observed(options: ViewOptions, shows: Shows)(heading: Heading): Record => Unit =
-    if !options.view.value then _ => ()
-    else
-      val feed = Feed()
-      shows.add(LiveShow(heading, feed))
-      feed.offer
-
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-warm-up")
     try
@@ -111,13 +103,13 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       simulator: Option[Address],
       out: Path,
-      observe: Heading => Record => Unit
+      shown: Option[OnShow]
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator, tell = tell)
     try
-      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out, observe).map(Flown(_, None))
-      else flyInTurn(rigs, settings, out, observe)
+      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out, shown).map(Flown(_, None))
+      else flyInTurn(rigs, settings, out, shown)
     finally
       val _ = Edge.await(system.terminate())
 
@@ -126,7 +118,7 @@ final class FlyCommand(using Scenarios)
       rigs: FlightRigs,
       settings: FlySettings,
       out: Path,
-      observe: Heading => Record => Unit
+      shown: Option[OnShow]
   )(using system: ActorSystem): Either[String, Flown] =
     val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
       if before.grounded.isDefined then before
@@ -134,7 +126,7 @@ final class FlyCommand(using Scenarios)
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
       else
         Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(rigs, Vector(plan), settings, out, observe) match
+        flyTogether(rigs, Vector(plan), settings, out, shown) match
           case Left(reason)  => before.copy(grounded = Some(reason))
           case Right(landed) => before.copy(landed = before.landed ++ landed)
     flown.grounded match
@@ -146,7 +138,7 @@ final class FlyCommand(using Scenarios)
       plans: Vector[FlightPlan],
       settings: FlySettings,
       out: Path,
-      observe: Heading => Record => Unit
+      shown: Option[OnShow]
   )(using system: ActorSystem): Either[String, Vector[Landed]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()
@@ -154,10 +146,11 @@ final class FlyCommand(using Scenarios)
     Edge
       .untilInterrupted(() => abandon()):
         Edge.await(Future.firstCompletedOf(Seq(
-          LiveFlights.start(rigs, plans, out, observe),
+          LiveFlights.start(rigs, plans, out, heading => shown.fold((_: Record) => ())(_.observe(heading))),
           abandoned.future
         )))
       .map: flights =>
+        shown.foreach(_.flying(flights))
         val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
         val timer =
           system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))

@@ -5,7 +5,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.ExecutionContext
 import skein.loop.planning.BackgroundThread
 import skein.units.Clock
-import skein.view.{Shows, ViewServer}
+import skein.view.{Shows, Token, ViewServer}
 
 /** Whether and where a flight can be looked at. */
 final case class ViewOptions(
@@ -32,6 +32,7 @@ final case class ViewOptions(
       else
         // Flights come first: viewers have a processor while nobody else wants it.
         val threads = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-view"))
+        val token   = Token.drawn()
         try
           Edge.await(
             ViewServer
@@ -40,7 +41,8 @@ final case class ViewOptions(
                 Clock.system,
                 ExecutionContext.fromExecutorService(threads),
                 port,
-                viewOrigin.toSet
+                viewOrigin.toSet,
+                token
               )
               .map(Right(_))(using ExecutionContext.parasitic)
               .recover { case error => Left(s"--view-port: cannot listen on $port: ${error.getMessage}") }(
@@ -48,7 +50,8 @@ final case class ViewOptions(
               )
           ).flatMap: server =>
             Console.err.println(
-              s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}"
+              s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}; " +
+                s"token of the page's abort: ${token.word}"
             )
             try body
             finally Edge.await(server.close()): Unit

@@ -21,12 +21,18 @@ import skein.units.Decimals.fixed
 final class FlightRig private[skein] (
     val plan: FlightPlan,
     val flight: Flight,
+    val graph: RunningGraph,
     watch: Watch,
     vigil: Vigil,
     startedAt: Instant,
     clock: Clock,
     shutDown: () => Future[Done]
 )(using ExecutionContext):
+
+  /** Ends it now; why is recorded. */
+  def stop(why: String): Unit =
+    watch.offer(Event(clock.now(), EventKind.Aborted, None, why))
+    flight.stop()
 
   /** How far it is, in the controller's time. */
   def progress: Progress =
@@ -156,7 +162,7 @@ final class FlightRigs(
         )
         finish.isOver.foreach(_ => flight.complete())
         vigil.over(flight)
-        Right(FlightRig(plan, flight, watch, vigil, startedAt, clock, () => opened.close()))
+        Right(FlightRig(plan, flight, RunningGraph(team.meters), watch, vigil, startedAt, clock, () => opened.close()))
     starting
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
       .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }

@@ -5,6 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
+import skein.loop.RunningGraph
 import skein.record.{DuckDbRecorder, Heading, ObservedRecorder, Record}
 import skein.settings.FlightPlan
 
@@ -17,6 +18,16 @@ final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSys
 
   /** Ends all flights now; vehicles hover. */
   def stop(): Unit = rigs.foreach(_.flight.stop())
+
+  /** Ends one flight now; its vehicles hover.
+    *
+    * @param why
+    *   as it is recorded
+    */
+  def stop(id: String, why: String): Unit = rigs.find(_.plan.id == id).foreach(_.stop(why))
+
+  /** The graphs as they run, by the flights' names. */
+  def graphs: Vector[(id: String, graph: RunningGraph)] = rigs.map(rig => (rig.plan.id, rig.graph))
 
   def progress: Vector[Progress] = rigs.map(_.progress)
 

@@ -17,9 +17,9 @@ object PredictiveLoop:
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
       val observed = builder.add(Observed(team, stop))
-      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
-      val steered  = builder.add(Merge[Steering](team.vehicles.size))
-      val fan      = builder.add(Broadcast[Steering](3))
+      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
+      val fan      = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
 
       observed ~> cast
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
@@ -40,3 +40,4 @@ object PredictiveLoop:
       vehicle: Option[Int]
   ): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Newest[DecisionRequest](_ => team.log.note(EventKind.Dropped, vehicle, "not commanded within a period"))
+      .addAttributes(vehicle.fold(team.named("newest"))(team.named("newest", _)))

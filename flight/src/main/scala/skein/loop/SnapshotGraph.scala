@@ -16,17 +16,17 @@ private object SnapshotGraph:
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
       val sensed  = team.sensed(team.now)
-      val events  = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true))
-      val cast    = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
-      val steered = builder.add(Merge[Steering](team.vehicles.size))
-      val fan     = builder.add(Broadcast[Steering](3))
+      val events  = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true).addAttributes(team.named("events")))
+      val cast    = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
+      val steered = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
+      val fan     = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
 
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
       for vehicle <- team.vehicles do
         cast ~> team.decide(vehicle) ~> team.newest(vehicle).via(stop.flow) ~>
           team.steer(vehicle) ~> steered.in(vehicle)
 
-      snapshots ~> events.in(0)
+      snapshots.addAttributes(team.named("snapshots")) ~> events.in(0)
       for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(1 + sensor)
       events ~> team.view ~> cast
       steered ~> fan

@@ -18,13 +18,13 @@ object StreamLoop:
   def apply(team: Team, stop: SharedKillSwitch): RunnableGraph[Future[Done]] =
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
-      val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size))
+      val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size).addAttributes(team.named("merge")))
       val start    = team.now
       val sensed   = team.sensed(start)
-      val events   = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true))
-      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size))
-      val steered  = builder.add(Merge[Steering](team.vehicles.size))
-      val fan      = builder.add(Broadcast[Steering](3))
+      val events   = builder.add(MergePreferred[LoopEvent](1 + sensed.size, eagerComplete = true).addAttributes(team.named("events")))
+      val cast     = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
+      val steered  = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
+      val fan      = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
 
       for vehicle <- team.vehicles do
         sense(team, vehicle, start, stop).map((vehicle, _)) ~> readings.in(vehicle)
@@ -65,6 +65,7 @@ object StreamLoop:
           ticks => team.log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
       )
       .via(stop.flow)
+      .addAttributes(team.named("sense", vehicle))
 
   private[loop] def joinLatest(team: Team): Flow[(Int, Reading), LoopEvent, ?] =
     val everyone = team.vehicles.toSet
@@ -77,6 +78,7 @@ object StreamLoop:
         )
       )
       .map(newest => LoopEvent.Seen(newest.values.toVector, everyone))
+      .addAttributes(team.named("join latest"))
 
   private def pacedDecisions(team: Team, vehicle: Int): Flow[DecisionRequest, Decision, ?] =
     if team.settings.decideThenPace then team.decide(vehicle).via(team.pace(vehicle))

@@ -4,6 +4,7 @@ import java.util.concurrent.atomic.{AtomicLongArray, AtomicReference, AtomicRefe
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
+import org.apache.pekko.stream.Attributes
 import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
@@ -33,6 +34,22 @@ final class Team(
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
+  /** What passes the parts of the loop's graph. */
+  val meters: StageMeters = StageMeters()
+
+  /** Names a part of the graph. */
+  def named(part: String): Attributes = Attributes(meters(part))
+
+  /** Names the part of one vehicle. */
+  def named(part: String, vehicle: Int): Attributes = Attributes(meter(part, vehicle))
+
+  private def meter(part: String, vehicle: Int) = meters(s"$part(${fleet.agents(vehicle).name})")
+
+  private def ageOf(validAt: Option[Instant]): Option[Span] =
+    clocks.get.zip(validAt).map((known, valid) => clock.now().since(known.toController(valid)))
+
+  private def ageOf(view: TeamView): Option[Span] = ageOf(view.readings.flatten.map(_.state.validAt).minOption)
+
   // `futures` asks one vehicle from several threads at once.
   private val asked = AtomicLongArray(crafts.size)
 
@@ -45,15 +62,20 @@ final class Team(
   /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] =
     val sequence = asked.getAndIncrement(vehicle)
+    val sensing  = meter("sense", vehicle)
+    sensing.called()
     crafts(vehicle)
       .read()
       .map:
         case Right(state) =>
           val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
           val reading = Reading(vehicle, sequence, state)
+          sensing.answered()
+          sensing.pass(ageOf(Some(state.validAt)))
           log.read(reading)
           Right(reading)
         case Left(error) =>
+          sensing.answered()
           log.failed(vehicle, s"reading $sequence", error)
           Left(error)
 
@@ -139,11 +161,15 @@ final class Team(
         ,
         _ => None
       )
-      .collect { case Some(request) => request }
+      .collect:
+        case Some(request) =>
+          meters("view").pass(ageOf(request.view))
+          request
+      .addAttributes(named("view"))
 
   /** Once a period, in the middle between two questions, everybody is due to decide. */
   def due(start: Instant): Source[LoopEvent, NotUsed] =
-    ticks(start + settings.period / 2).map(_ => LoopEvent.Due(vehicles.toSet))
+    ticks(start + settings.period / 2).map(_ => LoopEvent.Due(vehicles.toSet)).addAttributes(named("due"))
 
   /** Once a period from an instant on: how many ticks were due since the last. */
   def ticks(first: Instant): Source[Int, NotUsed] =
@@ -157,7 +183,8 @@ final class Team(
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
       .collect { case request if request.deciders(vehicle) => request }
-      .via(predict(Vector(vehicle), lead = Span.Zero))
+      .via(predicted(Vector(vehicle), Span.Zero, meter("predict", vehicle)))
+      .addAttributes(named("predict", vehicle))
 
   /** Carries requests forward to when the commands of some vehicles will act, and records how earlier predictions turned
     * out.
@@ -166,18 +193,32 @@ final class Team(
     *   how much later that is because of what is done with the request
     */
   def predict(deciders: Vector[Int], lead: Span): Flow[DecisionRequest, DecisionRequest, NotUsed] =
+    predicted(deciders, lead, meters("predict")).addAttributes(named("predict"))
+
+  private def predicted(
+      deciders: Vector[Int],
+      lead: Span,
+      meter: StageMeter
+  ): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
-      .collect(Function.unlift(request => request.view.forecast.map((request, _))))
+      .collect(Function.unlift: request =>
+        meter.enter()
+        request.view.forecast.map((request, _)))
       .via(Predict.whenActing(clock, vehicle => deciders.exists(verified(_)(vehicle)), lead)(outcome =>
         for decider <- deciders if verified(decider)(outcome.vehicle) do
           log.predicted(decider, outcome)
       ))
-      .map((request, estimates) => request.copy(view = request.view.copy(estimates = Some(estimates))))
+      .map: (request, estimates) =>
+        meter.pass(ageOf(request.view))
+        request.copy(view = request.view.copy(estimates = Some(estimates)))
 
   /** Decides for one vehicle on the requests that are meant for it, within the deadline if there is one, and records the
     * decision.
     */
-  def decide(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] = settings.deadline match
+  def decide(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
+    decideInTime(vehicle).addAttributes(named("decide", vehicle))
+
+  private def decideInTime(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] = settings.deadline match
     case None           => decideAtOnce(vehicle)
     case Some(deadline) =>
       Flow
@@ -191,10 +232,18 @@ final class Team(
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     Flow[DecisionRequest]
       // Not `filter`: it fetches one element ahead, which would grow old in it.
-      .collect { case request if request.deciders(vehicle) => (request.view, clock.now()) }
+      .collect { case request if request.deciders(vehicle) => asking(vehicle, request) }
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
         decideAt(vehicle, memory, seen._1, seen._2))
-      .via(Tap(log.decided(_)))
+      .via(Tap(decided(_)))
+
+  private def asking(vehicle: Int, request: DecisionRequest): (TeamView, Instant) =
+    meter("decide", vehicle).enter()
+    (request.view, clock.now())
+
+  private def decided(decision: Decision): Unit =
+    meter("decide", decision.vehicle).pass(ageOf(decision.view))
+    log.decided(decision)
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
     *
@@ -218,7 +267,7 @@ final class Team(
         decider.decide(memory, seen._1, seen._2)
       )
     Flow[DecisionRequest]
-      .collect { case request if request.deciders(vehicle) => (request.view, clock.now()) }
+      .collect { case request if request.deciders(vehicle) => asking(vehicle, request) }
       .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
         policy(memory, seen)
       ))
@@ -228,7 +277,7 @@ final class Team(
           log.missed(vehicle, miss, instead.map(_.sequence))
           instead
       .collect { case Some(decision) => decision }
-      .via(Tap(log.decided(_)))
+      .via(Tap(decided(_)))
 
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
@@ -238,7 +287,9 @@ final class Team(
     type Seen = (TeamView, Instant)
     val vehicles = planning.vehicles
     Flow[DecisionRequest]
-      .map(request => (request.view, clock.now()))
+      .map: request =>
+        meters("plan").enter()
+        (request.view, clock.now())
       .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
         (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
         (memories, seen: Seen, parts, answer) =>
@@ -246,9 +297,11 @@ final class Team(
           (next, (planned, answer))
       ))
       .via(Tap((planned, answer) =>
+        meters("plan").pass(planned.headOption.flatMap(one => ageOf(one.decision.view)))
         for one <- planned do log.planned(one, answer, planning.regardsTeam(one.decision.vehicle))
       ))
       .map((planned, _) => planned.map(_.decision))
+      .addAttributes(named("plan"))
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
@@ -260,13 +313,13 @@ final class Team(
   def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
     Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
       log.note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
-    ))
+    )).addAttributes(named("pace", vehicle))
 
   /** Keeps the newest decision for a vehicle that cannot be commanded yet. */
   def newest(vehicle: Int): Flow[Decision, Decision, NotUsed] =
-    Newest(decision =>
+    Newest[Decision](decision =>
       log.note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
-    )
+    ).addAttributes(named("newest", vehicle))
 
   /** Commands one vehicle; emits what is sent and how it ended.
     *
@@ -293,14 +346,31 @@ final class Team(
             )
         )
       )
-      .map(Steering(vehicle, _))
+      .map: event =>
+        steered(vehicle, event)
+        Steering(vehicle, event)
+      .addAttributes(named("steer", vehicle))
+
+  private def steered(vehicle: Int, event: Steered[Decision, Either[VehicleError, Boolean]]): Unit =
+    val steering = meter("steer", vehicle)
+    event match
+      case Steered.Sent(decision, _) =>
+        steering.called()
+        steering.pass(ageOf(decision.view))
+      case Steered.Ended(_, _, _) =>
+        steering.answered()
+        steering.pass()
 
   /** Takes down every command and how it ended. Never backpressures. */
-  def record: Sink[Steering, ?] = Sink.foreach(log.steered)
+  def record: Sink[Steering, ?] = Sink.foreach(log.steered).addAttributes(named("record"))
 
   /** The moves sent. */
-  def sent: Flow[Steering, Move, NotUsed] = Flow[Steering].collect:
-    case Steering(_, Steered.Sent(decision, at)) => decision.move(at)
+  def sent: Flow[Steering, Move, NotUsed] = Flow[Steering]
+    .collect:
+      case Steering(_, Steered.Sent(decision, at)) =>
+        meters("sent").pass()
+        decision.move(at)
+    .addAttributes(named("sent"))
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
   def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
@@ -313,7 +383,11 @@ final class Team(
 
   /** Carries the newest move of each vehicle back into the view. */
   def feedBack: Flow[Move, LoopEvent, NotUsed] =
-    Flow[Move].map(move => (move.vehicle, move)).via(FeedBack.newest).map((_, move) => LoopEvent.Moved(move))
+    Flow[Move]
+      .map(move => (move.vehicle, move))
+      .via(FeedBack.newest)
+      .map((_, move) => LoopEvent.Moved(move))
+      .addAttributes(named("feed back"))
 
   /** Carries events back into the view, the newest of each vehicle and kind. */
   def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
@@ -324,6 +398,7 @@ final class Team(
         case event                             => ((event.ordinal, -1), event)
       .via(FeedBack.newest)
       .map(_._2)
+      .addAttributes(named("feed back"))
 
   /** Sends what was decided; the answer comes when the move ends. */
   def move(decision: Decision): Future[Either[VehicleError, Boolean]] =

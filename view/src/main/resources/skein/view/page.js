@@ -1,12 +1,14 @@
 import { connect } from "/connection.js";
 import { Flight } from "/flight.js";
 import { FlightMap } from "/map.js";
+import { Graph } from "/graph.js";
 import { Plots } from "/plots.js";
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending"];
+const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending", "graph"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
+const graph = new Graph(find("graph"));
 
 let flight, connection, changed = false, recorded, playing, warnings;
 
@@ -15,6 +17,14 @@ window.skein = { get flight() { return flight; }, get recorded() { return record
 
 function show(id) {
   connection?.close();
+  find("graph").hidden = true;
+  find("control").hidden = !flights.find(one => one.id === id).canAbort;
+  find("control").onsubmit = async event => {
+    event.preventDefault();
+    if (!confirm(`End ${id} now? All its vehicles hover.`)) return;
+    const answer = await fetch(`/flights/${id}/abort`, { method: "POST", headers: { "X-Skein-Token": find("token").value } });
+    find("answer").textContent = await answer.text();
+  };
   flight = new Flight();
   recorded = playing = undefined;
   warnings = new Map();
@@ -28,7 +38,8 @@ function show(id) {
       state("", false);
     },
     row(topic, row, logNs) {
-      flight.row(topic.slice(7), row, logNs);
+      if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
+      else flight.row(topic.slice(7), row, logNs);
       changed = true;
     },
     time(ns) { flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns); changed = true; },
@@ -106,8 +117,12 @@ find("seek").oninput = () => {
 find("seek").onchange = () => { seeking = false; };
 
 const flights = await (await fetch("/flights")).json();
-find("flights").replaceChildren(...flights.map(id => Object.assign(document.createElement("option"), { textContent: id })));
+find("flights").replaceChildren(...flights.map(({ id }) => Object.assign(document.createElement("option"), { textContent: id })));
 find("flights").hidden = flights.length < 2;
 find("flights").onchange = () => show(find("flights").value);
-show(flights[0]);
+if (flights.length) show(flights[0].id);
+else {
+  state("no flight yet", true);
+  setTimeout(() => location.reload(), 1000);
+}
 requestAnimationFrame(draw);

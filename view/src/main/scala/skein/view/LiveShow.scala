@@ -10,12 +10,17 @@ import skein.units.{Instant, Span}
   */
 final case class Gauge(topic: Topic, every: Span, json: () => String)
 
-/** A flight while it flies. Its records come by `feed`. */
+/** A flight while it flies. Its records come by `feed`.
+  *
+  * @param abort
+  *   ends it, if viewers may
+  */
 final class LiveShow(
     heading: Heading,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
-    limits: Limits = Limits()
+    limits: Limits = Limits(),
+    val abort: Option[() => Unit] = None
 ) extends Show(heading.flight.id, heading.vehicles.map(_.name).toVector, gauges.map(_.topic), limits):
   private val topics = FlightTopics(heading.vehicles.map(_.name).toVector, heading.flight.startedAt)
   private var number = 0L

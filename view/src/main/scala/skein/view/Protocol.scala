@@ -30,7 +30,7 @@ enum ClientMessage:
 /** Foxglove's WebSocket protocol: pure, bytes and texts in and out.
   *
   * After `foxglove/ws-protocol`, docs/spec.md, and for playback the WebSocket server of the Foxglove SDK. Binary messages
-  * are little-endian. `OfficialClientLiveSuite` holds it to Foxglove's own client.
+  * are little-endian.
   */
 object Protocol:
 

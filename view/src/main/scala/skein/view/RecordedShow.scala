@@ -36,6 +36,8 @@ final class RecordedShow(
 
   def recorded: Option[(Instant, Instant)] = Some((playback.start, playback.end))
 
+  def abort: Option[() => Unit] = None
+
   def turn(now: Instant): Unit = synchronized:
     val position = playback.position(now)
     showUntil(position)

@@ -36,6 +36,9 @@ abstract class Show private[view] (
   /** Begin and end, where it can be played. */
   def recorded: Option[(Instant, Instant)]
 
+  /** Ends the flight: the vehicles hover. Absent where there is nothing to end. */
+  def abort: Option[() => Unit]
+
   /** Looks what is new, and tells the viewers. To be called some forty times a second. */
   def turn(now: Instant): Unit
 

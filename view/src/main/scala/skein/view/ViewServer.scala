@@ -18,7 +18,7 @@ import skein.units.Clock
   * viewers and flights share no threads.
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
-  * them.
+  * them; `POST /flights/ID/abort` ends one, with the token in the header `X-Skein-Token`.
   */
 final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
     system: ActorSystem
@@ -56,6 +56,7 @@ object ViewServer:
       threads: ExecutionContext,
       port: Int = DefaultPort,
       origins: Set[String] = Set.empty,
+      token: Token = Token.drawn(),
       limits: Limits = Limits()
   ): Future[ViewServer] =
     given system: ActorSystem = ActorSystem(
@@ -76,7 +77,7 @@ object ViewServer:
         else
           val access  = Access(connection.localAddress.getPort, origins)
           val handled = Flow[HttpRequest]
-            .map(answer(_, access, shows.all, clock, counts))
+            .map(answer(_, access, token, shows.all, clock, counts))
             .watchTermination()((_, ended) => ended.onComplete(_ => open.decrementAndGet()))
           connection.handleWith(handled): Unit)(Keep.left)
       .run()
@@ -107,6 +108,7 @@ object ViewServer:
   private def answer(
       request: HttpRequest,
       access: Access,
+      token: Token,
       shows: Vector[Show],
       clock: Clock,
       counts: Counts
@@ -137,11 +139,22 @@ object ViewServer:
             Page.answer(
               StatusCodes.OK,
               ContentTypes.`application/json`,
-              ujson.Arr.from(shows.map(_.id)).render()
+              ujson.Arr.from(shows.map(listed)).render()
             )
           case (_, HttpMethods.GET) =>
             Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
-          case _ => refused(StatusCodes.MethodNotAllowed, "expected GET")
+          case (_, HttpMethods.POST) =>
+            val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
+            (shows.find(show => path == s"/flights/${show.id}/abort").flatMap(_.abort), token.is(said)) match
+              case (_, false)          => refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
+              case (None, _)           => refused(StatusCodes.NotFound, s"nothing to be done at $path")
+              case (Some(abort), true) =>
+                request.discardEntityBytes()
+                abort()
+                Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "it ends; the vehicles hover")
+          case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
+
+  private def listed(show: Show) = ujson.Obj("id" -> show.id, "canAbort" -> show.abort.isDefined)
 
   private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: Counts)(using
       ActorSystem

@@ -2,10 +2,11 @@ package skein.view
 
 import java.net.Socket
 import java.nio.ByteOrder
+import java.util.concurrent.atomic.AtomicInteger
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
-import org.apache.pekko.http.scaladsl.model.headers.{Host, Origin}
+import org.apache.pekko.http.scaladsl.model.headers.{Host, Origin, RawHeader}
 import org.apache.pekko.http.scaladsl.model.ws.*
 import org.apache.pekko.stream.scaladsl.{Flow, Sink, SinkQueueWithCancel, Source, SourceQueueWithComplete}
 import org.apache.pekko.stream.OverflowStrategy
@@ -25,12 +26,13 @@ class ViewServerLiveSuite extends munit.FunSuite:
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
   private final class Served(limits: Limits):
-    val feed: Feed     = Feed()
-    val show: LiveShow = LiveShow(Samples.heading, feed, limits = limits)
+    val aborted: AtomicInteger = AtomicInteger()
+    val feed: Feed = Feed()
+    val show: LiveShow = LiveShow(Samples.heading, feed, limits = limits, abort = Some(() => aborted.incrementAndGet(): Unit))
     val shows: Shows   = Shows()
     shows.add(show)
     val server: ViewServer = await(
-      ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0, limits = limits)
+      ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0, token = Token("right"), limits = limits)
     )
 
   private def serving(limits: Limits = Limits()) =
@@ -124,7 +126,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
           !text.replace("http://www.w3.org/2000/svg", "").contains("://") || path == "/connection.js",
           path
         )
-    assertEquals(get(port, "/flights")._2, """["stream-vpn"]""")
+    assertEquals(get(port, "/flights")._2, """[{"id":"stream-vpn","canAbort":true}]""")
     for path <- Seq("/../build.sbt", "/page.js/", "/nothing", "//etc/passwd") do
       assertEquals(get(port, path)._1, 404)
 
@@ -149,3 +151,20 @@ class ViewServerLiveSuite extends munit.FunSuite:
     for socket <- sockets.drop(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
     sockets.foreach(_.close())
     assertEquals(served.server.counts.refusedConnections, 995L)
+
+  serving().test("a flight is ended by whoever has the token, and by nobody else"): served =>
+    val port                                               = served.server.port
+    def post(path: String, headers: HttpHeader*): Int =
+      val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
+      val response = await(Http().singleRequest(request))
+      response.discardEntityBytes(): Unit
+      response.status.intValue
+    val right = RawHeader("X-Skein-Token", "right")
+    val path  = "/flights/stream-vpn/abort"
+    assertEquals(post(path), 401)
+    assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
+    assertEquals(post(path, right, Origin("https://evil.example")), 403)
+    assertEquals(post("/flights/other/abort", right), 404)
+    assertEquals(served.aborted.get, 0)
+    assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
+    assertEquals(served.aborted.get, 1)
