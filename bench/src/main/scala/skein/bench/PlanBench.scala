@@ -18,7 +18,7 @@ import skein.vehicle.ReducedModel
   */
 object PlanBench:
   private val evader =
-    Target.paperEvader(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, PaperEvader())
+    Target.Opponent(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, headingRad = 0, PaperEvader())
 
   def problem(behaviours: Int): PlanProblem =
     val settings  = PlannerSettings(blocksPerSlice = 4)

@@ -3,7 +3,7 @@ package skein.cli
 import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.loop.LoopKind
+import skein.loop.{LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings}
@@ -72,8 +72,9 @@ final case class FlightOptions(
       own      <- ofScenario(merged)
       settings <- FlySettings.read(own.withFallback(merged))
     yield
-      if settings.loops.contains(LoopKind.Plan) && !Planner.isFast then
-        Console.err.println(FlightOptions.slow)
+      if settings.loops.contains(LoopKind.Plan) then
+        val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
+        (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
       settings
 
   private def flags: Config =

@@ -38,6 +38,14 @@ trait Policy extends PlanarPolicy:
       elapsedS: Double
   ): Double
 
+  /** This policy as somebody may take it to be who knows it roughly, such as a planner against it: its numbers off by
+    * what is drawn. Known exactly unless a policy says otherwise.
+    *
+    * @param draw
+    *   normal numbers of mean 0 and deviation 1, by place
+    */
+  def guessed(draw: Int => Double): Policy = this
+
   type Memory = Any
 
   /** Nothing, but for an [[ObservingPolicy]]. */

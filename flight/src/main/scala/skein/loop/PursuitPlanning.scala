@@ -1,15 +1,15 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Fleet, PaperEvader}
+import skein.policy.Fleet
 import skein.units.*
 
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the end of the
   * horizon, and to capture it.
   *
-  * Its turn rate stays below speed / turning radius. The evader is taken to fly by its policy where that is the paper's,
-  * which answers to the pursuer's commands; else to fly straight on. Of all others, those that plan fly by their plans, the
-  * rest straight on.
+  * Its turn rate stays below speed / turning radius. The opponent is taken to fly by its policy, as if it remembered
+  * nothing, where that plays against one vehicle and is a formula ([[OpponentModel]]); else straight on. Of all others,
+  * those that plan fly by their plans, the rest straight on.
   *
   * In its place the vehicle's own policy decides within the turn limit.
   */
@@ -48,15 +48,18 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
       memory.headingRad,
       Planning.sinceDecisionS(memory, now),
       response,
-      Behaviours.around(target(opponent, motion(view.kinematics(opponent))), settings.behaviours, stream),
+      Behaviours.around(target(opponent, view), settings.behaviours, stream),
       others.map(other => straight(motion(view.kinematics(other)), planner))
     )
     Part(objective, situation, stream)
 
-  private def target(opponent: Int, motion: Motion): Target = fleet.agents(opponent).policy match
-    case paper: PaperEvader =>
-      Target.paperEvader(motion, response, fleet.agents(opponent).speed.value, paper)
-    case _ => Target.Along(straight(motion, planner))
+  private def target(opponent: Int, view: TeamView): Target =
+    val now = motion(view.kinematics(opponent))
+    OpponentModel.of(fleet.agents(opponent)) match
+      case Right(policy) =>
+        val speed = fleet.agents(opponent).speed.value
+        Target.Opponent(now, response, speed, view.headingRad(opponent, fleet), policy)
+      case Left(_) => Target.Along(straight(now, planner))
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1
 

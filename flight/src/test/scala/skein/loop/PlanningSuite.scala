@@ -1,7 +1,7 @@
 package skein.loop
 
-import skein.planning.Separation
-import skein.policy.Role
+import skein.planning.{Separation, Target}
+import skein.policy.{AgentPolicy, Fleet, KeepHeading, Policy, Role}
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -42,6 +42,33 @@ class PlanningSuite extends munit.FunSuite:
     val speed  = fleet.agents(pursuer).speed.value
     assertEquals((limits.minSpeed, limits.maxSpeed), (speed / 2, speed))
     assertEqualsDouble(limits.turnRateAt(speed), speed / 4, 1e-12)
+
+  test(
+    "the opponent is taken to fly by the policy that the scenario states, from the heading it was sent last"
+  ):
+    val evader                       = fleet.opponentOf(pursuer, places)
+    def flownBy(policy: AgentPolicy) =
+      Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
+    def target(policy: AgentPolicy) =
+      val posed = PursuitPlanning(flownBy(policy), pursuer, PlanSettings(behaviours = 1), 3)
+        .pose(Memory(0.25, None, 7), view.withMove(Move(evader, 1, 0.7, now)), now)
+      posed.situation.behaviours.head.target
+    target(KeepHeading) match
+      case opponent: Target.Opponent =>
+        assertEquals((opponent.policy, opponent.headingRad), (KeepHeading, 0.7))
+        assertEquals(opponent.speed, fleet.agents(evader).speed.value)
+      case other => fail(s"came $other")
+    assertEquals(OpponentModel.missing(flownBy(KeepHeading)), Vector.empty)
+
+    object Lucky extends Policy:
+      def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
+        System.nanoTime.toDouble
+    assert(target(Lucky).isInstanceOf[Target.Along])
+    val told = OpponentModel.missing(flownBy(Lucky))
+    assert(
+      told.exists(_.startsWith(s"plan: ${fleet.agents(evader).name} is taken to fly straight on: ")),
+      told
+    )
 
   test("each vehicle's each plan has random numbers of its own"):
     val streams =

@@ -30,10 +30,6 @@ final class PlanKernel implements CandidateBlock {
   private static final float SIN_3 = -1f / 6, SIN_5 = 1f / 120, SIN_7 = -1f / 5040;
   private static final float COS_2 = -0.5f, COS_4 = 1f / 24, COS_6 = -1f / 720;
 
-  // (1 − e^(−a)) / a = 1 − a/2 + a²/6 − …, whose next term is below 7e-6 for a up to 0.5.
-  private static final float GLIDE_1 = -1f / 2, GLIDE_2 = 1f / 6, GLIDE_3 = -1f / 24;
-  private static final float GLIDE_4 = 1f / 120, GLIDE_5 = -1f / 720;
-
   private static final float TINY = (float) ManoeuvreRollout.Tiny();
   private static final float BREACH = (float) ManoeuvreRollout.Breach();
   private static final float GUARD = (float) ManoeuvreRollout.Guard();
@@ -60,16 +56,19 @@ final class PlanKernel implements CandidateBlock {
   private final int[] bits = new int[SIZE];
   private final float[] turnNoise = new float[SIZE], speedNoise = new float[SIZE];
 
-  // The way of each candidate: where it is at the end of each step, and where it headed before.
-  private final float[] x, y, cos, sin;
-  private final float[] endVx = new float[SIZE], endVy = new float[SIZE];
-  private final float[] targetX, targetY;
-  private final float[] targetEndVx = new float[SIZE], targetEndVy = new float[SIZE];
+  /** Of the candidates, counted from where they start, and of a target. */
+  private final BlockWay own, target;
+
+  /** Where each candidate headed before each step. */
+  private final float[] cos, sin;
 
   private Situation situation;
   private Objective objective;
   private double originX, originY;
   private float dtS;
+
+  /** By behaviour; absent where the target's way depends on nobody. */
+  private OpponentLanes[] opponents = {};
 
   /** The other vehicles' places at the end of each step, one vehicle after the other. */
   private float[] othersX, othersY;
@@ -80,12 +79,10 @@ final class PlanKernel implements CandidateBlock {
     speeds = new float[steps * SIZE];
     turnSums = new float[steps * SIZE];
     speedSums = new float[steps * SIZE];
-    x = new float[steps * SIZE];
-    y = new float[steps * SIZE];
+    own = new BlockWay(steps);
+    target = new BlockWay(steps);
     cos = new float[steps * SIZE];
     sin = new float[steps * SIZE];
-    targetX = new float[steps * SIZE];
-    targetY = new float[steps * SIZE];
   }
 
   @Override
@@ -125,6 +122,8 @@ final class PlanKernel implements CandidateBlock {
     this.dtS = (float) dtS;
     originX = situation.own().x();
     originY = situation.own().y();
+    own.start(situation.own(), situation.own());
+    takeOpponents();
     int others = situation.others().size();
     othersX = new float[others * steps];
     othersY = new float[others * steps];
@@ -135,6 +134,16 @@ final class PlanKernel implements CandidateBlock {
         othersY[other * steps + step] = (float) (track.y(step) - originY);
       }
     }
+  }
+
+  private void takeOpponents() {
+    int count = situation.behaviours().size();
+    if (opponents.length < count) opponents = Arrays.copyOf(opponents, count);
+    for (int each = 0; each < count; each++)
+      if (situation.behaviours().apply(each).target() instanceof Target.Opponent opponent) {
+        if (opponents[each] == null) opponents[each] = new OpponentLanes();
+        opponents[each].take(opponent);
+      }
   }
 
   @Override
@@ -198,9 +207,12 @@ final class PlanKernel implements CandidateBlock {
     if (situation.others().nonEmpty()) keepApart();
     for (int each = 0; each < situation.behaviours().size(); each++) {
       Behaviour behaviour = situation.behaviours().apply(each);
-      if (behaviour.target() instanceof Target.Evader evader) evade(evader);
-      else follow((Target.Along) behaviour.target());
-      score((float) behaviour.weight());
+      double lagS = situation.response().lagS();
+      if (behaviour.target() instanceof Target.Opponent opponent) {
+        opponents[each].fly(own, cos, sin, situation.own(), dtS, target);
+        lagS = opponent.response().lagS();
+      } else follow(((Target.Along) behaviour.target()).track());
+      score((float) behaviour.weight(), (float) lagS);
     }
   }
 
@@ -209,16 +221,15 @@ final class PlanKernel implements CandidateBlock {
    * e^(−a) in a step, a = (1 / lag + drag · speed) · dt.
    */
   private void steer() {
-    Motion own = situation.own();
+    Motion start = situation.own();
     ReducedModel model = situation.response();
-    float lag = (float) model.lagS();
     FloatVector gain = FloatVector.broadcast(SPECIES, (float) model.gain());
     FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
     FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
     FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
     FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
-    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) own.vx());
-    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) own.vy());
+    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) start.vx());
+    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) start.vy());
     FloatVector startCos =
         FloatVector.broadcast(SPECIES, (float) StrictMath.cos(situation.headingRad()));
     FloatVector startSin =
@@ -232,13 +243,14 @@ final class PlanKernel implements CandidateBlock {
         cos6 = FloatVector.broadcast(SPECIES, COS_6),
         half = FloatVector.broadcast(SPECIES, 0.5f),
         oneAndAHalf = FloatVector.broadcast(SPECIES, 1.5f);
-    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
-        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
-        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
-        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
-        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
+    FloatVector glide1 = FloatVector.broadcast(SPECIES, Glide.GLIDE_1),
+        glide2 = FloatVector.broadcast(SPECIES, Glide.GLIDE_2),
+        glide3 = FloatVector.broadcast(SPECIES, Glide.GLIDE_3),
+        glide4 = FloatVector.broadcast(SPECIES, Glide.GLIDE_4),
+        glide5 = FloatVector.broadcast(SPECIES, Glide.GLIDE_5),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f);
+    float[] x = own.x, y = own.y, north = own.vx, east = own.vy;
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector px = zero, py = zero, vx = startVx, vy = startVy, c = startCos, s = startSin;
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
@@ -270,12 +282,11 @@ final class PlanKernel implements CandidateBlock {
         py = offY.fma(glide, wantedY.fma(dt, py));
         vx = offX.fma(decay, wantedX);
         vy = offY.fma(decay, wantedY);
-        px.intoArray(x, at);
-        py.intoArray(y, at);
+        px.intoArray(x, at + SIZE);
+        py.intoArray(y, at + SIZE);
+        vx.intoArray(north, at + SIZE);
+        vy.intoArray(east, at + SIZE);
       }
-      // Where the momentum still carries it, if nothing more is commanded.
-      vx.mul(lag).intoArray(endVx, i);
-      vy.mul(lag).intoArray(endVy, i);
     }
   }
 
@@ -306,8 +317,8 @@ final class PlanKernel implements CandidateBlock {
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
-        FloatVector px = FloatVector.fromArray(SPECIES, x, at);
-        FloatVector py = FloatVector.fromArray(SPECIES, y, at);
+        FloatVector px = FloatVector.fromArray(SPECIES, own.x, at + SIZE);
+        FloatVector py = FloatVector.fromArray(SPECIES, own.y, at + SIZE);
         FloatVector beyond =
             (geofence.fence() instanceof Fence.Circle circle
                     ? beyond(circle, px, py)
@@ -375,8 +386,8 @@ final class PlanKernel implements CandidateBlock {
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector cost = FloatVector.fromArray(SPECIES, costs, i);
       for (int step = 0, at = i; step < steps; step++, at += SIZE) {
-        FloatVector px = FloatVector.fromArray(SPECIES, x, at);
-        FloatVector py = FloatVector.fromArray(SPECIES, y, at);
+        FloatVector px = FloatVector.fromArray(SPECIES, own.x, at + SIZE);
+        FloatVector py = FloatVector.fromArray(SPECIES, own.y, at + SIZE);
         float clearance = (float) separation.clearance((step + 1) * dtS);
         for (int other = step; other < othersX.length; other += steps) {
           FloatVector dx = px.sub(othersX[other]), dy = py.sub(othersY[other]);
@@ -394,78 +405,21 @@ final class PlanKernel implements CandidateBlock {
     }
   }
 
-  /** The paper's evader, which knows the heading commanded before this step's. */
-  private void evade(Target.Evader evader) {
-    ReducedModel model = evader.response();
-    FloatVector dt = FloatVector.broadcast(SPECIES, dtS);
-    FloatVector perLag = FloatVector.broadcast(SPECIES, (float) (dtS / model.lagS()));
-    FloatVector drag = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * dtS));
-    FloatVector brake = FloatVector.broadcast(SPECIES, (float) (model.dragPerM() * model.lagS()));
-    FloatVector commanded = FloatVector.broadcast(SPECIES, (float) (evader.speed() * model.gain()));
-    FloatVector radius = FloatVector.broadcast(SPECIES, (float) evader.turningRadius());
-    FloatVector circle = radius.mul(radius), near = circle.mul(4f);
-    FloatVector startX = FloatVector.broadcast(SPECIES, (float) (evader.motion().x() - originX));
-    FloatVector startY = FloatVector.broadcast(SPECIES, (float) (evader.motion().y() - originY));
-    FloatVector startVx = FloatVector.broadcast(SPECIES, (float) evader.motion().vx());
-    FloatVector startVy = FloatVector.broadcast(SPECIES, (float) evader.motion().vy());
-    float lag = (float) model.lagS();
-    FloatVector glide1 = FloatVector.broadcast(SPECIES, GLIDE_1),
-        glide2 = FloatVector.broadcast(SPECIES, GLIDE_2),
-        glide3 = FloatVector.broadcast(SPECIES, GLIDE_3),
-        glide4 = FloatVector.broadcast(SPECIES, GLIDE_4),
-        glide5 = FloatVector.broadcast(SPECIES, GLIDE_5),
-        zero = FloatVector.broadcast(SPECIES, 0f),
-        one = FloatVector.broadcast(SPECIES, 1f);
-    FloatVector tiny = FloatVector.broadcast(SPECIES, TINY);
-    for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector tx = startX, ty = startY, vx = startVx, vy = startVy, px = zero, py = zero;
-      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
-        FloatVector c = FloatVector.fromArray(SPECIES, cos, at);
-        FloatVector s = FloatVector.fromArray(SPECIES, sin, at);
-        FloatVector dx = tx.sub(px), dy = ty.sub(py);
-        FloatVector ahead = dx.fma(c, dy.mul(s)), right = dy.mul(c).sub(dx.mul(s));
-        FloatVector square = ahead.mul(ahead);
-        FloatVector inner = right.sub(radius), outer = right.add(radius);
-        VectorMask<Float> inRight = inner.fma(inner, square).compare(LT, circle);
-        VectorMask<Float> inLeft = outer.fma(outer, square).compare(LT, circle);
-        VectorMask<Float> isNear = right.fma(right, square).compare(LT, near);
-        FloatVector u = ahead.blend(right.neg(), isNear).blend(ahead, inLeft).blend(ahead, inRight);
-        FloatVector w = right.blend(ahead, isNear).blend(inner, inLeft).blend(outer, inRight);
-        FloatVector pace = vx.fma(vx, vy.mul(vy)).sqrt();
-        FloatVector a = pace.fma(drag, perLag);
-        FloatVector slide = a.fma(glide5, glide4).fma(a, glide3).fma(a, glide2).fma(a, glide1);
-        FloatVector glided = slide.fma(a, one);
-        FloatVector decay = one.sub(glided.mul(a)), glide = glided.mul(dt);
-        FloatVector length = u.fma(u, w.fma(w, tiny)).sqrt();
-        FloatVector scale = commanded.div(length.mul(pace.fma(brake, one)));
-        FloatVector wantedX = u.mul(c).sub(w.mul(s)).mul(scale);
-        FloatVector wantedY = u.mul(s).add(w.mul(c)).mul(scale);
-        FloatVector offX = vx.sub(wantedX), offY = vy.sub(wantedY);
-        tx = offX.fma(glide, wantedX.fma(dt, tx));
-        ty = offY.fma(glide, wantedY.fma(dt, ty));
-        vx = offX.fma(decay, wantedX);
-        vy = offY.fma(decay, wantedY);
-        tx.intoArray(targetX, at);
-        ty.intoArray(targetY, at);
-        px = FloatVector.fromArray(SPECIES, x, at);
-        py = FloatVector.fromArray(SPECIES, y, at);
-      }
-      vx.mul(lag).intoArray(targetEndVx, i);
-      vy.mul(lag).intoArray(targetEndVy, i);
-    }
+  private void follow(PredictedTrack track) {
+    for (int step = 0; step < steps; step++)
+      target.fill(step + 1, track.x(step) - originX, track.y(step) - originY, 0, 0);
+    Arrays.fill(target.vx, steps * SIZE, (steps + 1) * SIZE, (float) track.lastVx(dtS));
+    Arrays.fill(target.vy, steps * SIZE, (steps + 1) * SIZE, (float) track.lastVy(dtS));
   }
 
-  private void follow(Target.Along along) {
-    for (int step = 0, at = 0; step < steps; step++, at += SIZE) {
-      Arrays.fill(targetX, at, at + SIZE, (float) (along.track().x(step) - originX));
-      Arrays.fill(targetY, at, at + SIZE, (float) (along.track().y(step) - originY));
-    }
-    Arrays.fill(targetEndVx, (float) along.track().carriedX(situation.response().lagS(), dtS));
-    Arrays.fill(targetEndVy, (float) along.track().carriedY(situation.response().lagS(), dtS));
-  }
-
-  /** What the distance to the target costs, times the weight of the behaviour. */
-  private void score(float weight) {
+  /**
+   * What the distance to the target costs, times the weight of the behaviour.
+   *
+   * @param lagS for so long its last velocity carries the target on, if nothing more is commanded
+   */
+  private void score(float weight, float lagS) {
+    FloatVector ownLag = FloatVector.broadcast(SPECIES, (float) situation.response().lagS()),
+        lag = FloatVector.broadcast(SPECIES, lagS);
     float each = (float) objective.distance() * dtS;
     FloatVector nearest = FloatVector.broadcast(SPECIES, (float) objective.closest());
     FloatVector carried = FloatVector.broadcast(SPECIES, (float) objective.carried());
@@ -476,25 +430,27 @@ final class PlanKernel implements CandidateBlock {
         FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
         far = FloatVector.broadcast(SPECIES, FAR);
+    float[] x = own.x, y = own.y, theirX = target.x, theirY = target.y;
+    int last = steps * SIZE;
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector sum = zero, least = far, dx = zero, dy = zero;
-      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
+      for (int step = 0, at = i + SIZE; step < steps; step++, at += SIZE) {
         dx =
-            FloatVector.fromArray(SPECIES, targetX, at)
-                .sub(FloatVector.fromArray(SPECIES, x, at));
+            FloatVector.fromArray(SPECIES, theirX, at).sub(FloatVector.fromArray(SPECIES, x, at));
         dy =
-            FloatVector.fromArray(SPECIES, targetY, at)
-                .sub(FloatVector.fromArray(SPECIES, y, at));
+            FloatVector.fromArray(SPECIES, theirY, at).sub(FloatVector.fromArray(SPECIES, y, at));
         FloatVector distance = dx.fma(dx, dy.fma(dy, soft)).sqrt();
         sum = sum.add(distance);
         least = least.min(distance);
       }
       FloatVector endX =
-          dx.add(FloatVector.fromArray(SPECIES, targetEndVx, i))
-              .sub(FloatVector.fromArray(SPECIES, endVx, i));
+          FloatVector.fromArray(SPECIES, target.vx, last + i)
+              .fma(lag, dx)
+              .sub(FloatVector.fromArray(SPECIES, own.vx, last + i).mul(ownLag));
       FloatVector endY =
-          dy.add(FloatVector.fromArray(SPECIES, targetEndVy, i))
-              .sub(FloatVector.fromArray(SPECIES, endVy, i));
+          FloatVector.fromArray(SPECIES, target.vy, last + i)
+              .fma(lag, dy)
+              .sub(FloatVector.fromArray(SPECIES, own.vy, last + i).mul(ownLag));
       FloatVector end = endX.fma(endX, endY.fma(endY, soft)).sqrt();
       FloatVector captured = zero.blend(bonus, least.compare(LT, radius));
       FloatVector cost = sum.mul(each).add(least.mul(nearest)).add(end.mul(carried)).sub(captured);

@@ -8,7 +8,7 @@ import skein.simd.{LaneCompiler, LaneFunction}
 /** What policies of one form have in common: how they decide in many worlds at once, compiled from the method
   * [[Policy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers alone.
   */
-private[lanes] final class PolicyLanes private (formula: Formula):
+private[skein] final class PolicyLanes private (formula: Formula):
   import PolicyLanes.*
 
   private val trace  = Trace()
@@ -83,6 +83,9 @@ private[lanes] final class PolicyLanes private (formula: Formula):
   /** Computes [[outputs]] of what [[In]] lists. */
   val function: LaneFunction = LaneCompiler.compile(inputs, outputs)
 
+  /** Computes [[outputs]] but how far the decided heading is from the one before. */
+  lazy val course: LaneFunction = LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1))
+
   private val plain = derived.forall(_.op == Op.Param)
 
   def parametersOf(policy: Policy): Array[Double] =
@@ -138,7 +141,7 @@ private[lanes] final class PolicyLanes private (formula: Formula):
     val half   = trace.binary(Op.Min, trace.unary(Op.Sqrt, square), trace.const(1))
     trace.sub(trace.const(math.Pi), trace.mul(trace.const(2), trace.unary(Op.Acos, half)))
 
-private[lanes] object PolicyLanes:
+private[skein] object PolicyLanes:
   // The arguments of Policy.heading, by place.
   private final val Dvx             = 2
   private final val Dvy             = 3

@@ -6,25 +6,25 @@ import skein.simd.WorldRandom
 object Behaviours:
 
   /** A target as it is taken to be, counting half, and others around it, drawn from a stream: elsewhere by about 0.2 m,
-    * and, for the paper's evader, with another turning radius in mind, by about a tenth. The same stream gives the same
+    * and deciding by the policy that it may be taken for ([[skein.policy.Policy.guessed]]). The same stream gives the same
     * behaviours, so that all candidates of a tick meet the same.
     */
   def around(target: Target, count: Int, stream: Long): Vector[Behaviour] =
     require(count > 0, s"at least one behaviour is needed, came $count")
-    val key                                                 = WorldRandom.key(stream, 0, 0)
-    def drawn(variant: Int, place: Int, sd: Double): Double =
-      Draws.normal(key, variant * PlacesPerVariant + place) * sd
-    def variant(number: Int): Target = target match
-      case evader: Target.Evader =>
-        evader.copy(
-          motion = evader.motion.copy(
-            x = evader.motion.x + drawn(number, 0, PlaceSd),
-            y = evader.motion.y + drawn(number, 1, PlaceSd)
+    def draw(of: Int, variant: Int)(place: Int): Double =
+      Draws.normal(WorldRandom.key(stream, of, variant), place).toDouble
+    def off(variant: Int, place: Int) = draw(0, variant)(place) * PlaceSd
+    def variant(number: Int): Target  = target match
+      case opponent: Target.Opponent =>
+        opponent.copy(
+          motion = opponent.motion.copy(
+            x = opponent.motion.x + off(number, 0),
+            y = opponent.motion.y + off(number, 1)
           ),
-          turningRadius = evader.turningRadius * (1 + drawn(number, 2, RadiusSd))
+          policy = opponent.policy.guessed(draw(1, number))
         )
       case along: Target.Along =>
-        val (x, y) = (drawn(number, 0, PlaceSd), drawn(number, 1, PlaceSd))
+        val (x, y) = (off(number, 0), off(number, 1))
         val track  = along.track
         along.copy(track =
           PredictedTrack(
@@ -37,6 +37,4 @@ object Behaviours:
       Behaviour(target, 0.5) +:
         Vector.tabulate(count - 1)(number => Behaviour(variant(number), 0.5 / (count - 1)))
 
-  private val PlaceSd          = 0.2
-  private val RadiusSd         = 0.1
-  private val PlacesPerVariant = 4
+  private val PlaceSd = 0.2

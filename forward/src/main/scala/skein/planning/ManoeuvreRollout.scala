@@ -1,5 +1,6 @@
 package skein.planning
 
+import skein.policy.{ObservingPolicy, PlanarObservation}
 import skein.vehicle.ReducedModel
 
 /** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
@@ -16,7 +17,7 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
   def fly(manoeuvre: Manoeuvre): Flown =
     val own      = Flyer(situation.own, situation.response, dtS)
     val steps    = manoeuvre.steps
-    val (xs, ys) = (Array.ofDim[Double](steps), Array.ofDim[Double](steps))
+    val way      = Array.ofDim[Motion](steps)
     val before   = Array.ofDim[Double](steps) // the heading commanded before the step
     var heading  = situation.headingRad
     var cost     = 0.0
@@ -26,8 +27,7 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
       before(step) = heading
       heading += turnRate * (if step == 0 then situation.sinceDecisionS else dtS)
       own.fly(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading))
-      xs(step) = own.x
-      ys(step) = own.y
+      way(step) = own.motion
       val slow  = speed - objective.cruiseSpeed
       val aside = turnRate * speed
       cost += (aside * aside * objective.turning + slow * slow * objective.speedChange) * dtS
@@ -45,40 +45,52 @@ final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Do
         val short = objective.separation.minimum + Guard - distance
         if short > 0 then cost += Breach * (1 + short)
     for behaviour <- situation.behaviours do
-      cost += behaviour.weight * distanceCost(behaviour.target, own, xs, ys, before)
-    Flown(PredictedTrack(IArray.from(xs), IArray.from(ys)), cost, breaches)
+      cost += behaviour.weight * distanceCost(behaviour.target, way, before)
+    Flown(PredictedTrack(IArray.from(way.map(_.x)), IArray.from(way.map(_.y))), cost, breaches)
 
   private def distanceCost(
       target: Target,
-      own: Flyer,
-      xs: Array[Double],
-      ys: Array[Double],
+      own: Array[Motion],
       before: Array[Double]
   ): Double =
-    val steps                = xs.length
+    val steps                = own.length
     val lagS                 = situation.response.lagS
     val (tx, ty)             = (Array.ofDim[Double](steps), Array.ofDim[Double](steps))
     val (carriedX, carriedY) = target match
-      case evader: Target.Evader =>
-        val flyer = Flyer(evader.motion, evader.response, dtS)
+      case opponent: Target.Opponent =>
+        val flyer   = Flyer(opponent.motion, opponent.response, dtS)
+        var heading = opponent.headingRad
+        var memory  = ObservingPolicy.initialOf(opponent.policy)
         for step <- 0 until steps do
-          val (px, py) =
-            if step == 0 then (situation.own.x, situation.own.y) else (xs(step - 1), ys(step - 1))
-          val (u, w) = evade(flyer.x - px, flyer.y - py, before(step), evader.turningRadius)
-          flyer.fly(evader.speed * u, evader.speed * w)
+          val last = if step == 0 then situation.own else own(step - 1)
+          val seen = PlanarObservation(
+            last.x - flyer.x,
+            last.y - flyer.y,
+            last.vx - flyer.vx,
+            last.vy - flyer.vy,
+            heading,
+            before(step),
+            dtS,
+            0,
+            0
+          )
+          val decided = ObservingPolicy.decide(opponent.policy, seen, memory)
+          heading = decided.headingRad
+          memory = decided.memory
+          flyer.fly(opponent.speed * StrictMath.cos(heading), opponent.speed * StrictMath.sin(heading))
           tx(step) = flyer.x
           ty(step) = flyer.y
-        (flyer.vx * evader.response.lagS, flyer.vy * evader.response.lagS)
+        (flyer.vx * opponent.response.lagS, flyer.vy * opponent.response.lagS)
       case along: Target.Along =>
         for step <- 0 until steps do
           tx(step) = along.track.x(step)
           ty(step) = along.track.y(step)
-        (along.track.carriedX(lagS, dtS), along.track.carriedY(lagS, dtS))
-    val distances = (0 until steps).map(step => soft(tx(step) - xs(step), ty(step) - ys(step)))
+        (along.track.lastVx(dtS) * lagS, along.track.lastVy(dtS) * lagS)
+    val distances = (0 until steps).map(step => soft(tx(step) - own(step).x, ty(step) - own(step).y))
     val least     = distances.min
     val end       = soft(
-      tx(steps - 1) + carriedX - xs(steps - 1) - own.vx * lagS,
-      ty(steps - 1) + carriedY - ys(steps - 1) - own.vy * lagS
+      tx(steps - 1) + carriedX - own.last.x - own.last.vx * lagS,
+      ty(steps - 1) + carriedY - own.last.y - own.last.vy * lagS
     )
     distances.sum * dtS * objective.distance + least * objective.closest + end * objective.carried -
       (if least < objective.captureRadius then objective.capture else 0)
@@ -98,29 +110,14 @@ object ManoeuvreRollout:
   /** Added to squares of lengths before the root, m². */
   private[planning] val Tiny = 1e-12
 
-  /** The direction in which [[skein.policy.PaperEvader]] flees, as a unit vector, world NED.
-    *
-    * @param dx
-    *   the evader's place minus the pursuer's
-    */
-  private def evade(dx: Double, dy: Double, headingRad: Double, radius: Double): (Double, Double) =
-    val (c, s)              = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
-    val (ahead, right)      = (dx * c + dy * s, dy * c - dx * s)
-    def inCircle(y: Double) = ahead * ahead + y * y < radius * radius
-    val (u, w)              =
-      if inCircle(right - radius) then (ahead, right + radius)
-      else if inCircle(right + radius) then (ahead, right - radius)
-      else if ahead * ahead + right * right < 4 * radius * radius then (-right, ahead)
-      else (ahead, right)
-    val length = math.sqrt(u * u + w * w + Tiny)
-    ((u * c - w * s) / length, (u * s + w * c) / length)
-
   /** A vehicle under its commands, step by step. Mutable. */
   private[planning] final class Flyer(start: Motion, response: ReducedModel, dtS: Double):
     var x  = start.x
     var y  = start.y
     var vx = start.vx
     var vy = start.vy
+
+    def motion: Motion = Motion(x, y, vx, vy)
 
     def fly(commandedX: Double, commandedY: Double): Unit =
       val rate               = 1 / response.lagS + response.dragPerM * StrictMath.hypot(vx, vy)

@@ -1,5 +1,7 @@
 package skein.planning
 
+import skein.lanes.PolicyLanes
+import skein.policy.Policy
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -242,3 +244,7 @@ object Planner:
 
   /** Whether candidates are flown by lanes; otherwise a deadline meets some fifty times fewer of them. */
   def isFast: Boolean = CandidateBlocks.isFast
+
+  /** Why nobody plans against an opponent of this policy: by lanes, it must be a formula. */
+  def refusal(opponent: Policy): Option[String] =
+    if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.policy.PaperEvader
+import skein.policy.Policy
 import skein.vehicle.ReducedModel
 
 /** Where a vehicle is and how it moves, horizontally: m and m/s, world NED. */
@@ -14,9 +14,9 @@ final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
   def x(step: Int): Double = xs(step)
   def y(step: Int): Double = ys(step)
 
-  /** How far its momentum carries it beyond its end, m: its last velocity for a lag's time. */
-  def carriedX(lagS: Double, dtS: Double): Double = last(xs) * lagS / dtS
-  def carriedY(lagS: Double, dtS: Double): Double = last(ys) * lagS / dtS
+  /** Its velocity at its end, m/s. */
+  def lastVx(dtS: Double): Double = last(xs) / dtS
+  def lastVy(dtS: Double): Double = last(ys) / dtS
 
   private def last(values: IArray[Double]): Double =
     if steps < 2 then 0 else values(steps - 1) - values(steps - 2)
@@ -53,20 +53,18 @@ object PredictedTrack:
 
 /** What a vehicle is to come close to. */
 enum Target:
-  /** The paper's evader ([[skein.policy.PaperEvader]]), which answers to the headings commanded to this vehicle: at each
-    * step it knows the one before.
+  /** Somebody who decides at each step by a policy, upon where both are then, on readings of that moment, and with the
+    * heading commanded to this vehicle before.
     *
     * @param speed
     *   that it commands, m/s
+    * @param headingRad
+    *   commanded last to it
     */
-  case Evader(motion: Motion, response: ReducedModel, speed: Double, turningRadius: Double)
+  case Opponent(motion: Motion, response: ReducedModel, speed: Double, headingRad: Double, policy: Policy)
 
   /** Somebody or some place whose way does not depend on this vehicle. */
   case Along(track: PredictedTrack)
-
-object Target:
-  def paperEvader(motion: Motion, response: ReducedModel, speed: Double, policy: PaperEvader): Target =
-    Evader(motion, response, speed, policy.turningRadiusM)
 
 /** One way in which the target may behave, and how much it counts. */
 final case class Behaviour(target: Target, weight: Double = 1)

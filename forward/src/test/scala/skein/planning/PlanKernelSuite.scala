@@ -1,5 +1,7 @@
 package skein.planning
 
+import skein.lanes.UnseenPolicySuite
+import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64
 import skein.vehicle.{ReducedFlight, ReducedModel}
@@ -8,8 +10,11 @@ class PlanKernelSuite extends munit.FunSuite:
   private val size                = CandidateBlock.Size
   private val (steps, dtS, knots) = (24, 0.1, 3)
 
-  private val evader    = new Target.Evader(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 8)
-  private val track     = new Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, steps, dtS))
+  private val evader = opponent(PaperEvader())
+  private val track  = new Target.Along(PredictedTrack.turning(Motion(3, -5, 4, 1), 0.4, steps, dtS))
+  private def opponent(policy: Policy): Target.Opponent =
+    new Target.Opponent(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 2.1, policy)
+
   private val objective = Objective(
     Limits(4, 10, 1.25, 6),
     closest = 0.7,
@@ -54,6 +59,10 @@ class PlanKernelSuite extends munit.FunSuite:
 
   test("kernel and scalar reference agree on a pursuit of the paper's evader"):
     assertAgree(situation(Behaviour(evader)), objective)
+
+  for (name, draw) <- UnseenPolicySuite.Unseen do
+    test(s"kernel and scalar reference agree on a pursuit of an opponent by a policy never seen: $name"):
+      assertAgree(situation(Behaviour(opponent(draw(SplitMix64(3))))), objective)
 
   test("kernel and scalar reference agree on following a track"):
     assertAgree(situation(Behaviour(track)), objective)

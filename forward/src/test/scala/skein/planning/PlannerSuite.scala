@@ -8,7 +8,7 @@ class PlannerSuite extends munit.FunSuite:
   private val response  = ReducedModel.AirSim
   private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
   private val evader    =
-    Target.paperEvader(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, PaperEvader())
+    Target.Opponent(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, headingRad = 0, PaperEvader())
   private val pursuit = Situation(Motion(0, 0, 8, 0), 0, 0.1, response, Vector(Behaviour(evader)))
 
   private val methods = Seq(

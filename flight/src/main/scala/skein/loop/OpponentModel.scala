@@ -1,0 +1,21 @@
+package skein.loop
+
+import skein.planning.Planner
+import skein.policy.{Agent, Fleet, Policy}
+
+/** How plans foresee the opponent of a vehicle that plays against one. */
+object OpponentModel:
+
+  /** By which policy it is taken to decide, or why it is taken to fly straight on. */
+  private[loop] def of(opponent: Agent): Either[String, Policy] = opponent.policy match
+    case policy: Policy => Planner.refusal(policy).toLeft(policy)
+    case _              => Left("it plays against more than one vehicle")
+
+  /** Who is taken to fly straight on, and why, in a line each for the user. */
+  def missing(fleet: Fleet): Vector[String] =
+    val duellists =
+      fleet.agents.filter(agent => Planning.plans(agent) && agent.policy.isInstanceOf[Policy])
+    for
+      other  <- fleet.agents if duellists.exists(_.role != other.role)
+      reason <- of(other).left.toOption
+    yield s"plan: ${other.name} is taken to fly straight on: $reason"
