@@ -27,34 +27,25 @@ object Reduced:
 
 /** Integrates [[Reduced]] exactly between the times at which commands begin to act. */
 private[skein] final class LagVehicle(model: Reduced) extends Vehicle:
-  import LagVehicle.Pending
-  var x, y, vx, vy               = 0.0
-  private var down               = 0.0
-  private var now                = 0.0
-  private var wantedX, wantedY   = 0.0
-  private val at, atX, atY       = Array.ofDim[Double](Pending)
-  private var first, behindFirst = 0
+  var x, y, vx, vy             = 0.0
+  private var now, down        = 0.0
+  private var wantedX, wantedY = 0.0
+  private val coming           = DeadTime(model.deadTimeS)
 
   def start(x0: Double, y0: Double, z: Double): Unit =
     x = x0; y = y0; vx = 0; vy = 0; down = z
     now = 0; wantedX = 0; wantedY = 0
-    first = 0; behindFirst = 0
+    coming.clear()
 
   def command(commandedX: Double, commandedY: Double): Unit =
-    if behindFirst - first == Pending then
-      throw IllegalStateException(s"more than $Pending commands within the dead time of ${model.deadTimeS} s")
-    val slot = behindFirst % Pending
-    at(slot) = now + model.deadTimeS; atX(slot) = model.gain * commandedX; atY(slot) = model.gain * commandedY
-    behindFirst += 1
+    coming.put(now, model.gain * commandedX, model.gain * commandedY)
 
   def advance(timeS: Double): Unit =
-    while first < behindFirst && at(first % Pending) <= timeS do
-      val slot = first % Pending
-      glide(at(slot))
-      wantedX = atX(slot); wantedY = atY(slot)
+    coming.until(timeS): (atS, vxWanted, vyWanted) =>
+      glide(atS)
+      wantedX = vxWanted; wantedY = vyWanted
       if model.lagS == 0 then
         vx = wantedX; vy = wantedY
-      first += 1
     glide(timeS)
 
   override def seen: Kinematics = level(down)
@@ -71,6 +62,3 @@ private[skein] final class LagVehicle(model: Reduced) extends Vehicle:
     else
       x += vx * dt; y += vy * dt
     now = until
-
-private[skein] object LagVehicle:
-  private val Pending = 64

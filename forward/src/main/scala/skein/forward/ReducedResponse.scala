@@ -12,28 +12,19 @@ final case class ReducedResponse(model: ReducedModel) extends VelocityResponse:
   override def predictor: VehicleModel[?] = ReducedVehicleModel(model)
 
 private[skein] final class ReducedVehicle(model: ReducedModel) extends Vehicle:
-  import ReducedVehicle.Pending
-  private val flight           = ReducedFlight(model)
-  private var now, down        = 0.0
-  private val at, atVx, atVy   = Array.ofDim[Double](Pending)
-  private var first, afterLast = 0
+  private val flight    = ReducedFlight(model)
+  private val coming    = DeadTime(model.deadTimeS)
+  private var now, down = 0.0
 
   def start(x: Double, y: Double, z: Double): Unit =
     flight.start(0, x, y, 0, 0)
-    now = 0; down = z; first = 0; afterLast = 0
+    now = 0; down = z
+    coming.clear()
 
-  def command(vx: Double, vy: Double): Unit =
-    if afterLast - first == Pending then
-      throw IllegalStateException(s"more than $Pending commands within the dead time of ${model.deadTimeS} s")
-    val slot = afterLast % Pending
-    at(slot) = now + model.deadTimeS; atVx(slot) = vx; atVy(slot) = vy
-    afterLast += 1
+  def command(vx: Double, vy: Double): Unit = coming.put(now, vx, vy)
 
   def advance(timeS: Double): Unit =
-    while first < afterLast && at(first % Pending) <= timeS do
-      val slot = first % Pending
-      flight.act(at(slot), atVx(slot), atVy(slot))
-      first += 1
+    coming.until(timeS)((atS, vx, vy) => flight.act(atS, vx, vy))
     flight.advance(timeS)
     now = timeS
 
@@ -43,6 +34,3 @@ private[skein] final class ReducedVehicle(model: ReducedModel) extends Vehicle:
   def vy: Double = flight.vy
 
   override def seen: Kinematics = level(down)
-
-private[skein] object ReducedVehicle:
-  private val Pending = 64

@@ -5,6 +5,7 @@ import skein.forward.{
   Duelist,
   LoopTiming,
   Nanos,
+  PlantResponse,
   QuadrotorResponse,
   Reduced,
   ReducedResponse,
@@ -74,7 +75,8 @@ private[skein] object TimetableModel:
           s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
         )
       yield QuadrotorTimetables(quadrotor)
-    case _ => Left("the lanes fly only models with a lag")
+    case PlantResponse(plant) => PlantLanes.of(plant).map(PlantTimetables(_))
+    case _                    => Left("the lanes fly only models with a lag")
 
   /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
     *
@@ -129,21 +131,31 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
       into(at + 2) = StrictMath.exp(-dt / model.lagS).toFloat
       if acts then actedS = atS
 
-/** By [[TimetableDragVehicles]]: how many pieces end until then, and the time since the last. */
+/** By [[TimetableDragVehicles]]. */
 private final class DragTimetables(model: ReducedModel) extends TimetableModel:
   def deadTimeS: Double                             = model.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
-  def clock(): VehicleClock                         = new VehicleClock:
-    private var pieceS                                                      = 0.0
-    def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
-      var pieces = 0
-      while atS > pieceS + ReducedModel.PieceS do
-        pieceS += ReducedModel.PieceS
-        pieces += 1
-      into(at) = pieces.toFloat
-      into(at + 1) = (atS - pieceS).toFloat
-      if acts then pieceS = atS
+  def clock(): VehicleClock                         = PieceClock(ReducedModel.PieceS)
+
+/** By [[TimetablePlants]]. */
+private final class PlantTimetables(lanes: PlantLanes) extends TimetableModel:
+  def deadTimeS: Double                             = lanes.plant.deadTimeS
+  def handoverS: Double                             = 0
+  def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
+  def clock(): VehicleClock                         = PieceClock(lanes.plant.stepS)
+
+/** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
+private final class PieceClock(lengthS: Double) extends VehicleClock:
+  private var pieceS                                                      = 0.0
+  def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
+    var pieces = 0
+    while atS > pieceS + lengthS do
+      pieceS += lengthS
+      pieces += 1
+    into(at) = pieces.toFloat
+    into(at + 1) = (atS - pieceS).toFloat
+    if acts then pieceS = atS
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
 private final class QuadrotorTimetables(model: QuadrotorResponse) extends TimetableModel:

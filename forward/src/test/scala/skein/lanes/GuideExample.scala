@@ -46,3 +46,23 @@ object GuideExample:
   val candidates = leads.space.random(200, seed = 1)
   val best       = candidates.zip(evaluator.tallies(candidates, 0 until 20)).minBy(_._2.mean)
   // guide: end
+
+  // guide: vehicle
+  import skein.vehicle.{PlaneReading, Plant}
+
+  /** Follows the commanded velocity with a first-order lag. */
+  final case class Lagging(gain: Double, lagS: Double) extends Plant[PlaneReading]:
+    def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
+    def stepS: Double                           = 0.1
+    def read(state: PlaneReading): PlaneReading = state
+
+    def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+      val left          = StrictMath.exp(-dtS / lagS)
+      val (north, east) = (state.northMps - gain * northMps, state.eastMps - gain * eastMps)
+      PlaneReading(
+        state.northM + gain * northMps * dtS + north * lagS * (1 - left),
+        state.eastM + gain * eastMps * dtS + east * lagS * (1 - left),
+        gain * northMps + north * left,
+        gain * eastMps + east * left
+      )
+  // guide: end

@@ -1,0 +1,73 @@
+package skein.lanes
+
+import skein.forward.*
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.simd.WorldRandom
+import skein.vehicle.{PlaneReading, Plant}
+
+/** Vehicles of a user's own, as they are written. */
+class PlantSuite extends munit.FunSuite:
+  private val bicycle =
+    PlantResponse(Bicycle(wheelbaseM = 1.2, steeringLagS = 0.3, mostMps2 = 4, antennaM = 0.4))
+  private val short = Duel.paper.copy(
+    evader = Duel.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
+    durationS = 6
+  )
+
+  private def worlds(shared: Boolean): DuelWorlds = new DuelWorlds:
+    def size: Int                       = 256
+    override def shareEpisodes: Boolean = shared
+    def key(world: Int): Int            = WorldRandom.key(5, 0, world / 128)
+    def link(world: Int): Delays        = DelayTable.vpn
+    def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * (world % 128))
+    def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * (world % 128))
+
+  for
+    timing <-
+      Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+  do
+    test(s"a bicycle flies by lanes under ${timing.productPrefix} as its scalar does"):
+      val batch = DuelBatch(short, timing, bicycle, threads = 1)
+      assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
+      val all   = worlds(shared = true)
+      val flown = batch.fly(all)
+      val off   = (0 until all.size by 3).map: world =>
+        val duel = Duel(
+          short.pursuer.copy(policy = all.pursuer(world)),
+          short.evader.copy(policy = all.evader(world)),
+          short.durationS
+        )
+        val scalar = Rollout(duel, timing, DelayTable.vpn, bicycle).fly(all.key(world))
+        (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
+          (flown.minDistanceM(world) - scalar.minDistanceM).abs
+      assert(off.max < 1e-3, off.sorted.takeRight(5))
+
+  test("a plant of a first-order lag flies as the model with a lag"):
+    val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0)
+    val timing = LoopTiming.Stream()
+    for key <- 1 to 5 do
+      val plant =
+        Rollout(short, timing, DelayTable.vpn, PlantResponse(GuideExample.Lagging(0.9, 0.8))).fly(key)
+      val exact = Rollout(short, timing, DelayTable.vpn, lag).fly(key)
+      assertEqualsDouble(plant.meanDistanceM, exact.meanDistanceM, 1e-9)
+
+  test("what does not fly by lanes is told"):
+    def engine(plant: Plant[?], shared: Boolean, timing: LoopTiming = LoopTiming.Stream()) =
+      DuelBatch(short, timing, PlantResponse(plant), 1)
+        .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn))
+    assert(engine(bicycle.plant, shared = true).startsWith("SIMD"))
+    assert(engine(bicycle.plant, shared = false).startsWith("scalar: worlds with delays of their own"))
+    assert(engine(
+      bicycle.plant,
+      shared = true,
+      LoopTiming.Predictive()
+    ).startsWith("scalar: the lanes predict"))
+    val told = engine(Gusty, shared = true)
+    assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
+
+  private object Gusty extends Plant[PlaneReading]:
+    def initial: PlaneReading     = PlaneReading(0, 0, 0, 0)
+    def stepS: Double             = 0.1
+    def read(state: PlaneReading) = state
+    def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
+      state.copy(northM = state.northM + System.nanoTime % 3)
