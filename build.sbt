@@ -46,6 +46,7 @@ addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
 lazy val root =
   project
     .in(file("."))
+    .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .aggregate(scene)
@@ -129,6 +130,12 @@ lazy val mcap = project
 lazy val mavlink = project
   .settings(artifact("mavlink", "MAVLink 2: frames, signatures, the common messages"))
   .settings(libraryDependencies ++= munit)
+
+/** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
+lazy val recognition = project
+  .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
+  .dependsOn(airsim)
+  .settings(libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
 
 /** Recordings. */
 lazy val record = project

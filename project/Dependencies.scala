@@ -17,6 +17,10 @@ object Dependencies {
   val duckdb        = "org.duckdb"             % "duckdb_jdbc"          % "2.0.0.1"
   val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
   val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
+  // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are found.
+  val boofcv        = ("org.boofcv"            % "boofcv-recognition"   % "1.2.2").exclude("net.sf.trove4j", "trove4j")
+  // 1.29.0 ends the JVM on threads with the default stack.
+  val onnxruntime   = "com.microsoft.onnxruntime" % "onnxruntime"       % "1.26.0"
   val mainargs      = "com.lihaoyi"           %% "mainargs"             % "0.7.8"
   val hocon         = "com.typesafe"           % "config"               % "1.4.5"
   val pureconfig    = "com.github.pureconfig" %% "pureconfig-core"      % "0.17.8"

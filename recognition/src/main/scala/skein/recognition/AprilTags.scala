@@ -1,0 +1,111 @@
+package skein.recognition
+
+import boofcv.abst.fiducial.FiducialDetector
+import boofcv.alg.distort.pinhole.LensDistortionPinhole
+import boofcv.factory.fiducial.{ConfigHammingMarker, FactoryFiducial, HammingDictionary}
+import boofcv.struct.calib.CameraPinhole
+import boofcv.struct.image.GrayU8
+import georegression.struct.se.Se3_F64
+import skein.airsim.{Image, Pixels}
+import skein.fusion.{Measurement, Sighting}
+import skein.signal.Stamped
+import skein.units.*
+
+/** A camera without distortion, as AirSim's are.
+  *
+  * @param fieldOfView
+  *   horizontal, AirSim's `FOV_Degrees`
+  */
+final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
+  require(
+    width > 0 && height > 0 && fieldOfView.value > 0 && fieldOfView.value < math.Pi,
+    s"a camera has pixels and sees less than 180°: $this"
+  )
+
+  /** Pixels that an object as wide as it is far appears wide. */
+  def focalPx: Double = width / 2.0 / StrictMath.tan(fieldOfView.value / 2)
+
+/** A tag that was found.
+  *
+  * @param positionFrd
+  *   of its middle in the camera's frame (front, right, down), m
+  * @param deviationPx
+  *   how exactly its edges were found, standard deviation
+  */
+final case class Tag(id: Long, positionFrd: Vector3, camera: Pinhole, size: Metres, deviationPx: Double):
+
+  /** Azimuth and elevation vary as the edges do, the range by as much of itself as the edges vary of the tag's apparent
+    * width.
+    */
+  def sighting: Sighting =
+    val angle   = Radians(deviationPx / camera.focalPx)
+    val range   = positionFrd.norm
+    val widthPx = camera.focalPx * size.value / range
+    Sighting.of(
+      positionFrd,
+      (azimuth = angle, elevation = angle, range = Metres(range * deviationPx / widthPx))
+    )
+
+  /** Where it was when the image was exposed, which says where its camera was. */
+  def measured(image: Stamped[Image]): Measurement =
+    sighting.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
+
+/** Finds AprilTags of the family 36h11 in raw pictures, by BoofCV. Keeps memory of its own: one for each thread.
+  *
+  * @param size
+  *   of the tags' black squares, from edge to edge
+  * @param deviationPx
+  *   how exactly edges are found; `AprilTagsSuite` holds the default to what is found in rendered pictures
+  */
+final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = AprilTags.DeviationPx):
+  private val gray                               = GrayU8(camera.width, camera.height)
+  private val inCamera                           = Se3_F64()
+  private val detector: FiducialDetector[GrayU8] =
+    val tags = AprilTags.dictionary()
+    tags.targetWidth = size.value
+    val made = FactoryFiducial.squareHamming(tags, null, classOf[GrayU8])
+    val f    = camera.focalPx
+    made.setLensDistortion(
+      LensDistortionPinhole(
+        CameraPinhole(f, f, 0, camera.width / 2.0, camera.height / 2.0, camera.width, camera.height)
+      ),
+      camera.width,
+      camera.height
+    )
+    made
+
+  /** All tags in a picture; or why it is none of this camera's. */
+  def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
+    case Pixels.Bgr(bytes) if image.width == camera.width && image.height == camera.height =>
+      AprilTags.grayOf(bytes.buffer, gray.data)
+      detector.detect(gray)
+      Right(Vector.tabulate(detector.totalFound)(tag))
+    case other =>
+      Left(
+        s"expected raw pixels, ${camera.width} × ${camera.height}, came ${image.width} × ${image.height}, ${other.productPrefix}"
+      )
+
+  private def tag(index: Int): Tag =
+    detector.getFiducialToCamera(index, inCamera): Unit
+    // BoofCV's camera: right, down, ahead.
+    val at = inCamera.T
+    Tag(detector.getId(index), Vector3(at.z, at.x, at.y), camera, size, deviationPx)
+
+object AprilTags:
+  /** The family 36h11: 587 tags, of 6 × 6 bits within a border of one. */
+  def dictionary(): ConfigHammingMarker =
+    ConfigHammingMarker.loadDictionary(HammingDictionary.APRILTAG_36h11)
+
+  val DeviationPx: Double = 0.25
+
+  /** Luma of BT.601 in 8 bits. */
+  private def grayOf(bgr: java.nio.ByteBuffer, gray: Array[Byte]): Unit =
+    var pixel = 0
+    var at    = 0
+    while pixel < gray.length do
+      val blue  = bgr.get(at) & 0xff
+      val green = bgr.get(at + 1) & 0xff
+      val red   = bgr.get(at + 2) & 0xff
+      gray(pixel) = ((29 * blue + 150 * green + 77 * red) >> 8).toByte
+      pixel += 1
+      at += 3
