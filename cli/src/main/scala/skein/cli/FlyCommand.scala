@@ -62,7 +62,12 @@ final class FlyCommand(using Scenarios)
             _ <- warmUp(settings)
             shows = Shows()
             flown <-
-              options.view.serving(shows)(flyLive(settings, simulator, out, Option.when(options.view.view.value)(OnShow(shows))))
+              options.view.serving(shows)(flyLive(
+                settings,
+                simulator,
+                out,
+                Option.when(options.view.view.value)(OnShow(shows))
+              ))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case ClockKind.Virtual if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))

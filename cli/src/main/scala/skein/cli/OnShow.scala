@@ -59,7 +59,8 @@ private[cli] final class GraphGauge:
       for meter <- meters.get(name) do
         if meter.entered > 0 then stage("entered") = meter.entered.toDouble
         if meter.passed > 0 then stage("passed") = meter.passed.toDouble
-        if name.startsWith("sense(") || name.startsWith("steer(") then stage("unanswered") = meter.unanswered.toDouble
+        if name.startsWith("sense(") || name.startsWith("steer(") then
+          stage("unanswered") = meter.unanswered.toDouble
         for age <- meter.age do stage("ageMs") = age.toMillis
       stage
     val arrows = edges.map(edge => ujson.Obj("from" -> edge.from, "to" -> edge.to))

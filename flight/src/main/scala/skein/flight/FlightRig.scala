@@ -162,7 +162,16 @@ final class FlightRigs(
         )
         finish.isOver.foreach(_ => flight.complete())
         vigil.over(flight)
-        Right(FlightRig(plan, flight, RunningGraph(team.meters), watch, vigil, startedAt, clock, () => opened.close()))
+        Right(FlightRig(
+          plan,
+          flight,
+          RunningGraph(team.meters),
+          watch,
+          vigil,
+          startedAt,
+          clock,
+          () => opened.close()
+        ))
     starting
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
       .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }

@@ -17,7 +17,7 @@ object LoopGraph:
     * name are left out; what leads through them leads on.
     */
   def of(names: Vector[Option[String]], connections: Vector[(from: Int, to: Int)]): LoopGraph =
-    val next = connections.groupMap(_.from)(_.to).withDefaultValue(Vector.empty)
+    val next                            = connections.groupMap(_.from)(_.to).withDefaultValue(Vector.empty)
     def reached(from: Int): Vector[Int] =
       def walk(seen: Set[Int], front: Vector[Int], found: Vector[Int]): Vector[Int] =
         front.headOption match

@@ -14,10 +14,10 @@ import skein.units.*
   */
 final class StageMeter private[loop] (val name: String, private[loop] val of: StageMeters)
     extends Attributes.Attribute:
-  private val count, entries            = AtomicLong()
-  private val waits                     = AtomicLong()
-  @volatile private var aged            = false
-  @volatile private var ageNanos        = 0L
+  private val count, entries     = AtomicLong()
+  private val waits              = AtomicLong()
+  @volatile private var aged     = false
+  @volatile private var ageNanos = 0L
 
   /** Elements that left the part. */
   def passed: Long = count.get

@@ -48,7 +48,8 @@ final class Team(
   private def ageOf(validAt: Option[Instant]): Option[Span] =
     clocks.get.zip(validAt).map((known, valid) => clock.now().since(known.toController(valid)))
 
-  private def ageOf(view: TeamView): Option[Span] = ageOf(view.readings.flatten.map(_.state.validAt).minOption)
+  private def ageOf(view: TeamView): Option[Span] =
+    ageOf(view.readings.flatten.map(_.state.validAt).minOption)
 
   // `futures` asks one vehicle from several threads at once.
   private val asked = AtomicLongArray(crafts.size)

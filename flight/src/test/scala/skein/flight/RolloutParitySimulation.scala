@@ -48,7 +48,11 @@ class RolloutParitySimulation extends munit.FunSuite:
     val every  = LoopSettings.every(Span.ofMillis(100))
     val timing =
       LoopTimings
-        .of(loop, if PaperDuel.isAsPublished(scenario) then every.asPublished else every, FlightRigs.askTimeout)
+        .of(
+          loop,
+          if PaperDuel.isAsPublished(scenario) then every.asPublished else every,
+          FlightRigs.askTimeout
+        )
         .getOrElse(fail(s"${loop.label} has no timing"))
     val fleet    = asked.fleet
     val vehicles = fleet.agents.map(_.name)

@@ -8,5 +8,9 @@ class LoopGraphSuite extends munit.FunSuite:
     assertEquals(graph, LoopGraph(Vector("sense", "view"), Vector(("sense", "view"))))
 
   test("what leads through operators without a name leads on, also where they branch and turn back"):
-    val graph = LoopGraph.of(named("a", "", "", "b", "c"), Vector((0, 1), (1, 2), (2, 1), (2, 3), (1, 4), (4, 0)))
-    assertEquals(graph.edges.toSet, Set(("a", "b"), ("a", "c"), ("c", "a")).map((from, to) => (from = from, to = to)))
+    val graph =
+      LoopGraph.of(named("a", "", "", "b", "c"), Vector((0, 1), (1, 2), (2, 1), (2, 3), (1, 4), (4, 0)))
+    assertEquals(
+      graph.edges.toSet,
+      Set(("a", "b"), ("a", "c"), ("c", "a")).map((from, to) => (from = from, to = to))
+    )

@@ -11,14 +11,16 @@ class RunningGraphLiveSuite extends munit.FunSuite:
   test("the named parts of a graph that runs, and what leads where, are told by its interpreter"):
     given system: ActorSystem = ActorSystem("graph")
     try
-      val (mine, others)         = (StageMeters(), StageMeters())
+      val (mine, others)           = (StageMeters(), StageMeters())
       def run(meters: StageMeters) =
         def part(name: String) = Flow[Int].map(_ + 1).map(_ * 2).addAttributes(Attributes(meters(name)))
-        Source.maybe[Int].via(part("one")).viaMat(KillSwitches.single)(Keep.right).via(part("two")).to(Sink.ignore).run()
+        Source.maybe[Int].via(part("one")).viaMat(KillSwitches.single)(Keep.right).via(part(
+          "two"
+        )).to(Sink.ignore).run()
       val switches = Vector(others, mine).map(run)
       // A stream that has just been started tells nothing yet.
-      val graph    = RunningGraph(mine)
-      val found    = Iterator.continually(Await.result(graph.shape(), 10.seconds)).flatten.next()
+      val graph = RunningGraph(mine)
+      val found = Iterator.continually(Await.result(graph.shape(), 10.seconds)).flatten.next()
       assertEquals((found.stages.toSet, found.edges), (Set("one", "two"), Vector((from = "one", to = "two"))))
       switches.foreach(_.shutdown())
     finally Await.result(system.terminate(), 10.seconds): Unit

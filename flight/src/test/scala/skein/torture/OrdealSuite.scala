@@ -85,7 +85,9 @@ class OrdealSuite extends munit.FunSuite:
       )
     do often(what, 0.3)(ordeal => of(ordeal.meddling) > 0)
     often("a file", 0.1)(_.isFiled)
-    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(each => PaperDuel.isAsPublished(each.scenario))
+    often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(each =>
+      PaperDuel.isAsPublished(each.scenario)
+    )
 
   test("mischief is bounded, so that flights still have something to show"):
     for ordeal <- ordeals do

@@ -119,6 +119,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite:
         runs.foreach(run => println(s"${profile.name}: $run"))
         val judged = runs.tail.exists(_.calm) || runs.last.matches
         // .ci/run counts such lines.
-        if !judged then println("INCONCLUSIVE: the machine is too busy to tell the link's delays from its own")
+        if !judged then
+          println("INCONCLUSIVE: the machine is too busy to tell the link's delays from its own")
         assume(judged, "inconclusive")
         assert(runs.last.matches, runs)

@@ -8,8 +8,9 @@ private[record] object Json:
     text.foreach:
       case '"'                                                  => out ++= "\\\""
       case '\\'                                                 => out ++= "\\\\"
-      case other if other < ' ' || Character.isSurrogate(other) => out ++= s"\\u${(0x10000 | other).toHexString.drop(1)}"
-      case other                                                => out += other
+      case other if other < ' ' || Character.isSurrogate(other) =>
+        out ++= s"\\u${(0x10000 | other).toHexString.drop(1)}"
+      case other => out += other
     out.append('"').toString
 
   /** @param number

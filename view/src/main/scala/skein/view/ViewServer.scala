@@ -146,7 +146,8 @@ object ViewServer:
           case (_, HttpMethods.POST) =>
             val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
             (shows.find(show => path == s"/flights/${show.id}/abort").flatMap(_.abort), token.is(said)) match
-              case (_, false)          => refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
+              case (_, false) =>
+                refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
               case (None, _)           => refused(StatusCodes.NotFound, s"nothing to be done at $path")
               case (Some(abort), true) =>
                 request.discardEntityBytes()

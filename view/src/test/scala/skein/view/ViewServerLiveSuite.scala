@@ -27,12 +27,20 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private final class Served(limits: Limits):
     val aborted: AtomicInteger = AtomicInteger()
-    val feed: Feed = Feed()
-    val show: LiveShow = LiveShow(Samples.heading, feed, limits = limits, abort = Some(() => aborted.incrementAndGet(): Unit))
-    val shows: Shows   = Shows()
+    val feed: Feed             = Feed()
+    val show: LiveShow         =
+      LiveShow(Samples.heading, feed, limits = limits, abort = Some(() => aborted.incrementAndGet(): Unit))
+    val shows: Shows = Shows()
     shows.add(show)
     val server: ViewServer = await(
-      ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0, token = Token("right"), limits = limits)
+      ViewServer.start(
+        shows,
+        Clock.system,
+        ExecutionContext.global,
+        port = 0,
+        token = Token("right"),
+        limits = limits
+      )
     )
 
   private def serving(limits: Limits = Limits()) =
@@ -153,7 +161,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(served.server.counts.refusedConnections, 995L)
 
   serving().test("a flight is ended by whoever has the token, and by nobody else"): served =>
-    val port                                               = served.server.port
+    val port                                          = served.server.port
     def post(path: String, headers: HttpHeader*): Int =
       val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
       val response = await(Http().singleRequest(request))
