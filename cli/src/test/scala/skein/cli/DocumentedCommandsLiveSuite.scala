@@ -131,6 +131,7 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
       val (status, told) = words.head match
         case "--help" => run(words)
         case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+        case "replay" if words.contains("--view") => runUntilItListens(words ++ Seq("--view-port", "0"))
         case "link"   =>
           // The ports of the guide may be taken here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
@@ -143,6 +144,6 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         case _ => run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
       val stopped = Set(0, 130, 143)
       assert(
-        if Set("serve", "link")(words.head) then stopped(status) else status == 0,
+        if Set("serve", "link")(words.head) || words.contains("--view") then stopped(status) else status == 0,
         s"exit $status:\n$told"
       )
