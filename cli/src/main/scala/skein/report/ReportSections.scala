@@ -63,7 +63,7 @@ object ReportSections:
     )
   )
 
-  private def shown(sections: Vector[Section]): Vector[Section] =
+  private[report] def shown(sections: Vector[Section]): Vector[Section] =
     sections.filter(section => section.table.exists(_.rows.nonEmpty) || section.figures.nonEmpty)
 
   /** Figures that stand beside a table of their own. */

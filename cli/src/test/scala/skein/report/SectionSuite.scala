@@ -1,5 +1,7 @@
 package skein.report
 
+import skein.figures.Figure
+import skein.plot.Drawing
 import skein.scenario.Scenarios
 
 class SectionSuite extends munit.FunSuite:
@@ -41,6 +43,15 @@ class SectionSuite extends munit.FunSuite:
     // 16 words of five letters with their blanks are 95.
     assertEquals(told.map(_.length), Vector(95, 95, 95, 71))
     assertEquals(lines.dropWhile(_ != "Two").size, 5)
+
+  test("sections without rows and pictures are left out"):
+    val empty   = Section("no rows", table = Some(table.copy(rows = Vector.empty)))
+    val rows    = Section("rows", table = Some(table))
+    val picture = Section("picture", figures = Vector(Figure("a", "b", "c", Drawing(1, 1, Vector.empty))))
+    assertEquals(
+      ReportSections.shown(Vector(Section("a title"), rows, empty, picture)),
+      Vector(rows, picture)
+    )
 
   test("text, page and data have the same tables in the same order"):
     val set = Report.of(

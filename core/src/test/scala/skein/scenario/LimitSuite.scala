@@ -62,6 +62,14 @@ class LimitSuite extends munit.FunSuite:
     assertEqualsDouble(in.toS, 7, 0.03)
     assertEqualsDouble(in.worst, 1, 0.03)
 
+  test("a rectangle is a fence that has an inside"):
+    val fence = Fence.rectangle(-1, 3, -2, 2)
+    assertEquals((fence.beyondM(0, 0), fence.beyondM(5, 0), fence.beyondM(6, -6)), (-1.0, 2.0, 5.0))
+    for (minN, maxN, minE, maxE) <-
+        Seq((1.0, 1.0, 0.0, 2.0), (2.0, 1.0, 0.0, 2.0), (0.0, 2.0, 1.0, 1.0), (0.0, 2.0, 1.0, 0.0))
+    do
+      intercept[IllegalArgumentException](Fence.rectangle(minN, maxN, minE, maxE))
+
   test("limits of one's own have a name, a unit and a bound"):
     val above = Limit.least("height over the hill", "m", 2)((tracks, vehicle) =>
       instant => tracks.altitudeM(vehicle, instant) - 9

