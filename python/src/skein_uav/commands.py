@@ -267,39 +267,40 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     installed = find()
     arguments = [command, "--json", *_flags(options), *words]
     environment = {**os.environ, "JAVA_HOME": str(installed.java)}
-    process = subprocess.Popen(
-        ["bash", str(installed.launcher), *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=environment,
-        text=True,
-        encoding="utf-8",
-    )
-    try:
-        said, complained = _communicate(process, verbose)
-    except BaseException:
-        # A notebook interrupts Python alone; the command then hovers its vehicles and ends by itself.
-        process.send_signal(signal.SIGINT)
-        process.wait()
-        raise
-    if process.returncode != 0:
-        raise SkeinError(_reason(complained) or f"skein {command} ended with status {process.returncode}")
-    return {table["title"]: _frame(table) for table in json.loads(said)["tables"]}
+    with tempfile.TemporaryFile() as tables:
+        process = subprocess.Popen(
+            ["bash", str(installed.launcher), *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=tables,
+            stderr=subprocess.PIPE,
+            env=environment,
+            text=True,
+            encoding="utf-8",
+        )
+        try:
+            complained = _heard(process, verbose)
+        except BaseException:
+            # A notebook interrupts Python alone; the command then hovers its vehicles and ends by itself.
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            raise
+        if process.returncode != 0:
+            raise SkeinError(_reason(complained) or f"skein {command} ended with status {process.returncode}")
+        tables.seek(0)
+        return {table["title"]: _frame(table) for table in json.load(tables)["tables"]}
 
 
-def _communicate(process: subprocess.Popen[str], verbose: bool) -> tuple[str, str]:
-    if not verbose:
-        return process.communicate()
-    assert process.stdout is not None and process.stderr is not None
-    # The tables come at the end, in one piece that is read behind the last line.
+def _heard(process: subprocess.Popen[str], verbose: bool) -> str:
+    """What a command says of its progress and of what it refuses, until it ends."""
+    assert process.stderr is not None
     lines = []
-    for line in process.stderr:
-        sys.stderr.write(line)
-        lines.append(line)
-    said = process.stdout.read()
+    with process.stderr:
+        for line in process.stderr:
+            lines.append(line)
+            if verbose:
+                sys.stderr.write(line)
     process.wait()
-    return said, "".join(lines)
+    return "".join(lines)
 
 
 def _reason(complained: str) -> str:
