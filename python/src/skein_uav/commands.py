@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,9 +18,13 @@ import pandas as pd
 
 from .errors import SkeinError
 from .installation import find
+from .policies import Policy, PolicyServer
 from .recording import Recording, load
 
 Tables = dict[str, pd.DataFrame]
+
+#: For policies in Python in flights in real time.
+_DEADLINE_MS = 20.0
 
 
 @dataclass(frozen=True)
@@ -77,6 +82,9 @@ def fly(
     scenario: str | None = None,
     settings: Mapping[str, Any] | None = None,
     policy: str | os.PathLike[str] | None = None,
+    pursuer: Policy | None = None,
+    evader: Policy | None = None,
+    deadline_ms: float | None = None,
     out: str | os.PathLike[str] | None = None,
     verbose: bool = False,
     **options: Any,
@@ -101,6 +109,15 @@ def fly(
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
         A policy file, as :func:`search` writes one: flown beside the scenario's own.
+    pursuer, evader : callable, optional
+        A policy written in Python, flown beside the scenario's own: from what is seen, ndarray of float32 of shape (9,),
+        to a number from -1 to 1, as in :mod:`skein_uav.environments`. It is asked while flights are flown, by all of
+        them on one thread, and must not count its calls: a rehearsal before live flights asks it too.
+    deadline_ms : float, optional
+        By when a policy must have decided, ms; where it has not, or has failed, ``fallback`` decides (``hold``,
+        ``repeat`` or a policy's name), and the recording says so. With a policy in Python and ``clock="real"`` 20 ms
+        unless told; else policies are waited for, 10 s at most. In virtual time the clock stands still meanwhile. The
+        loop ``paused`` knows no deadline.
     out : path, optional
         Folder for recordings and report; a new temporary one unless named.
     verbose : bool
@@ -118,20 +135,26 @@ def fly(
         With what the command said, if it failed.
     """
     folder = _folder(out)
-    tables = run(
-        "fly",
-        loop=loop,
-        link=link,
-        duration=_ms(duration_s),
-        seed=seed,
-        clock=clock,
-        scenario=scenario,
-        set=_settings(settings),
-        policy=policy,
-        out=folder,
-        verbose=verbose,
-        **options,
-    )
+    with ExitStack() as served:
+        given = [(role, one) for role, one in (("pursuer", pursuer), ("evader", evader)) if one is not None]
+        policies: list[Any] = [served.enter_context(PolicyServer(one, role)).option for role, one in given]
+        if given and clock == "real" and deadline_ms is None:
+            deadline_ms = _DEADLINE_MS
+        tables = run(
+            "fly",
+            loop=loop,
+            link=link,
+            duration=_ms(duration_s),
+            seed=seed,
+            clock=clock,
+            scenario=scenario,
+            set=_settings(settings),
+            policy=[policy, *policies],
+            deadline=None if deadline_ms is None else _ms(deadline_ms / 1000),
+            out=folder,
+            verbose=verbose,
+            **options,
+        )
     return Flights(tables, sorted(folder.glob("*.duckdb")), folder / "report.html")
 
 

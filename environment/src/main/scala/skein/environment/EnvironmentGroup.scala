@@ -3,6 +3,7 @@ package skein.environment
 import java.nio.FloatBuffer
 import skein.lanes.SteppedDuels
 import skein.policy.Role
+import skein.settings.OutsidePolicy
 import skein.signal.SplitMix64
 
 /** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their messages is the
@@ -115,7 +116,7 @@ private final class EnvironmentGroup(
 
   private def commanded(vehicle: Int, action: Float): Float =
     val share = math.max(-1f, math.min(1f, action))
-    if vehicle == 1 then share * MostTurnRadPerS else share * math.Pi.toFloat
+    if vehicle == 1 then share * OutsidePolicy.MostTurnRadPerS.toFloat else share * math.Pi.toFloat
 
   /** Rewards, and who has ended. */
   private def judge(): Unit =
@@ -215,9 +216,6 @@ private final class EnvironmentGroup(
       agent += 1
 
 private object EnvironmentGroup:
-  /** The most that a pursuer turns: the paper's. */
-  val MostTurnRadPerS = 1f
-
   /** A distance of so much, at the end of one period, costs 1. */
   val PerM = 10f
 

@@ -206,7 +206,10 @@ object FlySettings:
 
   private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 
-  private given ConfigReader[PolicyFile] = parsed("policy", PolicyFile.read)
+  private given ConfigReader[PolicyFile] = parsed(
+    "policy",
+    text => if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
+  )
 
   private given ConfigReader[PlanSettings] =
     ConfigKeys.reader[Planning].map: read =>

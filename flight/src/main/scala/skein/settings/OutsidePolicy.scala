@@ -1,0 +1,138 @@
+package skein.settings
+
+import java.io.IOException
+import java.net.UnixDomainSocketAddress
+import java.nio.ByteBuffer
+import java.nio.channels.{SelectionKey, Selector, SocketChannel}
+import scala.util.Try
+import skein.policy.*
+import skein.units.{Clock, Instant, Span}
+
+/** A policy in a process of its own, asked over a Unix socket. It is given what a learner sees in `skein.environment`:
+  * [[OutsidePolicy.seen]], and answers with a number from −1 to 1: how to turn; what is beyond is taken for the bound. So
+  * what was taught there flies in every loop.
+  *
+  * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is none: a
+  * length in bytes (32 bits) and UTF-8. One question is under way at a time, of all flights together. The clock of a
+  * flight in virtual time stands still meanwhile, so equal answers make equal flights.
+  *
+  * Where there is no number, the decision fails: by the policy's own word, by a number that is not finite, by anything
+  * else than an answer, or because none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last
+  * two nobody is asked again, and every later decision fails at once.
+  *
+  * @param mostTurnRadPerS
+  *   of a pursuer
+  */
+final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: Role, mostTurnRadPerS: Double)
+    extends ObservingPolicy[Unit]:
+  def initial: Unit = ()
+
+  /** @throws IOException
+    *   if there is no answer
+    */
+  def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+    val share = connection.ask(OutsidePolicy.seen(seen)).toDouble.max(-1).min(1)
+    val turn  = if role == Role.Pursuer then share * mostTurnRadPerS * seen.elapsedS else share * math.Pi
+    Decided(seen.ownHeadingRad + turn, ())
+
+object OutsidePolicy:
+  private val Name = "outside"
+
+  /** The most that a pursuer turns: the paper's. */
+  val MostTurnRadPerS = 1.0
+
+  /** Enough for a first answer that loads a network. */
+  val AnswerWithin: Span = Span.ofSeconds(10)
+
+  private val MostText = 1 << 16
+
+  /** The policy of a process that answers now.
+    *
+    * @param text
+    *   `unix:ROLE:PATH`
+    * @return
+    *   or what was expected, what came, and where
+    */
+  def reach(text: String, answerWithin: Span = AnswerWithin): Either[String, PolicyFile] = text match
+    case s"unix:$role:$path" =>
+      for
+        known      <- PolicyFile.role(role).left.map(mistake => s"$text: $mistake")
+        connection <- Try(Connection(path, answerWithin)).toEither.left.map(reason =>
+          s"expected a policy behind the socket $path: ${reason.getMessage}"
+        )
+      yield PolicyFile.ofDefaults(known, family(known, connection))
+    case _ => Left(s"expected unix:ROLE:PATH, came '$text'")
+
+  /** Whether another process decides. */
+  def decides(file: PolicyFile): Boolean = file.family.name == Name
+
+  private def family(role: Role, connection: Connection) = PolicyFamily(
+    Name,
+    "decides in a process of its own",
+    Set(role),
+    SearchSpace(Vector(Axis("turnRateRadPerS", 0.2, 3.0, MostTurnRadPerS))),
+    parameters => OutsidePolicy(connection, role, parameters(0))
+  )
+
+  /** In the frame whose x-axis is the own heading commanded last: the opponent's place ahead and to the right, m; its
+    * velocity minus the own one, m/s; cosine and sine of its heading from the own one; the time since the own last
+    * decision, the age of the own reading and of the opponent's, s.
+    */
+  def seen(of: PlanarObservation): Array[Float] =
+    val (cos, sin) = (StrictMath.cos(of.ownHeadingRad), StrictMath.sin(of.ownHeadingRad))
+    val bearing    = of.opponentHeadingRad - of.ownHeadingRad
+    Array(
+      of.dxM * cos + of.dyM * sin,
+      of.dyM * cos - of.dxM * sin,
+      of.dvxMps * cos + of.dvyMps * sin,
+      of.dvyMps * cos - of.dvxMps * sin,
+      StrictMath.cos(bearing),
+      StrictMath.sin(bearing),
+      of.elapsedS,
+      of.ownAgeS,
+      of.opponentAgeS
+    ).map(_.toFloat)
+
+  /** Open until the process ends, or the other side does not keep to the protocol. */
+  private final class Connection(path: String, answerWithin: Span):
+    private val channel  = SocketChannel.open(UnixDomainSocketAddress.of(path))
+    private val selector = Selector.open()
+    private var broken   = Option.empty[String]
+    channel.configureBlocking(false).register(selector, SelectionKey.OP_READ): Unit
+
+    def ask(seen: Array[Float]): Float = synchronized:
+      val answer = broken.toLeft(()).flatMap: _ =>
+        try exchange(seen)
+        catch
+          case reason: IOException =>
+            broken = Some(reason.getMessage)
+            selector.close()
+            channel.close()
+            Left(reason.getMessage)
+      answer.fold(reason => throw IOException(s"the policy: $reason"), identity)
+
+    private def exchange(seen: Array[Float]): Either[String, Float] =
+      val until    = Clock.system.now() + answerWithin
+      val question = ByteBuffer.allocate(4 * seen.length)
+      for number <- seen do question.putFloat(number): Unit
+      channel.write(question.flip()): Unit
+      received(1, until).get match
+        case 0 =>
+          val share = received(4, until).getFloat
+          Either.cond(share.isFinite, share, s"expected a number from -1 to 1, came $share")
+        case 1 =>
+          val length = received(4, until).getInt
+          if length < 0 || length > MostText then
+            throw IOException(s"expected at most $MostText bytes of text, came $length")
+          Left(String(received(length, until).array, "UTF-8"))
+        case other => throw IOException(s"expected 0 or 1 before an answer, came $other")
+
+    private def received(bytes: Int, until: Instant): ByteBuffer =
+      val buffer = ByteBuffer.allocate(bytes)
+      while buffer.hasRemaining do
+        val leftMs = until.since(Clock.system.now()).toMillis.ceil.toLong
+        if leftMs <= 0 || selector.select(leftMs) == 0 then
+          throw IOException(s"expected an answer within ${answerWithin.toMillis.round} ms, came none")
+        selector.selectedKeys.clear()
+        if channel.read(buffer) < 0 then throw IOException("its process has ended")
+      buffer.flip()

@@ -1,0 +1,86 @@
+package skein.settings
+
+import java.io.IOException
+import scala.util.{Try, Using}
+import skein.policy.PlanarObservation
+import skein.units.Span
+
+class OutsidePolicySuite extends munit.FunSuite:
+  private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
+
+  /** What is decided, or why nothing, of as many questions as there are answers. */
+  private def decided(answers: Array[Byte]*): Seq[Either[String, Double]] =
+    Using.resource(Peer((number, _) => answers.lift(number))): peer =>
+      val policy =
+        OutsidePolicy.reach(peer.option).map(_.policy.asInstanceOf[OutsidePolicy]).fold(fail(_), identity)
+      answers.map: _ =>
+        Try(policy.decide(seen, ()).headingRad).toEither.left.map:
+          case reason: IOException => reason.getMessage
+          case other               => throw other
+
+  test(
+    "an answer is the share of the most that the pursuer turns, and what is beyond is taken for the bound"
+  ):
+    assertEquals(
+      decided(Peer.number(0.5f), Peer.number(-7), Peer.number(1)),
+      Seq(Right(0.5 + 0.05), Right(0.5 - 0.1), Right(0.5 + 0.1))
+    )
+
+  test("what is seen stands in the frame of the own heading"):
+    val straight = OutsidePolicy.seen(seen.copy(ownHeadingRad = 0)).toVector
+    assertEquals(straight.take(4), Vector(3f, 4f, 1f, -2f))
+    assertEquals(straight.drop(6), Vector(0.1f, 0.02f, 0.03f))
+    val east = OutsidePolicy.seen(seen.copy(ownHeadingRad = math.Pi / 2, opponentHeadingRad = math.Pi))
+    for (came, expected) <- east.take(6).toSeq.zip(Seq(4f, -3f, -2f, -1f, 0f, 1f)) do
+      assertEqualsFloat(came, expected, 1e-6f)
+
+  test("a policy that fails, or tells no number, is asked again"):
+    assertEquals(
+      decided(
+        Peer.refusal("no such luck"),
+        Peer.number(Float.NaN),
+        Peer.number(Float.NegativeInfinity),
+        Peer.number(0)
+      ),
+      Seq(
+        Left("the policy: no such luck"),
+        Left("the policy: expected a number from -1 to 1, came NaN"),
+        Left("the policy: expected a number from -1 to 1, came -Infinity"),
+        Right(0.5)
+      )
+    )
+
+  test("who does not keep to the protocol, or ends, is not asked again"):
+    for
+      (answer, reason) <- Seq(
+        Array[Byte](7)                 -> "expected 0 or 1 before an answer, came 7",
+        Array[Byte](1, 1, 0, 0, 0)     -> "expected at most 65536 bytes of text, came 16777216",
+        Array[Byte](1, -1, -1, -1, -1) -> "expected at most 65536 bytes of text, came -1"
+      )
+    do assertEquals(decided(answer, Peer.number(0)), Seq.fill(2)(Left(s"the policy: $reason")))
+
+    Using.resource(Peer((_, _) => None)): peer =>
+      val policy = OutsidePolicy.reach(peer.option).fold(fail(_), identity).policy
+      for _ <- 1 to 2 do
+        assert(intercept[IOException](policy.heading(
+          1, 1, 0, 0, 0, 0, 0.1
+        )).getMessage.startsWith("the policy: "))
+      assertEquals(peer.asked, 1)
+
+  test("an answer that is not complete in time is none, and there is no second question"):
+    for part <- Seq(Array.empty[Byte], Array[Byte](0, 0)) do
+      Using.resource(Peer((_, _) => Some(part))): peer =>
+        val policy = OutsidePolicy.reach(peer.option, Span.ofMillis(30)).fold(fail(_), identity).policy
+        for _ <- 1 to 2 do
+          val reason = intercept[IOException](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
+          assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
+        assert(peer.asked <= 1)
+
+  test("whom nobody answers for is refused, with what was expected"):
+    val nobody = OutsidePolicy.reach("unix:pursuer:/nowhere/policy").left.toOption
+    assert(nobody.exists(_.startsWith("expected a policy behind the socket /nowhere/policy: ")), nobody)
+    assertEquals(
+      OutsidePolicy.reach("unix:judge:/nowhere"),
+      Left("unix:judge:/nowhere: expected pursuer or evader, came 'judge'")
+    )
+    assertEquals(OutsidePolicy.reach("unix:pursuer"), Left("expected unix:ROLE:PATH, came 'unix:pursuer'"))

@@ -1,0 +1,58 @@
+import time
+
+import numpy as np
+import pytest
+
+import skein_uav as skein
+
+
+def paper(seen):
+    """The paper's pursuer."""
+    return np.sign(seen[1]) if seen[1] != 0 else float(seen[0] < 0)
+
+
+def test_a_policy_in_python_flies_as_the_same_policy_on_the_jvm(tmp_path):
+    flights = skein.fly(link="vpn", duration_s=15, pursuer=paper, out=tmp_path)
+    distance = next(iter(flights.tables.values()))
+    assert len(flights.recordings) == 2
+    # The question's floats are 32 bits wide, so a side is another only where the evader is all but straight ahead.
+    assert distance["last 10 s m"].iloc[1] == pytest.approx(distance["last 10 s m"].iloc[0], abs=0.05)
+
+
+def test_a_policy_that_fails_ends_the_flight_with_its_words(tmp_path):
+    def broken(seen):
+        raise ZeroDivisionError("no such luck")
+
+    with pytest.raises(skein.SkeinError, match="ZeroDivisionError: no such luck"):
+        skein.fly(link="none", duration_s=5, pursuer=broken, out=tmp_path)
+    with pytest.raises(skein.SkeinError, match="expected a number from -1 to 1, came array.*nan"):
+        skein.fly(link="none", duration_s=5, evader=lambda seen: np.nan, out=tmp_path / "nan")
+
+
+def test_with_a_deadline_a_policy_that_fails_is_replaced_and_recorded(tmp_path):
+    def moody(seen):
+        if seen[0] < 15:
+            raise ValueError("not in the mood")
+        return paper(seen)
+
+    flights = skein.fly(
+        link="direct", duration_s=8, pursuer=moody, deadline_ms=20, fallback="paper-pursuer", out=tmp_path
+    )
+    own = next(number for number, path in enumerate(flights.recordings) if "outside" in path.name)
+    with flights.load(own) as recording:
+        missed = recording["event"]
+        assert missed.detail.str.contains("not in the mood").any(), missed
+        assert (recording["decision"].vehicle == "Pursuer").sum() > 60
+
+
+@pytest.mark.parametrize("pause_s", [0.5, 3600])
+def test_a_policy_that_is_slow_or_hangs_holds_no_flight_in_real_time_up(tmp_path, pause_s):
+    def slow(seen):
+        time.sleep(pause_s)
+        return paper(seen)
+
+    flights = skein.fly(link="none", duration_s=3, clock="real", twins=0, pursuer=slow, fallback="repeat", out=tmp_path)
+    own = next(number for number, path in enumerate(flights.recordings) if "outside" in path.name)
+    with flights.load(own) as recording:
+        assert (recording["decision"].vehicle == "Pursuer").sum() >= 10
+        assert recording["event"].detail.str.contains("by the fallback").sum() >= 10
