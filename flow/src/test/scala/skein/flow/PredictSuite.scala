@@ -64,6 +64,12 @@ class PredictSuite extends munit.FunSuite:
     // The last one's moment was never read.
     assertEquals((moving.size, resting.size), (9, 9))
 
+  test("a prediction of a vehicle of which nothing was heard waits"):
+    val start   = Instant.Epoch
+    val waiting = Unverified.none.withMade(start, Vector(Estimate(north(Span.Zero), start, start)), _ => true)
+    val (left, verified) = waiting.heldAgainst(Forecast(Vector(ConstantVelocity)))
+    assertEquals((left, verified), (waiting, Vector.empty))
+
   test(
     "of the predictions that wait to be held against readings the newest are kept, so many of each vehicle"
   ):

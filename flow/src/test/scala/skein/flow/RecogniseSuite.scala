@@ -100,6 +100,14 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
     assertEquals(faulty.mostAtOnce, 2)
 
+  test("no workers and no time are refused"):
+    for (workers, deadlineMs) <- Seq((0, 40.0), (1, 0.0)) do
+      intercept[IllegalArgumentException](
+        Recognise[Int, Int](workers, Span.ofMillis(deadlineMs), Clock.ofNanos(() => 0L))((_, _) =>
+          Future.never
+        )(_ => ())
+      )
+
   test("a flow that ends waits for what is under way, until its deadline"):
     val ending = run(perSecond = 100, count = 2, workers = 2, deadlineMs = 40)(Vector(10, 5000))
     assertEquals(ending.emitted.map(_.frame), Seq(0))

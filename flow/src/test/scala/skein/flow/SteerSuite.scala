@@ -117,6 +117,22 @@ class SteerSuite extends munit.FunSuite:
       Seq((1, Success("superseded")))
     )
 
+  test("where nothing else is under way, the next is asked for at the moment at which the last has ended"):
+    val sent = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem = system
+        val clock         = Clock.ofNanos(VirtualTime.clock(system))
+        val start         = clock.now()
+        def call()        = after(10.millis)(Future.successful("done"))
+        Source
+          .repeat(1)
+          .take(3)
+          .via(Steer(Span.Zero, clock, mostOutstanding = 1)((_: Int) => call(), () => call()))
+          .collect { case Sent(_, at) => at.since(start).toNanos / 1000 }
+          .runWith(Sink.seq)
+      .value
+    assertEquals(sent, Seq(0L, 10_000L, 20_000L))
+
   test("while nobody takes its events, it asks for no more once there are as many as may wait"):
     val sent = VirtualTime
       .run(seed = 1): system =>

@@ -54,6 +54,8 @@ object Equivalent:
       "last",
       "one measure of several flights"
     ),
+    Equivalent("Ordeal.scala", "count < 20", "+", "-", "twenty troubles in a row are as good as never drawn"),
+    Equivalent("Wiretap.scala", "Arr(Int32(1), Int32(2))", "1", "2", "any message that is no answer will do"),
     Equivalent(
       "Replay.scala",
       "case (missing, _)",
