@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene)
+    .aggregate(scene, blocks)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -136,6 +136,12 @@ lazy val recognition = project
   .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
   .dependsOn(airsim)
   .settings(libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
+
+/** Work cut into blocks for many machines, each counted once. Depends on nothing. */
+lazy val blocks = project
+  .settings(artifact("blocks", "Work for many machines, each block of it counted once"))
+  .dependsOn(core % Test)
+  .settings(libraryDependencies ++= munit)
 
 /** Recordings. */
 lazy val record = project

@@ -1,0 +1,220 @@
+package skein.blocks
+
+import scala.collection.immutable.{Queue, TreeSet}
+
+/** Who computes which block: a value, changed by what workers say and by time. Blocks may be given out several times;
+  * the first answer counts, and later ones are counted as repeats.
+  *
+  * @param waiting
+  *   blocks that nobody has
+  * @param leases
+  *   blocks that somebody has, by their numbers
+  * @param seldom
+  *   leases of one worker alone, the oldest first: given out again once nothing waits
+  * @param workers
+  *   by name, also those that are gone
+  * @param patienceNanos
+  *   after which a block is given to others, whatever its worker does
+  */
+final case class Coordinator private (
+    waiting: Queue[Block],
+    leases: Map[Long, Coordinator.Lease],
+    seldom: TreeSet[(Long, Long)],
+    workers: Map[String, WorkerRecord],
+    counts: Coordinator.Counts,
+    patienceNanos: Long
+):
+  import Coordinator.*
+
+  def isIdle: Boolean = waiting.isEmpty && leases.isEmpty
+
+  def joined(worker: String, cores: Int): Coordinator =
+    val record = workers.getOrElse(worker, WorkerRecord(cores))
+    copy(workers = workers.updated(worker, record.copy(isHere = true)))
+
+  /** What only this worker had waits again, before all else. */
+  def lost(worker: String): Coordinator =
+    workers.get(worker).filter(_.isHere).fold(this): record =>
+      released(worker, record.holds).copy(workers =
+        workers.updated(worker, record.copy(isHere = false, holds = Map.empty))
+      )
+
+  def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.enqueueAll(blocks))
+
+  /** A worker has room for a block.
+    *
+    * @param holding
+    *   numbers of the blocks that it has; what it was given more than [[OnItsWay]] ago and does not name was lost
+    * @param nowNanos
+    *   on any clock that does not go back
+    * @return
+    *   the block that it gets, if there is one
+    */
+  def asked(worker: String, holding: Set[Long], nowNanos: Long): (Coordinator, Option[Block]) =
+    workers.get(worker).filter(_.isHere) match
+      case None         => (this, None)
+      case Some(record) =>
+        val gone = record.holds.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
+        val here = forgotten(worker, gone.keySet).released(worker, gone)
+        if holding.size.max(here.workers(worker).holds.size) >= MostHeld then (here, None)
+        else here.handedOut(worker, nowNanos)
+
+  /** A worker's answer.
+    *
+    * @return
+    *   whether it is the first, which counts
+    */
+  def answered(worker: String, number: Long, busyNanos: Long): (Coordinator, Answer) =
+    def tallied(record: WorkerRecord, accepted: Int) = record.copy(
+      holds = record.holds - number,
+      accepted = record.accepted + accepted,
+      repeated = record.repeated + 1 - accepted,
+      busyNanos = record.busyNanos + busyNanos
+    )
+    val known = workers.getOrElse(worker, WorkerRecord(0))
+    leases.get(number) match
+      case Some(lease) =>
+        val freed = lease.holders.keys.foldLeft(workers): (all, holder) =>
+          all.updatedWith(holder)(_.map(record => record.copy(holds = record.holds - number)))
+        val next = copy(
+          leases = leases - number,
+          seldom = seldom - lease.place,
+          workers = freed.updated(worker, tallied(freed.getOrElse(worker, known), 1)),
+          counts = counts.copy(accepted = counts.accepted + 1)
+        )
+        (next, Answer.First(lease.block))
+      case None =>
+        waiting.indexWhere(_.number == number) match
+          // Its lease was given up, and it came all the same.
+          case place if place >= 0 =>
+            val next = copy(
+              waiting = waiting.patch(place, Nil, 1),
+              workers = workers.updated(worker, tallied(known, 1)),
+              counts = counts.copy(accepted = counts.accepted + 1)
+            )
+            (next, Answer.First(waiting(place)))
+          case _ =>
+            val next = copy(
+              workers = workers.updated(worker, tallied(known, 0)),
+              counts = counts.copy(repeated = counts.repeated + 1)
+            )
+            (next, Answer.Repeated)
+
+  /** Blocks that have been out for too long wait again; their workers may still answer. */
+  def at(nowNanos: Long): Coordinator =
+    def isOverdue(lease: Lease) = nowNanos - lease.place._1 > patienceNanos
+    // Towards the end every block may be with two who both hang.
+    val overdue =
+      if seldom.isEmpty then leases.valuesIterator.filter(isOverdue).toVector
+      else seldom.iterator.map((_, number) => leases(number)).takeWhile(isOverdue).toVector
+    overdue.foldLeft(this): (here, lease) =>
+      val number = lease.block.number
+      lease.holders.keys.foldLeft(
+        here.copy(
+          waiting = here.waiting.prepended(lease.block),
+          leases = here.leases - number,
+          seldom = here.seldom - lease.place,
+          counts = here.counts.copy(overdue = here.counts.overdue + 1)
+        )
+      )(_.forgotten(_, Set(number)))
+
+  /** Gives up all that is asked; answers that still come are repeats. */
+  def cancelled: Coordinator = copy(
+    waiting = Queue.empty,
+    leases = Map.empty,
+    seldom = TreeSet.empty,
+    workers = workers.view.mapValues(_.copy(holds = Map.empty)).toMap
+  )
+
+  private def handedOut(worker: String, nowNanos: Long): (Coordinator, Option[Block]) =
+    waiting.dequeueOption match
+      case Some((block, rest)) =>
+        (copy(waiting = rest).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
+      case None =>
+        // The last blocks go out twice: whoever is quicker counts.
+        val slow = seldom.iterator.map((_, number) => leases(number)).find(!_.holders.contains(worker))
+        slow.fold((this, None)): lease =>
+          val next = copy(seldom = seldom - lease.place, counts = counts.copy(doubled = counts.doubled + 1))
+          (next.leased(lease, worker, nowNanos), Some(lease.block))
+
+  private def leased(lease: Lease, worker: String, nowNanos: Long): Coordinator =
+    val now    = lease.copy(holders = lease.holders.updated(worker, nowNanos))
+    val record = workers(worker)
+    copy(
+      leases = leases.updated(lease.block.number, now),
+      seldom = if now.holders.size == 1 then seldom + now.place else seldom,
+      workers = workers.updated(
+        worker,
+        record.copy(holds = record.holds.updated(lease.block.number, nowNanos))
+      )
+    )
+
+  /** Takes blocks out of what a worker is known to hold. */
+  private def forgotten(worker: String, numbers: Set[Long]): Coordinator =
+    copy(workers = workers.updatedWith(worker)(_.map(record => record.copy(holds = record.holds -- numbers))))
+
+  /** Ends a worker's part in leases; what nobody else has waits again. */
+  private def released(worker: String, held: Map[Long, Long]): Coordinator =
+    held.keys.toVector.sorted.foldRight(this): (number, here) =>
+      here.leases.get(number).filter(_.holders.contains(worker)).fold(here): lease =>
+        val left = lease.copy(holders = lease.holders - worker)
+        if left.holders.isEmpty then
+          here.copy(
+            waiting = here.waiting.prepended(lease.block),
+            leases = here.leases - number,
+            seldom = here.seldom - lease.place,
+            counts = here.counts.copy(lost = here.counts.lost + 1)
+          )
+        else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
+
+object Coordinator:
+  /** A block that is computed, and one that waits for its turn at the worker. */
+  val MostHeld = 2
+
+  /** Within which a block that was given may still be on its way. */
+  val OnItsWay: Long = 2_000_000_000L
+
+  val Patience: Long = 600_000_000_000L
+
+  def apply(patienceNanos: Long = Patience): Coordinator =
+    Coordinator(Queue.empty, Map.empty, TreeSet.empty, Map.empty, Counts(0, 0, 0, 0, 0), patienceNanos)
+
+  /** A block with the workers that have it, and since when. */
+  final case class Lease(block: Block, holders: Map[String, Long]):
+    private[blocks] def place: (Long, Long) = (holders.values.min, block.number)
+
+  /** @param accepted
+    *   blocks whose first answer came
+    * @param repeated
+    *   answers that were not the first
+    * @param doubled
+    *   blocks given out again since nothing else waited
+    * @param lost
+    *   blocks that waited again since their worker was gone
+    * @param overdue
+    *   blocks that waited again since nobody answered for too long
+    */
+  final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)
+
+/** What a worker has done.
+  *
+  * @param holds
+  *   numbers of the blocks that it was given, and when
+  * @param busyNanos
+  *   that it computed, over all its answers
+  */
+final case class WorkerRecord(
+    cores: Int,
+    isHere: Boolean = true,
+    holds: Map[Long, Long] = Map.empty,
+    accepted: Long = 0,
+    repeated: Long = 0,
+    busyNanos: Long = 0
+)
+
+enum Answer:
+  /** The first answer to this block. */
+  case First(block: Block)
+
+  /** The block is done, or is not asked any more. */
+  case Repeated

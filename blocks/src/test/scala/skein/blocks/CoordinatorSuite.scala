@@ -1,0 +1,82 @@
+package skein.blocks
+
+class CoordinatorSuite extends munit.FunSuite:
+  import CoordinatorSimulation.bytes
+
+  private def blocks(count: Int) = Vector.tabulate(count)(number => Block(number, bytes(s"work $number")))
+
+  private val two = Coordinator().joined("anna", 2).joined("ben", 2)
+
+  private def take(state: Coordinator, worker: String, nowNanos: Long = 0, holding: Set[Long] = Set.empty) =
+    val (next, block) = state.asked(worker, holding, nowNanos)
+    (next, block.map(_.number))
+
+  test("blocks go out in their order, two to a worker"):
+    val (a, first)  = take(two.offered(blocks(3)), "anna")
+    val (b, second) = take(a, "anna", holding = Set(0))
+    val (c, third)  = take(b, "anna", holding = Set(0, 1))
+    val (_, other)  = take(c, "ben")
+    assertEquals((first, second, third, other), (Some(0L), Some(1L), None, Some(2L)))
+
+  test("the last blocks go to a second worker, the oldest first, and the first answer counts"):
+    val (a, _)      = take(two.offered(blocks(2)), "anna", nowNanos = 5)
+    val (b, _)      = take(a, "anna", nowNanos = 7, holding = Set(0))
+    val (c, again)  = take(b, "ben", nowNanos = 8)
+    val (d, first)  = c.answered("ben", 0, 10)
+    val (e, second) = d.answered("anna", 0, 10)
+    assertEquals(again, Some(0L))
+    assertEquals((first, second), (Answer.First(blocks(1).head), Answer.Repeated))
+    assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
+    assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
+
+  test("no worker gets a block twice at once"):
+    val (a, _) = take(two.offered(blocks(1)), "anna")
+    assertEquals(take(a, "anna", holding = Set(0))._2, None)
+
+  test("what a lost worker had waits again before all else; what another has, too, does not"):
+    val (a, _)    = take(two.offered(blocks(3)), "anna")
+    val (b, _)    = take(a, "anna", holding = Set(0))
+    val (c, next) = take(b.lost("anna"), "ben")
+    assertEquals((next, c.counts.lost), (Some(0L), 2L))
+    assertEquals(take(b.lost("anna"), "anna")._2, None, "who is gone gets nothing before joining again")
+
+  test("a block that never reached its worker is given again once it cannot be on its way any more"):
+    val (a, _)     = take(two.offered(blocks(1)), "anna", nowNanos = 0)
+    val (b, early) = take(a, "anna", nowNanos = Coordinator.OnItsWay)
+    val (_, late)  = take(b, "anna", nowNanos = Coordinator.OnItsWay + 1)
+    assertEquals((early, late), (None, Some(0L)))
+
+  test("a block is overdue after the patience, with one worker or with two, and its answer still counts"):
+    val start     = Coordinator(patienceNanos = 100).joined("anna", 1).joined("ben", 1).offered(blocks(1))
+    val (one, _)  = take(start, "anna", nowNanos = 0)
+    val (both, _) = take(one, "ben", nowNanos = 50)
+    for state <- Seq(one, both) do
+      assertEquals(state.at(100).counts.overdue, 0L)
+      val late = state.at(101)
+      assertEquals((late.counts.overdue, late.waiting.map(_.number), late.leases.size), (1L, Seq(0L), 0))
+      val (done, answer) = late.answered("anna", 0, 1)
+      assertEquals(answer, Answer.First(blocks(1).head))
+      assert(done.isIdle)
+
+  test("after a cancellation nothing is asked, and what comes is a repeat"):
+    val (a, _)    = take(two.offered(blocks(2)), "anna")
+    val cancelled = a.cancelled
+    assert(cancelled.isIdle)
+    assertEquals(cancelled.answered("anna", 0, 1)._2, Answer.Repeated)
+
+  for (deaths, partitions, name) <-
+      Seq(
+        (0.0, 0.0, "all live"),
+        (360.0, 0.0, "one in ten dies each second"),
+        (60.0, 120.0, "some die, others are cut off")
+      )
+  do
+    test(s"every block counts once, whatever messages do: $name"):
+      for seed <- 1L to 170L do
+        val flown = CoordinatorSimulation(seed, workers = 5, blocks = 60)
+        flown.fly(deaths, partitions, restarts = if seed % 2 == 0 then Seq(10, 25) else Nil)
+        assert(flown.isDone, s"seed $seed: not done")
+        assertEquals(flown.acceptedTwice, 0, s"seed $seed")
+        for number <- 0 until 60 do
+          val work = bytes(s"block $number")
+          assertEquals(flown.ledger(BlockKey.of(work)), CoordinatorSimulation.answer(work), s"seed $seed")

@@ -1,0 +1,63 @@
+package skein.blocks
+
+import java.nio.file.{Files, Path}
+import scala.collection.immutable.ArraySeq
+
+class LedgerSuite extends munit.FunSuite:
+  private val file = FunFixture[Path](
+    _ => Files.createTempDirectory("ledger").resolve(Ledger.Name),
+    path =>
+      Files.deleteIfExists(path)
+      Files.delete(path.getParent)
+  )
+  private def bytes(text: String) = ArraySeq.from(text.getBytes("UTF-8"))
+  private val question            = ArraySeq.from(Array.fill[Byte](32)(7))
+  private def key(number: Int)    = BlockKey.of(bytes(s"work $number"))
+  private def answer(number: Int) = bytes(s"answer $number" * number)
+
+  private def open(path: Path) = Ledger.open(path, question).fold(fail(_), identity)
+
+  private def written(path: Path, count: Int): Unit =
+    val ledger = open(path)
+    for number <- 0 until count do assert(ledger.accept(key(number), answer(number)))
+    ledger.close()
+
+  file.test("an answer is kept once, and is there after the file was opened again"): path =>
+    written(path, 3)
+    val again = open(path)
+    assertEquals(again.accept(key(1), bytes("another")), false)
+    assertEquals((0 until 3).map(number => again.answer(key(number))), (0 until 3).map(n => Some(answer(n))))
+    assertEquals(again.answer(key(3)), None)
+    again.close()
+    assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, 0))
+
+  file.test("cut off anywhere, it holds the whole records before the cut and goes on from there"): path =>
+    written(path, 3)
+    val whole = Files.readAllBytes(path)
+    for length <- 0 until whole.length do
+      Files.write(path, whole.take(length))
+      val ledger = open(path)
+      val there  = (0 until 3).takeWhile(number => ledger.answer(key(number)).contains(answer(number))).size
+      assertEquals(ledger.size, there, s"cut at $length")
+      assert(ledger.accept(key(2), answer(2)) || there == 3)
+      ledger.close()
+      assertEquals(Ledger.audit(path).broken, 0L)
+
+  file.test("a damaged record ends it: what stands behind is computed again"): path =>
+    written(path, 3)
+    val bytes = Files.readAllBytes(path)
+    for at <- 48 until bytes.length do
+      val damaged = bytes.clone()
+      damaged(at) = (damaged(at) ^ 0x10).toByte
+      Files.write(path, damaged)
+      val ledger = open(path)
+      for number <- 0 until 3; found <- ledger.answer(key(number)) do assertEquals(found, answer(number))
+      assert(ledger.size < 3 && ledger.cutOff > 0, s"byte $at")
+      ledger.close()
+
+  file.test("another question's ledger, and a file that is none, are refused by name"): path =>
+    written(path, 1)
+    val other = Ledger.open(path, ArraySeq.from(Array.fill[Byte](32)(8)))
+    assert(other.left.exists(_.contains("another question")), other)
+    Files.writeString(path, "x" * 100)
+    assert(Ledger.open(path, question).left.exists(_.contains("expected a ledger")))
