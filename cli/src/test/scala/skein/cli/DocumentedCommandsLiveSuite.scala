@@ -141,6 +141,10 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
           val (status, told) =
             run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
           (if told.contains("the simulator has no vehicle") then 0 else status, told)
+        case _ if words.exists(_.startsWith("unix:")) =>
+          // Nobody answers at the guide's socket: that is told in a line.
+          val (status, told) = run(words)
+          (if told.contains("expected a policy behind the socket") then 0 else status, told)
         case _ => run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
       val stopped = Set(0, 130, 143)
       assert(
