@@ -23,11 +23,8 @@ private object Observed:
       val due    = team.vehicles.size
       val start  = team.now
       val sensed = team.sensed(start)
-      val events = builder.add(MergePreferred[LoopEvent](
-        due + 1 + sensed.size,
-        eagerComplete = true
-      ).addAttributes(team.named("events")))
-      val view = builder.add(team.viewWithForecast)
+      val events = builder.add(team.events(due + 1 + sensed.size))
+      val view   = builder.add(team.viewWithForecast)
 
       for vehicle <- team.vehicles do
         StreamLoop.sense(team, vehicle, start, stop).map(LoopEvent.Read(_)) ~> events.in(vehicle)

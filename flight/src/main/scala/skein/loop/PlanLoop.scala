@@ -22,11 +22,11 @@ object PlanLoop:
       val single   = team.vehicles.filterNot(planning.vehicles.contains)
       val lead     = team.settings.planning.deadline + planning.deadTime
       val observed = builder.add(Observed(team, stop))
-      val cast    = builder.add(Broadcast[DecisionRequest](single.size + 1).addAttributes(team.named("cast")))
-      val planned =
+      val cast     = builder.add(team.cast(single.size + 1))
+      val planned  =
         builder.add(Broadcast[Vector[Decision]](planning.vehicles.size).addAttributes(team.named("planned")))
-      val steered = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
-      val fan     = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
+      val steered = builder.add(team.steered)
+      val fan     = builder.add(team.fan)
 
       observed ~> cast
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.

@@ -17,9 +17,9 @@ object PredictiveLoop:
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
       val observed = builder.add(Observed(team, stop))
-      val cast = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
-      val steered = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
-      val fan     = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
+      val cast     = builder.add(team.cast())
+      val steered  = builder.add(team.steered)
+      val fan      = builder.add(team.fan)
 
       observed ~> cast
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.

@@ -15,14 +15,11 @@ private object SnapshotGraph:
   ): RunnableGraph[Future[Done]] =
     RunnableGraph.fromGraph(GraphDSL.createGraph(Sink.ignore) { implicit builder => end =>
       import GraphDSL.Implicits.*
-      val sensed = team.sensed(team.now)
-      val events = builder.add(MergePreferred[LoopEvent](
-        1 + sensed.size,
-        eagerComplete = true
-      ).addAttributes(team.named("events")))
-      val cast = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
-      val steered = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
-      val fan     = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
+      val sensed  = team.sensed(team.now)
+      val events  = builder.add(team.events(1 + sensed.size))
+      val cast    = builder.add(team.cast())
+      val steered = builder.add(team.steered)
+      val fan     = builder.add(team.fan)
 
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
       for vehicle <- team.vehicles do

@@ -21,13 +21,10 @@ object StreamLoop:
       val readings = builder.add(Merge[(Int, Reading)](team.vehicles.size).addAttributes(team.named("merge")))
       val start    = team.now
       val sensed   = team.sensed(start)
-      val events   = builder.add(MergePreferred[LoopEvent](
-        1 + sensed.size,
-        eagerComplete = true
-      ).addAttributes(team.named("events")))
-      val cast = builder.add(Broadcast[DecisionRequest](team.vehicles.size).addAttributes(team.named("cast")))
-      val steered = builder.add(Merge[Steering](team.vehicles.size).addAttributes(team.named("steered")))
-      val fan     = builder.add(Broadcast[Steering](3).addAttributes(team.named("fan")))
+      val events   = builder.add(team.events(1 + sensed.size))
+      val cast     = builder.add(team.cast())
+      val steered  = builder.add(team.steered)
+      val fan      = builder.add(team.fan)
 
       for vehicle <- team.vehicles do
         sense(team, vehicle, start, stop).map((vehicle, _)) ~> readings.in(vehicle)

@@ -4,8 +4,8 @@ import java.util.concurrent.atomic.{AtomicLongArray, AtomicReference, AtomicRefe
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
-import org.apache.pekko.stream.Attributes
-import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
+import org.apache.pekko.stream.{Attributes, Graph, UniformFanInShape, UniformFanOutShape}
+import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, Merge, MergePreferred, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
 import skein.flow.*
@@ -45,6 +45,8 @@ final class Team(
 
   private def meter(part: String, vehicle: Int) = meters(s"$part(${fleet.agents(vehicle).name})")
 
+  private val sensing = vehicles.map(meter("sense", _))
+
   private def ageOf(validAt: Option[Instant]): Option[Span] =
     clocks.get.zip(validAt).map((known, valid) => clock.now().since(known.toController(valid)))
 
@@ -63,20 +65,20 @@ final class Team(
   /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] =
     val sequence = asked.getAndIncrement(vehicle)
-    val sensing  = meter("sense", vehicle)
-    sensing.called()
+    val meter    = sensing(vehicle)
+    meter.called()
     crafts(vehicle)
       .read()
       .map:
         case Right(state) =>
           val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
           val reading = Reading(vehicle, sequence, state)
-          sensing.answered()
-          sensing.pass(ageOf(Some(state.validAt)))
+          meter.answered()
+          meter.pass(ageOf(Some(state.validAt)))
           log.read(reading)
           Right(reading)
         case Left(error) =>
-          sensing.answered()
+          meter.answered()
           log.failed(vehicle, s"reading $sequence", error)
           Left(error)
 
@@ -130,6 +132,23 @@ final class Team(
           case Right(readings) => read(vehicle).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
+  /** Events of several sources; before them what was commanded, which ends the loop where it ends. */
+  def events(sources: Int): Graph[MergePreferred.MergePreferredShape[LoopEvent], NotUsed] =
+    MergePreferred[LoopEvent](sources, eagerComplete = true).addAttributes(named("events"))
+
+  /** Gives every request to all that decide. */
+  def cast(deciders: Int =
+    vehicles.size): Graph[UniformFanOutShape[DecisionRequest, DecisionRequest], NotUsed] =
+    Broadcast[DecisionRequest](deciders).addAttributes(named("cast"))
+
+  /** What became of all vehicles' commands. */
+  def steered: Graph[UniformFanInShape[Steering, Steering], NotUsed] =
+    Merge[Steering](vehicles.size).addAttributes(named("steered"))
+
+  /** To the recording, back into the loop, and to its end. */
+  def fan: Graph[UniformFanOutShape[Steering, Steering], NotUsed] =
+    Broadcast[Steering](3).addAttributes(named("fan"))
+
   /** Joins events to views; emits those on which somebody shall decide. */
   def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(TeamView.empty(crafts.size))
 
@@ -140,6 +159,7 @@ final class Team(
     )
 
   private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
+    val meter = meters("view")
     Flow[LoopEvent]
       .statefulMap(() => start)(
         (view, event) =>
@@ -164,7 +184,7 @@ final class Team(
       )
       .collect:
         case Some(request) =>
-          meters("view").pass(ageOf(request.view))
+          meter.pass(ageOf(request.view))
           request
       .addAttributes(named("view"))
 
@@ -231,20 +251,25 @@ final class Team(
         .mapMaterializedValue(_ => NotUsed)
 
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
-    Flow[DecisionRequest]
-      // Not `filter`: it fetches one element ahead, which would grow old in it.
-      .collect { case request if request.deciders(vehicle) => asking(vehicle, request) }
+    requests(vehicle)
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
         decideAt(vehicle, memory, seen._1, seen._2))
-      .via(Tap(decided(_)))
+      .via(decided(vehicle))
 
-  private def asking(vehicle: Int, request: DecisionRequest): (TeamView, Instant) =
-    meter("decide", vehicle).enter()
-    (request.view, clock.now())
+  /** What one vehicle shall decide upon, and when it was asked. */
+  private def requests(vehicle: Int): Flow[DecisionRequest, (TeamView, Instant), NotUsed] =
+    val deciding = meter("decide", vehicle)
+    // Not `filter`: it fetches one element ahead, which would grow old in it.
+    Flow[DecisionRequest].collect:
+      case request if request.deciders(vehicle) =>
+        deciding.enter()
+        (request.view, clock.now())
 
-  private def decided(decision: Decision): Unit =
-    meter("decide", decision.vehicle).pass(ageOf(decision.view))
-    log.decided(decision)
+  private def decided(vehicle: Int): Flow[Decision, Decision, NotUsed] =
+    val deciding = meter("decide", vehicle)
+    Tap: decision =>
+      deciding.pass(ageOf(decision.view))
+      log.decided(decision)
 
   /** Decides by a policy that takes its time. A deadline missed is recorded.
     *
@@ -267,8 +292,7 @@ final class Team(
       Otherwise.Ask((memory: Memory, seen: Seen) =>
         decider.decide(memory, seen._1, seen._2)
       )
-    Flow[DecisionRequest]
-      .collect { case request if request.deciders(vehicle) => asking(vehicle, request) }
+    requests(vehicle)
       .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
         policy(memory, seen)
       ))
@@ -278,7 +302,7 @@ final class Team(
           log.missed(vehicle, miss, instead.map(_.sequence))
           instead
       .collect { case Some(decision) => decision }
-      .via(Tap(decided(_)))
+      .via(decided(vehicle))
 
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
@@ -287,9 +311,10 @@ final class Team(
   def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
     type Seen = (TeamView, Instant)
     val vehicles = planning.vehicles
+    val meter    = meters("plan")
     Flow[DecisionRequest]
       .map: request =>
-        meters("plan").enter()
+        meter.enter()
         (request.view, clock.now())
       .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
         (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
@@ -298,7 +323,7 @@ final class Team(
           (next, (planned, answer))
       ))
       .via(Tap((planned, answer) =>
-        meters("plan").pass(planned.headOption.flatMap(one => ageOf(one.decision.view)))
+        meter.pass(planned.headOption.flatMap(one => ageOf(one.decision.view)))
         for one <- planned do log.planned(one, answer, planning.regardsTeam(one.decision.vehicle))
       ))
       .map((planned, _) => planned.map(_.decision))
@@ -329,6 +354,7 @@ final class Team(
     * cancels.
     */
   def steer(vehicle: Int): Flow[Decision, Steering, NotUsed] =
+    val meter = this.meter("steer", vehicle)
     Flow
       .fromGraph(
         Steer[Decision, Either[VehicleError, Boolean]](
@@ -348,12 +374,11 @@ final class Team(
         )
       )
       .map: event =>
-        steered(vehicle, event)
+        count(meter, event)
         Steering(vehicle, event)
       .addAttributes(named("steer", vehicle))
 
-  private def steered(vehicle: Int, event: Steered[Decision, Either[VehicleError, Boolean]]): Unit =
-    val steering = meter("steer", vehicle)
+  private def count(steering: StageMeter, event: Steered[Decision, Either[VehicleError, Boolean]]): Unit =
     event match
       case Steered.Sent(decision, _) =>
         steering.called()
@@ -366,12 +391,14 @@ final class Team(
   def record: Sink[Steering, ?] = Sink.foreach(log.steered).addAttributes(named("record"))
 
   /** The moves sent. */
-  def sent: Flow[Steering, Move, NotUsed] = Flow[Steering]
-    .collect:
-      case Steering(_, Steered.Sent(decision, at)) =>
-        meters("sent").pass()
-        decision.move(at)
-    .addAttributes(named("sent"))
+  def sent: Flow[Steering, Move, NotUsed] =
+    val meter = meters("sent")
+    Flow[Steering]
+      .collect:
+        case Steering(_, Steered.Sent(decision, at)) =>
+          meter.pass()
+          decision.move(at)
+      .addAttributes(named("sent"))
 
   /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
   def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
