@@ -12,13 +12,6 @@ abstract class PredictedVehicles {
   void start(int worlds) {}
 
   /**
-   * Takes a reading that entered the forecast, which is the one that predictions start from until the
-   * next. Only for models that know more of a vehicle than a reading tells.
-   */
-  void correct(
-      Directions sent, int reading, Courses courses, int course) {}
-
-  /**
    * Carries a reading forward.
    *
    * @param seenX positions and velocities that were read, north and east, by place; what is predicted

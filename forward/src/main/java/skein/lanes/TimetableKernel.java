@@ -14,7 +14,7 @@ final class TimetableKernel {
   static final int WORLDS = LanePolicy.WORLDS;
 
   /** Kinds of a timetable's operations. */
-  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, CORRECT = 5;
+  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4;
 
   private final TimetableAgents[] agents;
   private final TimetableScores scores;
@@ -89,8 +89,6 @@ final class TimetableKernel {
               courses,
               operations[field + 4],
               withVelocity);
-      case CORRECT ->
-          agent.vehicles.predicted.correct(agent.headings, first * WORLDS, courses, operations[field + 3]);
       default ->
           agent.decide(
               agents,

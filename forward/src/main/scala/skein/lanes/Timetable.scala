@@ -74,7 +74,7 @@ private[skein] object Timetable:
     ): Unit
     Compiler(notes, vehicles, durationS, model).result
 
-  import TimetableKernel.{ACT, CORRECT, DECIDE, LOOK, PREDICT, SCORE}
+  import TimetableKernel.{ACT, DECIDE, LOOK, PREDICT, SCORE}
 
   /** The same loop; what stands still is predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
@@ -122,19 +122,16 @@ private[skein] object Timetable:
     /** `DECIDE` in a duel: the number of the opponent's decision that is known. */
     var opponent: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `PREDICT`: the number of the reading that is carried forward; `CORRECT`: of the one that entered. */
+    /** `PREDICT`: the number of the reading that is carried forward. */
     var from: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `PREDICT` and `CORRECT`: the number of the course, among [[courses]]. */
+    /** `PREDICT`: the number of the course, among [[courses]]. */
     var course: Array[Int] = Array.ofDim[Int](capacity)
 
     val courses: mutable.ArrayBuffer[Course] = mutable.ArrayBuffer.empty
 
     /** By vehicle: the readings that entered the forecast. */
     private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
-
-    /** By vehicle: how many of them were noted. */
-    private val corrected = Array.ofDim[Int](vehicles)
 
     // What was predicted last: of which forecast, for a decision when, in which view.
     private var predictedOf: Forecast = null
@@ -189,29 +186,10 @@ private[skein] object Timetable:
           .fold(predictor.plotter)(_.plotter.next(legs.map(plotted(vehicle, _))))
         entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, plotter)
 
-    /** The reading that a forecast starts from; what its model remembers is noted up to there. */
-    private def newest(vehicle: Int, forecast: Forecast, atNs: Long): Entered =
-      val readings = entered(vehicle)
-      val validAt  = forecast.tracks(vehicle).get.newest.validAt.toNanos
-      val last     = readings.lastIndexWhere(_.validAtNs == validAt)
-      while corrected(vehicle) <= last do
-        for flown <- readings(corrected(vehicle)).plotter.here do
-          noteCourse(CORRECT, vehicle, atNs, 0, readings(corrected(vehicle)), flown)
-        corrected(vehicle) += 1
-      readings(last)
-
-    private def noteCourse(
-        what: Int,
-        vehicle: Int,
-        atNs: Long,
-        which: Int,
-        start: Entered,
-        flown: Course
-    ): Unit =
-      courses += flown
-      note(what, vehicle, atNs * 1e-9, which)
-      from(size - 1) = start.reading
-      course(size - 1) = courses.size - 1
+    /** The reading that a forecast starts from. */
+    private def newest(vehicle: Int, forecast: Forecast): Entered =
+      val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
+      entered(vehicle).findLast(_.validAtNs == validAt).get
 
     private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
       CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
@@ -223,10 +201,12 @@ private[skein] object Timetable:
         predictedAtNs = atNs
         val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
         predicted = pictureOf(Array.tabulate(vehicles): vehicle =>
-          val start = newest(vehicle, forecast, atNs)
-          val flown = start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
+          val start = newest(vehicle, forecast)
+          courses += start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
           looks(vehicle) += 1
-          noteCourse(PREDICT, vehicle, atNs, looks(vehicle), start, flown)
+          note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
+          from(size - 1) = start.reading
+          course(size - 1) = courses.size - 1
           looks(vehicle))
       predicted
 
@@ -303,7 +283,6 @@ private[skein] object Timetable:
           case ACT     => act(event, i)
           case SCORE   => score(event, i)
           case PREDICT => predict(event, i)
-          case CORRECT => correct(event, i)
       Timetable(
         vehicles,
         java.util.Arrays.copyOf(operations, size * Fields),
@@ -345,9 +324,9 @@ private[skein] object Timetable:
           if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
-        case ACT               => headings(agent).usedAt(notes.number(event), at)
-        case SCORE             => usedAt(notes.view(event), at)
-        case PREDICT | CORRECT =>
+        case ACT     => headings(agent).usedAt(notes.number(event), at)
+        case SCORE   => usedAt(notes.view(event), at)
+        case PREDICT =>
           readings(agent).usedAt(notes.from(event), at)
           decidedUpon(agent)(notes.from(event)) = true
           for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
@@ -415,12 +394,6 @@ private[skein] object Timetable:
         readings(vehicle).take(notes.number(event)),
         place(vehicle, event)
       )
-      size += 1
-      release(vehicle, event, at)
-
-    private def correct(event: Int, at: Int): Unit =
-      val vehicle = notes.agent(event)
-      operation(CORRECT, vehicle, readings(vehicle).place(notes.from(event)), place(vehicle, event))
       size += 1
       release(vehicle, event, at)
 

@@ -19,9 +19,6 @@ private[lanes] trait CoursePlotter:
   /** That of the next reading, after these legs. */
   def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter
 
-  /** The course that the model flew to this reading, if that matters to what it remembers. */
-  def here: Option[Course] = None
-
   /** From the reading on through these legs. */
   def predicted(legs: Vector[CoursePlotter.Leg]): Course
 
