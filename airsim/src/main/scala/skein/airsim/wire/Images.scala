@@ -2,7 +2,7 @@ package skein.airsim.wire
 
 import skein.rpc.{Encoded, MessageWriter}
 import skein.units.Instant
-import upack.{Binary, Str}
+import upack.{Binary, Msg, Str}
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
@@ -58,29 +58,20 @@ private[skein] object ImageResponse:
     images.foreach(write(out, _))
 
   private def write(out: MessageWriter, image: ImageResponse): Unit =
-    def key(name: String): Unit = out.value(Str(name))
+    def field(name: String, value: Msg): Unit =
+      out.value(Str(name))
+      out.value(value)
     out.map(12)
-    key("image_data_uint8")
-    out.value(Binary(image.image_data_uint8))
-    key("image_data_float")
+    field("image_data_uint8", Binary(image.image_data_uint8))
+    out.value(Str("image_data_float"))
     out.floats(image.image_data_float)
-    key("camera_position")
-    out.value(writeMsg(image.camera_position))
-    key("camera_name")
-    out.value(Str(image.camera_name))
-    key("camera_orientation")
-    out.value(writeMsg(image.camera_orientation))
-    key("time_stamp")
-    out.value(writeMsg(image.time_stamp))
-    key("message")
-    out.value(Str(image.message))
-    key("pixels_as_float")
-    out.value(writeMsg(image.pixels_as_float))
-    key("compress")
-    out.value(writeMsg(image.compress))
-    key("width")
-    out.value(writeMsg(image.width))
-    key("height")
-    out.value(writeMsg(image.height))
-    key("image_type")
-    out.value(writeMsg(image.image_type))
+    field("camera_position", writeMsg(image.camera_position))
+    field("camera_name", Str(image.camera_name))
+    field("camera_orientation", writeMsg(image.camera_orientation))
+    field("time_stamp", writeMsg(image.time_stamp))
+    field("message", Str(image.message))
+    field("pixels_as_float", writeMsg(image.pixels_as_float))
+    field("compress", writeMsg(image.compress))
+    field("width", writeMsg(image.width))
+    field("height", writeMsg(image.height))
+    field("image_type", writeMsg(image.image_type))
