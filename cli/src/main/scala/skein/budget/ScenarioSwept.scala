@@ -4,9 +4,9 @@ import java.util.concurrent.Executors
 import java.util.concurrent.atomic.AtomicLong
 import skein.flight.VirtualFlights
 import skein.forward.*
-import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
-import skein.optimise.{Tally, WeightedSum}
+import skein.optimise.{Tally, TeamEvaluator, WeightedSum}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
 import skein.search.{Conditions, TeamQuestion}
 import skein.signal.{LatencyDistribution, LatencyProfile}
@@ -25,7 +25,7 @@ final case class ScenarioQuestion(
   def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
 
   /** Of the sum, where all terms agree. */
-  def unit: String = if terms.map(_._2.unit).distinct.size == 1 then terms.head._2.unit else ""
+  def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
 
   /** How it is flown: forward by lanes or world by world where forward simulation knows its policies and measures, else in
     * flights in virtual time.
@@ -85,25 +85,15 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
   private val candidate =
     TeamCandidate(plane, TeamQuestion.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
 
-  private def fly(timing: LoopTiming, links: Vector[DelayTable], episodes: Int, isCancelled: () => Boolean) =
-    val worlds = new TeamWorlds:
-      def size: Int                            = links.size * episodes
-      def key(world: Int): Int                 = WorldRandom.key(question.seed, 0, world % episodes)
-      def link(world: Int): Delays             = links(world / episodes)
-      def candidate(world: Int): TeamCandidate = TeamSwept.this.candidate
-    val outcomes = TeamBatch(timing, flown.vehicle.response, question.threads).fly(worlds, isCancelled)
-    Either.cond(
-      outcomes.flown == worlds.size,
-      Vector.tabulate(links.size): link =>
-        Tally.of(episodes): episode =>
-          question.terms.indices.map(term =>
-            question.terms(term)._1 * outcomes.values(term)(link * episodes + episode)
-          ).sum,
-      Swept.Stopped
-    )
+  private def fly(timing: LoopTiming, link: DelayTable, episodes: Int, isCancelled: () => Boolean) =
+    val batch = TeamBatch(timing, flown.vehicle.response, question.threads)
+    TeamEvaluator(batch, _ => candidate, link, question.terms.map(_._1), question.seed)
+      .talliesUnless(isCancelled)(Vector(Vector.empty), 0 until episodes)
+      .map(_.head)
+      .toRight(Swept.Stopped)
 
   def truth: Either[String, Double] =
-    fly(flown.paused.timing, Vector(DelayTable.none), 1, () => false).map(_.head.mean)
+    fly(flown.paused.timing, DelayTable.none, 1, () => false).map(_.mean)
 
   def engine(links: Vector[LatencyDistribution]): String =
     val batch = TeamBatch(flown.timing, flown.vehicle.response, question.threads)
@@ -123,7 +113,7 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
       case (before, (link, number)) =>
         before.flatMap: all =>
           onProgress(number.toLong * episodes)
-          fly(flown.timing, Vector(DelayTable.of(link)), episodes, isCancelled).map(all ++ _)
+          fly(flown.timing, DelayTable.of(link), episodes, isCancelled).map(all :+ _)
 
 /** Whatever its measures are: each is taken of a whole flight.
   *

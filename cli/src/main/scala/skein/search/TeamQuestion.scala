@@ -226,4 +226,4 @@ final case class TeamSetup(
   def text: String = s"${direction.text} $formula"
 
   /** Of the value, where all terms agree. */
-  def unit: String = if terms.map(_._2.unit).distinct.size == 1 then terms.head._2.unit else ""
+  def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)

@@ -132,7 +132,7 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         case "--help" => run(words)
         case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words ++ Seq("--view-port", "0"))
-        case "link"   =>
+        case "link"                               =>
           // The ports of the guide may be taken here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))

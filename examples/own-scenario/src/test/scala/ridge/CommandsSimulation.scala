@@ -55,7 +55,9 @@ class CommandsSimulation extends munit.FunSuite:
 
   folder.test("budget tells how much latency it bears"): out =>
     val swept = run(
-      "budget --objective lowest-view --means 2 --jitters 2 --episodes 2 --duration 20s --out".split(' ') :+ out.toString*
+      "budget --objective lowest-view --means 2 --jitters 2 --episodes 2 --duration 20s --out".split(
+        ' '
+      ) :+ out.toString*
     )
     assertEquals(swept._1, 0, swept._2)
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)

@@ -87,8 +87,7 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
   def text: String = s"${direction.text} $formula"
 
   /** Of the value, where all terms agree. */
-  def unit: String =
-    if terms.map((_, measure) => measure.unit).distinct.size == 1 then terms.head._2.unit else ""
+  def unit: String = WeightedSum.unit(terms)(_.unit)
 
 object Objective:
   private val Forms =

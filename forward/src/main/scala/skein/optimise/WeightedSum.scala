@@ -63,6 +63,10 @@ object WeightedSum:
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))
 
+  /** Of the sum, where all terms agree; else empty. */
+  def unit[M](terms: Vector[(Double, M)])(of: M => String): String =
+    if terms.map((_, measure) => of(measure)).distinct.size == 1 then of(terms.head._2) else ""
+
   /** As [[parse]] reads it back, without the direction. */
   def formula[M](terms: Vector[(Double, M)])(text: M => String): String = terms.zipWithIndex
     .map:
