@@ -51,7 +51,7 @@ final case class ViewOptions(
           ).flatMap: server =>
             Console.err.println(
               s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}; " +
-                s"token of the page's abort: ${token.word}"
+                s"token of the page's controls: ${token.word}"
             )
             try body
             finally Edge.await(server.close()): Unit

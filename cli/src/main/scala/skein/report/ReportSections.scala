@@ -29,11 +29,11 @@ object ReportSections:
       )
     )
 
-  /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut short. */
+  /** All of a report, for the terminal: the tables, how far each loop was off the truth, and what was cut short or paused. */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
       Verdict.sentences(set.deviations),
-      SummaryTables.cutShort(set)
+      SummaryTables.cutShort(set) ++ SummaryTables.paused(set)
     ).filter(_.nonEmpty).map(_.mkString("\n"))
     (Section.text(of(set)) +: said).mkString("\n\n")
 

@@ -105,6 +105,14 @@ object SummaryTables:
       val flown = s"${fixed(summary.flownS, 1)} of ${brief(summary.flight.duration.toSeconds)} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
 
+  /** A line for each flight that somebody paused. */
+  def paused(set: FlightSet): Vector[String] =
+    for
+      summary <- set.all
+      span    <- summary.paused
+    yield s"${summary.flight.id} was paused for ${fixed(span.toSeconds, 1)} s: its vehicles hovered and nothing was decided, " +
+      "which its times and distances include; it stands beside no other flight"
+
   /** How to read [[twins]]. */
   val twinsNote: String =
     "Kolmogorov-Smirnov distance between live and virtual decisions, by role, of the age of the own data and " +

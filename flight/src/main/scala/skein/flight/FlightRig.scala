@@ -5,6 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Success
 import skein.airsim.*
+import skein.flow.Hold
 import skein.link.*
 import skein.loop.*
 import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
@@ -22,6 +23,7 @@ final class FlightRig private[skein] (
     val plan: FlightPlan,
     val flight: Flight,
     val graph: RunningGraph,
+    hold: Hold,
     watch: Watch,
     vigil: Vigil,
     startedAt: Instant,
@@ -33,6 +35,17 @@ final class FlightRig private[skein] (
   def stop(why: String): Unit =
     watch.offer(Event(clock.now(), EventKind.Aborted, None, why))
     flight.stop()
+
+  /** Its vehicles hover and nobody decides, until it continues or ends; its time runs on. Who did it is recorded. */
+  def pause(who: String): Unit =
+    if hold.hold() then watch.offer(Event(clock.now(), EventKind.Paused, None, who))
+
+  /** Lets it go on where it is paused. Who did it is recorded. */
+  def continue(who: String): Unit =
+    if hold.isHeld then
+      // Before the first decision that it lets be made.
+      watch.offer(Event(clock.now(), EventKind.Continued, None, who))
+      hold.release(): Unit
 
   /** How far it is, in the controller's time. */
   def progress: Progress =
@@ -166,6 +179,7 @@ final class FlightRigs(
           plan,
           flight,
           RunningGraph(team.meters),
+          team.hold,
           watch,
           vigil,
           startedAt,

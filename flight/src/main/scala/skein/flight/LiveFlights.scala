@@ -24,7 +24,23 @@ final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSys
     * @param why
     *   as it is recorded
     */
-  def stop(id: String, why: String): Unit = rigs.find(_.plan.id == id).foreach(_.stop(why))
+  def stop(id: String, why: String): Unit = of(id).foreach(_.stop(why))
+
+  /** One flight's vehicles hover and nobody decides, until it continues or ends; its time runs on.
+    *
+    * @param who
+    *   as it is recorded
+    */
+  def pause(id: String, who: String): Unit = of(id).foreach(_.pause(who))
+
+  /** Lets one flight go on that is paused.
+    *
+    * @param who
+    *   as it is recorded
+    */
+  def continue(id: String, who: String): Unit = of(id).foreach(_.continue(who))
+
+  private def of(id: String) = rigs.find(_.plan.id == id)
 
   /** The graphs as they run, by the flights' names. */
   def graphs: Vector[(id: String, graph: RunningGraph)] = rigs.map(rig => (rig.plan.id, rig.graph))

@@ -2,8 +2,10 @@ package skein.loop
 
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
+import scala.concurrent.duration.DurationInt
 import scala.util.{Failure, Success}
 import skein.port.{SteppedTime, VehicleError}
 import skein.record.EventKind
@@ -15,7 +17,7 @@ import skein.units.*
   *
   * A step ends the flight at the first error, since a truth with gaps is none. The length of each step is verified
   * against the simulator's clock. However it ends, the simulator is let run again and the vehicles are told to hover;
-  * both are tried up to [[UntilCertain.Attempts]] times.
+  * both are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
   */
 object PausedLoop:
 
@@ -51,7 +53,14 @@ private final class PausedFlight(
     Step(0, team.vehicles.map(team.start).toVector, TeamView.empty(team.vehicles.size))
 
   def next(step: Step): Future[Option[(Step, Done)]] =
-    if step.number == steps || stopped() then Future.successful(None) else fly(step)
+    if step.number == steps || stopped() then Future.successful(None)
+    else if team.hold.isHeld then
+      for
+        // So that a simulator that falls silent is noticed.
+        _    <- orFail(team.readAll())
+        next <- after(PausedFlight.LookEvery)(next(step))
+      yield next
+    else fly(step)
 
   /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it stands still,
     * moves that missed their cancellation never end, and those of four vehicles hold every worker it has.
@@ -118,6 +127,10 @@ private final class PausedFlight(
 
   private def standsStill(error: VehicleError) =
     s"the simulator could not be let run again and stands still: ${error.message}"
+
+private object PausedFlight:
+  /** Whether the team is still held. */
+  private val LookEvery = 100.millis
 
 /** Why a loop cannot go on. */
 final class LoopFailed(message: String) extends RuntimeException(message)

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.snapshot.{MaterializerState, RunningInterpreter}
 import scala.concurrent.Future
 
-/** The parts of a graph and what leads from one to another.
+/** The parts of a graph and what leads from one to another, both by names.
   *
   * @param stages
   *   their names
@@ -33,7 +33,8 @@ object LoopGraph:
         other      <- reached(at)
         to         <- names(other) if to != from
       yield (from = from, to = to)
-    LoopGraph(names.flatten.distinct, edges.distinct)
+    // The interpreter has no order of its own.
+    LoopGraph(names.flatten.distinct.sorted, edges.distinct.sortBy(edge => (edge.from, edge.to)))
 
 /** The graph of a loop under way, as its interpreter runs it: the parts that bear one of these meters. */
 final class RunningGraph(val meters: StageMeters)(using system: ActorSystem):

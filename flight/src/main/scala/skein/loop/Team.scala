@@ -34,6 +34,9 @@ final class Team(
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
+  /** While it is held, all vehicles hover and nobody decides; they are still asked where they are. */
+  val hold: Hold = Hold()
+
   /** What passes the parts of the loop's graph. */
   val meters: StageMeters = StageMeters()
 
@@ -167,7 +170,7 @@ final class Team(
             case LoopEvent.Seen(readings, deciders) =>
               val seen =
                 readings.foldLeft(view)(_.withReading(_))
-              (seen, Option.when(seen.isComplete)(DecisionRequest(seen, deciders)))
+              (seen, request(seen, deciders))
             case LoopEvent.Read(reading) if view.isNews(reading) => (view.withReading(reading), None)
             case LoopEvent.Read(reading)                         =>
               log.note(EventKind.Dropped, Some(reading.vehicle), s"reading ${reading.sequence} is stale")
@@ -177,7 +180,7 @@ final class Team(
               val command = Commanded(move.decision, setpoint(move), move.sentAt)
               (view.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
             case LoopEvent.Due(deciders) =>
-              (view, Option.when(view.isComplete)(DecisionRequest(view, deciders)))
+              (view, request(view, deciders))
             case LoopEvent.Heard(evidence) => (view.withEvidence(evidence), None)
         ,
         _ => None
@@ -187,6 +190,9 @@ final class Team(
           meter.pass(ageOf(request.view))
           request
       .addAttributes(named("view"))
+
+  private def request(view: TeamView, deciders: Set[Int]) =
+    Option.when(view.isComplete && !hold.isHeld)(DecisionRequest(view, deciders))
 
   /** Once a period, in the middle between two questions, everybody is due to decide. */
   def due(start: Instant): Source[LoopEvent, NotUsed] =
@@ -369,8 +375,9 @@ final class Team(
             log.note(
               EventKind.Dropped,
               Some(vehicle),
-              s"command ${decision.sequence} not sent before the end"
-            )
+              s"command ${decision.sequence} not sent ${if hold.isHeld then "while the flight is paused" else "before the end"}"
+            ),
+          hold
         )
       )
       .map: event =>

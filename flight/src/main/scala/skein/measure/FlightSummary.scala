@@ -26,6 +26,8 @@ import skein.units.*
   *   absent where nothing was planned
   * @param predictions
   *   absent where nothing was predicted
+  * @param paused
+  *   for how long its vehicles were told to hover: that lies within all times and distances of the flight
   */
 final case class FlightSummary(
     flight: Flight,
@@ -42,11 +44,13 @@ final case class FlightSummary(
     result: Option[Result] = None,
     policy: Option[String] = None,
     planning: Option[PlanningSummary] = None,
-    predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None
+    predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None,
+    paused: Option[Span] = None
 ):
-  /** The loop, the policy where it is not the paper's, and whether the flight was cut short. */
+  /** The loop, the policy where it is not the paper's, and whether the flight was cut short or paused. */
   def name: String =
-    flight.loop + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short")
+    flight.loop + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short") +
+      paused.fold("")(_ => ", paused")
 
   /** What the recording calls its scenario, without what it tells of it. */
   def scenarioName: String = flight.scenario.takeWhile(_ != ',')
@@ -56,16 +60,16 @@ final case class FlightSummary(
     distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
 
   /** What stands for the flight when it is compared with others: its scenario's first measure. Nothing, where it was cut
-    * short.
+    * short or paused.
     */
   def headline: Option[Double] =
-    result.filter(_ => cutShort.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
+    result.filter(_ => cutShort.isEmpty && paused.isEmpty).flatMap(_.measured.headOption).flatMap(_.value)
 
-  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut short stands
-    * beside it.
+  /** The paper's flight of this loop over this link, if this is of the paper's game. No flight that was cut short or
+    * paused stands beside it.
     */
   def published: Option[Published.Flight] =
-    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined then None
+    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined || paused.isDefined then None
     else flight.loopKind.flatMap(Published.flight(_, flight.link))
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)
@@ -109,7 +113,8 @@ object FlightSummary:
       yield Result.of(known, flown),
       recording.heading.parameters.find(_.name == "policy").map(_.value),
       PlanningSummary.of(recording),
-      PredictionErrors.of(recording, scenario.forall(isOfDuels))
+      PredictionErrors.of(recording, scenario.forall(isOfDuels)),
+      paused(recording)
     )
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
@@ -127,6 +132,14 @@ object FlightSummary:
         .orElse(Option.when(seen + Margin < recording.flight.duration)(
           s"the recording breaks off after ${Numbers.fixed(seen.toSeconds, 1)} of ${Numbers.fixed(recording.flight.duration.toSeconds, 1)} s"
         ))
+
+  private def paused(recording: Recording): Option[Span] =
+    val turns = recording.events.filter(event => Set(EventKind.Paused, EventKind.Continued)(event.kind))
+    val end   = recording.ending.map(_.at).orElse(recording.decisions.lastOption.map(_.decidedAt))
+    val times = turns.map(_.at) ++ Option.when(turns.size % 2 == 1)(end).flatten
+    Option.when(times.size > 1)(times.grouped(2).collect { case Vector(from, to) =>
+      to.since(from)
+    }.reduce(_ + _))
 
   /** What may be missing at both ends of a flight between its time and its readings. */
   private val Margin = Span.ofSeconds(2)

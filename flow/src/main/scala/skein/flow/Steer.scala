@@ -28,6 +28,8 @@ enum Steered[+C, +R]:
   * would be three at the simulator. So the vehicle is parked first, and again until it says so; then it is known what
   * flies. What is on its way from upstream meanwhile is the first to be sent.
   *
+  * While it is held, the vehicle is parked and what comes from upstream is not sent.
+  *
   * '''Emits when''' a command is sent or has ended, and downstream demands.
   * '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while an answer is
   * lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for downstream.
@@ -49,13 +51,16 @@ enum Steered[+C, +R]:
   *   whether a result says that its command neither flies nor is on its way: the vehicle's own answer, or that it was
   *   never sent. A future that fails never says so
   * @param onUnsent
-  *   told of a command that waited for the vehicle to be parked when upstream completed
+  *   told of a command that waited for the vehicle to be parked when upstream completed, or came while it was held
+  * @param hold
+  *   parks the vehicle for as long as it is held
   */
 final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Steer.MostOutstanding)(
     send: C => Future[R],
     park: () => Future[R],
     isCertain: R => Boolean = (_: R) => true,
-    onUnsent: C => Unit = (_: C) => ()
+    onUnsent: C => Unit = (_: C) => (),
+    hold: Hold = Hold()
 ) extends GraphStage[FlowShape[C, Steered[C, R]]]:
   import Steered.*
 
@@ -74,6 +79,7 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
       private var parking                      = false
       private var lastAttempts                 = 0
       private var parked                       = false
+      private var resting                      = false
       private var events: Queue[Steered[C, R]] = Queue.empty
 
       private val ended = getAsyncCallback[(C, Try[R])]: (command, result) =>
@@ -88,11 +94,21 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
         outstanding -= 1
         parking = false
         val certain = result.toOption.exists(isCertain)
+        resting = certain
         if certain then doubtful = false else parkAt = clock.now() + Steer.ParkAgain
         if last then parked = certain || lastAttempts == Steer.LastAttempts
         goOn()
 
-      override def preStart(): Unit = pull(in)
+      private val turned = getAsyncCallback[Unit]: _ =>
+        resting = false
+        goOn()
+      private var listening = () => ()
+
+      override def preStart(): Unit =
+        listening = hold.listen(() => turned.invoke(()))
+        pull(in)
+
+      override def postStop(): Unit = listening()
 
       def onPush(): Unit =
         held = Some(grab(in))
@@ -113,12 +129,14 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
           for (event, rest) <- events.dequeueOption do
             events = rest
             push(out, event)
-        if parked then
+        if parked || hold.isHeld then
           held.foreach(onUnsent)
           held = None
+        if parked then
           if outstanding == 0 && events.isEmpty then completeStage()
         else if outstanding < mostOutstanding && !parking then
-          if doubtful || isClosed(in) && held.isEmpty then from(parkAt)(parkNow(last = isClosed(in)))
+          if doubtful || isClosed(in) && held.isEmpty || hold.isHeld && !resting then
+            from(parkAt)(parkNow(last = isClosed(in)))
           else if held.isDefined then held.foreach(sendNow)
           else if !hasBeenPulled(in) && events.size < Steer.EventLimit then from(nextAt)(pull(in))
 

@@ -251,3 +251,50 @@ class SteerSuite extends munit.FunSuite:
       afterLossUs(failures = 0, every = 100.millis).take(4),
       Vector(0L -> "move 0", 100_000L -> "move 1", 150_500L -> "hover", 200_000L -> "move 2")
     )
+
+  test("while it is held the vehicle is parked until it says so, and what comes is not sent"):
+    val heard = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val start              = clock.now()
+        var heard              = Vector.empty[(Long, String)]
+        var hovers             = 0
+        def hear(what: String) = heard :+= (clock.now().since(start).toNanos / 1_000_000, what)
+        val vehicle            = FarVehicle(10.millis)
+        def park()             =
+          hear("hover")
+          hovers += 1
+          if hovers == 1 then Future.successful("lost") else vehicle.hover()
+        def send(command: Int) =
+          hear(s"move $command")
+          vehicle.send(command)
+        val hold                            = Hold()
+        def at(time: Int)(act: => Unit) = system.scheduler.scheduleOnce(time.millis)(act): Unit
+        at(150)(hold.hold(): Unit)
+        at(450)(hold.release(): Unit)
+        Source
+          .tick(0.millis, 100.millis, ())
+          .zipWithIndex
+          .map(_._2.toInt)
+          .takeWithin(650.millis)
+          .via(Steer(Span.Zero, clock)(send, park, _ != "lost", command => hear(s"unsent $command"), hold))
+          .runWith(Sink.ignore)
+          .map(_ => heard)
+      .value
+    assertEquals(
+      heard,
+      Vector(
+        0L   -> "move 0",
+        100L -> "move 1",
+        150L -> "hover",
+        200L -> "unsent 2",
+        250L -> "hover",
+        300L -> "unsent 3",
+        400L -> "unsent 4",
+        500L -> "move 5",
+        600L -> "move 6",
+        650L -> "hover"
+      )
+    )

@@ -85,6 +85,7 @@ object FlightTopics:
     case command: Command                      => command.vehicle
     case answer: Acknowledgement               => answer.vehicle
     case truth: Truth                          => truth.vehicle
+    case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"
     case event: Event                          => event.vehicle.getOrElse("")
     case _: Latency | _: Ending                => ""
     case _: Flight | _: Parameter | _: Vehicle => number.toString

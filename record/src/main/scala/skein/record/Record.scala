@@ -378,5 +378,11 @@ enum EventKind:
   /** A call was given up because the flight had ended. */
   case Cancelled
 
+  /** Somebody paused the flight: its vehicles hover and nobody decides, while its time runs on. */
+  case Paused
+
+  /** Somebody let a paused flight go on. */
+  case Continued
+
   /** The flight ended before its time. */
   case Aborted

@@ -10,5 +10,5 @@ final case class Written(rows: Map[String, Long]):
     Written(more.foldLeft(rows):
       case (rows, (table, count)) => rows.updated(table, rows.getOrElse(table, 0L) + count))
 
-private[record] object Written:
+private[skein] object Written:
   val nothing: Written = Written(Map.empty)

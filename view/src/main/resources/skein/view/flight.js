@@ -13,6 +13,7 @@ export class Flight {
     this.events = [];
     this.eventCount = 0;
     this.ending = undefined;
+    this.paused = false;
     this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series() };
     this.unacknowledged = new Map();
   }
@@ -59,6 +60,7 @@ export class Flight {
         this.eventCount++;
         this.events.unshift({ at, kind: row.kind, vehicle: row.vehicle ?? "", detail: row.detail });
         this.events.length = Math.min(this.events.length, mostEvents);
+        if (row.kind === "Paused" || row.kind === "Continued") this.paused = row.kind === "Paused";
         break;
       case "ending": this.ending = row; break;
     }
@@ -86,6 +88,7 @@ export class Flight {
     for (const series of Object.values(this.series)) series.cut(at);
     this.events = this.events.filter(event => event.at <= at);
     this.eventCount = this.events.length;
+    this.paused = this.events.find(event => event.kind === "Paused" || event.kind === "Continued")?.kind === "Paused";
     this.ending = undefined;
   }
 

@@ -17,7 +17,7 @@ export class Graph {
     this.before = undefined;
   }
 
-  /** @param graph stages {name, entered, passed, unanswered, ageMs} and edges {from, to}; counts since the start
+  /** @param graph stages {name, column, row, entered, passed, unanswered, ageMs} and edges {from, to}; counts since the start
    *  @param at seconds */
   draw(graph, at) {
     this.section.hidden = graph.stages.length === 0;
@@ -33,7 +33,7 @@ export class Graph {
   }
 
   build({ stages, edges }) {
-    const spots = layOut(stages.map(stage => stage.name), edges);
+    const spots = new Map(stages.map(({ name, column, row }) => [name, { x: margin + column * (wide + columnGap), y: margin + row * (high + rowGap) }]));
     const right = Math.max(...[...spots.values()].map(spot => spot.x)) + wide + margin;
     const bottom = Math.max(...[...spots.values()].map(spot => spot.y)) + high + margin + 26;
     const root = svg("svg", { viewBox: `0 0 ${right} ${bottom}`, width: right, height: bottom, "font-family": "sans-serif", "font-size": 11 });
@@ -92,33 +92,4 @@ export class Graph {
       waits.textContent = unanswered === undefined ? "" : `${unanswered} unanswered`;
     }
   }
-}
-
-/** A column for each part: one behind the last of those that lead to it, where nothing turns back. */
-function layOut(names, edges) {
-  const leads = new Map(names.map(name => [name, edges.filter(edge => edge.from === name).map(edge => edge.to)]));
-  const state = new Map(), forward = [];
-  const visit = name => {
-    state.set(name, "open");
-    for (const to of leads.get(name)) {
-      if (state.get(to) === "open") continue;
-      forward.push({ from: name, to });
-      if (!state.has(to)) visit(to);
-    }
-    state.set(name, "done");
-  };
-  const sources = names.filter(name => edges.every(edge => edge.to !== name));
-  for (const name of [...sources, ...names]) if (!state.has(name)) visit(name);
-  const column = new Map(names.map(name => [name, 0]));
-  for (let round = 0; round < names.length; round++)
-    for (const { from, to } of forward) column.set(to, Math.max(column.get(to), column.get(from) + 1));
-  const columns = new Map();
-  for (const name of names) columns.set(column.get(name), [...(columns.get(column.get(name)) ?? []), name].sort());
-  const tallest = Math.max(...[...columns.values()].map(all => all.length));
-  const spots = new Map();
-  for (const [at, all] of columns) all.forEach((name, place) => spots.set(name, {
-    x: margin + at * (wide + columnGap),
-    y: margin + (place + (tallest - all.length) / 2) * (high + rowGap),
-  }));
-  return spots;
 }

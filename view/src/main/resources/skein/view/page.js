@@ -18,11 +18,17 @@ window.skein = { get flight() { return flight; }, get recorded() { return record
 function show(id) {
   connection?.close();
   find("graph").hidden = true;
-  find("control").hidden = !flights.find(one => one.id === id).canAbort;
+  find("control").hidden = !flights.find(one => one.id === id).controls.length;
   find("control").onsubmit = async event => {
     event.preventDefault();
-    if (!confirm(`End ${id} now? All its vehicles hover.`)) return;
-    const answer = await fetch(`/flights/${id}/abort`, { method: "POST", headers: { "X-Skein-Token": find("token").value } });
+    const [path, question] = {
+      pause: [`/flights/${id}/pause`, `Pause ${id}? All its vehicles hover, and nothing is decided until it continues.`],
+      continue: [`/flights/${id}/continue`, `Let ${id} go on? Its vehicles move.`],
+      hover: ["/hover", "Pause all flights? All vehicles hover."],
+      abort: [`/flights/${id}/abort`, `End ${id} now? All its vehicles hover.`],
+    }[event.submitter.id];
+    if (!confirm(question)) return;
+    const answer = await fetch(path, { method: "POST", headers: { "X-Skein-Token": find("token").value } });
     find("answer").textContent = await answer.text();
   };
   flight = new Flight();
@@ -82,7 +88,11 @@ function words() {
     `${heading.scenario}, loop ${heading.loop}, link ${heading.link}, ${heading.simulator} simulator, seed ${heading.seed}`;
   find("time").textContent = `${flight.now.toFixed(1)} s`;
   if (flight.ending) state(`${flight.ending.how}${flight.ending.reason ? `: ${flight.ending.reason}` : ""}`, flight.ending.how === "Failed");
-  else if (find("state").textContent !== "not connected") state("", false);
+  else if (find("state").textContent !== "not connected") state(flight.paused ? "paused: vehicles hover, nothing is decided" : "", flight.paused);
+  find("pause").hidden = flight.paused;
+  find("continue").hidden = !flight.paused;
+  find("hover").hidden = flights.filter(one => one.controls.includes("pause")).length < 2;
+  find("control").classList.toggle("over", Boolean(flight.ending));
   if (recorded && !seeking) {
     find("seek").max = Number(recorded.end - recorded.start) / 1e9;
     find("seek").value = flight.now;

@@ -11,17 +11,14 @@ import skein.units.{Instant, Span}
 final case class Gauge(topic: Topic, every: Span, json: () => String)
 
 /** A flight while it flies. Its records come by `feed`.
-  *
-  * @param abort
-  *   ends it, if viewers may
   */
 final class LiveShow(
     heading: Heading,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
     limits: Limits = Limits(),
-    val abort: Option[() => Unit] = None
-) extends Show(heading.flight.id, heading.vehicles.map(_.name).toVector, gauges.map(_.topic), limits):
+    override val controls: Map[Control, () => Unit] = Map.empty
+) extends Show(heading.flight.id, LiveShow.topics(heading) ++ gauges.map(_.topic), limits):
   private val topics = FlightTopics(heading.vehicles.map(_.name).toVector, heading.flight.startedAt)
   private var number = 0L
   private var asked  = gauges.map(_ => Instant.ofNanos(0))
@@ -53,5 +50,7 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
+  private def topics(heading: Heading) = FlightTopics.all(heading.vehicles.map(_.name).toVector)
+
   /** Records of one turn: so that no turn lasts for long. */
   private val MostAtOnce = 8192

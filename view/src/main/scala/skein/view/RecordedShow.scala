@@ -13,7 +13,7 @@ final class RecordedShow(
     vehicles: Vector[String],
     rows: Vector[(Long, Record)],
     limits: Limits = Limits()
-) extends Show(id, vehicles, Vector.empty, limits):
+) extends Show(id, FlightTopics.all(vehicles), limits):
 
   /** When each row was known: of one that says no time, that of the row before. */
   private val times: Array[Instant] =
@@ -35,8 +35,6 @@ final class RecordedShow(
   showUntil(start)
 
   def recorded: Option[(Instant, Instant)] = Some((playback.start, playback.end))
-
-  def abort: Option[() => Unit] = None
 
   def turn(now: Instant): Unit = synchronized:
     val position = playback.position(now)

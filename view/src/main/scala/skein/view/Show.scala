@@ -3,27 +3,24 @@ package skein.view
 import org.apache.pekko.util.ByteString
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
-import skein.record.{FlightMessage, FlightTopics, Topic}
+import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
-/** One flight as viewers see it: channels, the newest of each, and who is looking. Of each topic and vehicle the newest
+/** One flight, or other work, as viewers see it: channels, the newest of each, and who is looking. Of each topic and vehicle the newest
   * message is kept, so that whoever comes later, or looks at a time that stands still, sees where everything is.
   *
   * All its methods may be called from any thread; none waits but for another of them.
   *
   * @param id
   *   of the flight
-  * @param more
-  *   topics besides those of every flight
   */
 abstract class Show private[view] (
     val id: String,
-    vehicles: Vector[String],
-    more: Vector[Topic],
+    topics: Vector[Topic],
     val limits: Limits
 ):
   val channels: Vector[Channel] =
-    (FlightTopics.all(vehicles) ++ more).zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
+    topics.zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
 
   private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
   private val newest  = mutable.Map.empty[Long, VectorMap[String, Shown]]
@@ -36,8 +33,8 @@ abstract class Show private[view] (
   /** Begin and end, where it can be played. */
   def recorded: Option[(Instant, Instant)]
 
-  /** Ends the flight: the vehicles hover. Absent where there is nothing to end. */
-  def abort: Option[() => Unit]
+  /** What may be done to it from the page. */
+  def controls: Map[Control, () => Unit] = Map.empty
 
   /** Looks what is new, and tells the viewers. To be called some forty times a second. */
   def turn(now: Instant): Unit

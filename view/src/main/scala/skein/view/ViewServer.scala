@@ -18,7 +18,8 @@ import skein.units.Clock
   * viewers and flights share no threads.
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
-  * them; `POST /flights/ID/abort` ends one, with the token in the header `X-Skein-Token`.
+  * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` do that to one
+  * ([[Control]]), and `POST /hover` pauses all.
   */
 final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
     system: ActorSystem
@@ -145,17 +146,27 @@ object ViewServer:
             Page.file(path).getOrElse(refused(StatusCodes.NotFound, s"nothing at $path"))
           case (_, HttpMethods.POST) =>
             val said = request.headers.find(_.is("x-skein-token")).fold("")(_.value)
-            (shows.find(show => path == s"/flights/${show.id}/abort").flatMap(_.abort), token.is(said)) match
+            (wanted(path, shows), token.is(said)) match
               case (_, false) =>
                 refused(StatusCodes.Unauthorized, "expected the token that the terminal shows")
-              case (None, _)           => refused(StatusCodes.NotFound, s"nothing to be done at $path")
-              case (Some(abort), true) =>
+              case (Vector(), _) => refused(StatusCodes.NotFound, s"nothing to be done at $path")
+              case (acts, true)  =>
                 request.discardEntityBytes()
-                abort()
-                Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "it ends; the vehicles hover")
+                acts.foreach(_())
+                Page.answer(StatusCodes.OK, ContentTypes.`text/plain(UTF-8)`, "done")
           case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
 
-  private def listed(show: Show) = ujson.Obj("id" -> show.id, "canAbort" -> show.abort.isDefined)
+  private def listed(show: Show) =
+    ujson.Obj("id" -> show.id, "controls" -> ujson.Arr.from(Control.values.filter(show.controls.contains).map(_.word)))
+
+  private def wanted(path: String, shows: Vector[Show]): Vector[() => Unit] =
+    if path == "/hover" then shows.flatMap(_.controls.get(Control.Pause))
+    else
+      for
+        show    <- shows
+        control <- Control.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
+        act     <- show.controls.get(control)
+      yield act
 
   private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: Counts)(using
       ActorSystem

@@ -2,7 +2,7 @@ package skein.view
 
 import java.net.Socket
 import java.nio.ByteOrder
-import java.util.concurrent.atomic.AtomicInteger
+import java.util.concurrent.ConcurrentLinkedQueue
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
@@ -26,10 +26,15 @@ class ViewServerLiveSuite extends munit.FunSuite:
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
   private final class Served(limits: Limits):
-    val aborted: AtomicInteger = AtomicInteger()
+    val done: ConcurrentLinkedQueue[Control] = ConcurrentLinkedQueue()
     val feed: Feed             = Feed()
     val show: LiveShow         =
-      LiveShow(Samples.heading, feed, limits = limits, abort = Some(() => aborted.incrementAndGet(): Unit))
+      LiveShow(
+        Samples.heading,
+        feed,
+        limits = limits,
+        controls = Control.values.map(control => control -> (() => done.add(control): Unit)).toMap
+      )
     val shows: Shows = Shows()
     shows.add(show)
     val server: ViewServer = await(
@@ -134,7 +139,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
           !text.replace("http://www.w3.org/2000/svg", "").contains("://") || path == "/connection.js",
           path
         )
-    assertEquals(get(port, "/flights")._2, """[{"id":"stream-vpn","canAbort":true}]""")
+    assertEquals(get(port, "/flights")._2, """[{"id":"stream-vpn","controls":["pause","continue","abort"]}]""")
     for path <- Seq("/../build.sbt", "/page.js/", "/nothing", "//etc/passwd") do
       assertEquals(get(port, path)._1, 404)
 
@@ -160,7 +165,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     sockets.foreach(_.close())
     assertEquals(served.server.counts.refusedConnections, 995L)
 
-  serving().test("a flight is ended by whoever has the token, and by nobody else"): served =>
+  serving().test("a flight is paused, continued and ended by whoever has the token, and by nobody else"): served =>
     val port                                          = served.server.port
     def post(path: String, headers: HttpHeader*): Int =
       val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
@@ -173,6 +178,10 @@ class ViewServerLiveSuite extends munit.FunSuite:
     assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
     assertEquals(post(path, right, Origin("https://evil.example")), 403)
     assertEquals(post("/flights/other/abort", right), 404)
-    assertEquals(served.aborted.get, 0)
-    assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
-    assertEquals(served.aborted.get, 1)
+    assertEquals(post("/hover"), 401)
+    assertEquals(post("/flights/stream-vpn/hover", right), 404)
+    assertEquals(served.done.size, 0)
+    for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
+      assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
+    import Control.*
+    assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))

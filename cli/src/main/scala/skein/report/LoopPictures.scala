@@ -1,0 +1,51 @@
+package skein.report
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.DurationInt
+import scala.concurrent.{Await, Future}
+import skein.figures.{Figure, GraphFigure}
+import skein.loop.{LoopGraph, LoopInstance, LoopKind}
+import skein.measure.FlightSet
+import skein.policy.Fleet
+
+/** The graphs of the loops that flew, each as it runs for the vehicles of its flight. */
+object LoopPictures:
+
+  type Loop = (kind: LoopKind, fleet: Fleet)
+
+  /** Beyond it nobody could read the picture. */
+  private val MostVehicles = 8
+
+  /** Blocks: it starts each loop for a moment. */
+  def of(set: FlightSet): Vector[Figure] =
+    val flown =
+      for
+        summary <- set.all
+        kind    <- summary.flight.loopKind
+        known   <- summary.scenario
+      yield (kind = kind, fleet = known.fleet)
+    drawn(flown.filter(_.fleet.agents.size <= MostVehicles).distinctBy(loop => (loop.kind, loop.fleet.agents.map(_.name))))
+
+  /** Those of the loops that are graphs. Blocks. */
+  def drawn(loops: Seq[Loop]): Vector[Figure] =
+    for (loop, graph) <- graphs(loops)
+    yield Figure(
+      s"graph-${loop.kind.label}" + (if loop.fleet.agents.size == 2 then "" else s"-${loop.fleet.agents.size}"),
+      s"The graph of ${loop.kind.label}",
+      "The parts by their names in the code and what leads where, as the stream's interpreter runs them; below, what is fed back.",
+      GraphFigure(graph)
+    )
+
+  private[report] def graphs(loops: Seq[Loop]): Vector[(Loop, LoopGraph)] =
+    if loops.isEmpty then Vector.empty
+    else
+      given system: ActorSystem = ActorSystem("skein-graphs")
+      import system.dispatcher
+      try
+        val asked = Future.traverse(loops.toVector)(loop =>
+          LoopInstance.graph(loop.kind, loop.fleet).map(_.map((loop, _)))
+        )
+        Await.result(asked, Within).flatten
+      finally Await.result(system.terminate(), Within): Unit
+
+  private val Within = 30.seconds

@@ -1,0 +1,40 @@
+package skein.report
+
+import java.nio.file.{Files, Path}
+import skein.docs.Documentation
+import skein.loop.{GraphLayout, LoopKind}
+import skein.plot.Svg
+import skein.scenario.PaperDuel
+
+/** The graphs in `docs/pictures` are those that run. `cli/Test/runMain skein.report.drawLoops` draws them anew. */
+class LoopPicturesLiveSuite extends munit.FunSuite:
+
+  test("the documentation's graphs are drawn from the loops as they run"):
+    for (file, text) <- LoopPicturesLiveSuite.drawn do
+      assertEquals(Files.readString(file), text, s"$file: draw it anew")
+
+  test("parts stand behind those that lead to them, but for what is fed back"):
+    val turns = LoopPicturesLiveSuite.graphs.map: (kind, graph) =>
+      val spots = GraphLayout.of(graph)
+      assertEquals(spots.keySet, graph.stages.toSet)
+      assertEquals(spots.values.toSet.size, graph.stages.size, "two parts in one place")
+      kind -> graph.edges.filter(edge => spots(edge.to).column <= spots(edge.from).column).map(_.from).toSet
+    assert(turns.exists(_._2 == Set("feed back")), turns.toString)
+    assertEquals(turns.filterNot(turned => turned._2 == Set("feed back")), Vector.empty)
+
+object LoopPicturesLiveSuite:
+  private val kinds = LoopKind.values.toVector.filterNot(_ == LoopKind.Paused)
+  private val fleet = PaperDuel().fleet
+
+  private lazy val figures = LoopPictures.drawn(kinds.map((_, fleet)))
+
+  def drawn: Vector[(Path, String)] = figures.map(figure =>
+    Documentation.root.resolve(s"docs/pictures/${figure.name}.svg") -> Svg.file(figure.drawing, figure.title)
+  )
+
+  def graphs: Vector[(LoopKind, skein.loop.LoopGraph)] = LoopPictures.graphs(kinds.map((_, fleet))).map((loop, graph) => (loop.kind, graph))
+
+@main def drawLoops(): Unit =
+  for (file, text) <- LoopPicturesLiveSuite.drawn do
+    Files.writeString(file, text): Unit
+    println(file)

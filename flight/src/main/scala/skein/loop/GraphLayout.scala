@@ -1,0 +1,51 @@
+package skein.loop
+
+/** Where a part of a graph is drawn.
+  *
+  * @param column
+  *   from 0, from left to right
+  * @param row
+  *   from 0, from top to bottom; halves occur, since columns are centred
+  */
+final case class Spot(column: Int, row: Double)
+
+/** A column for each part: one behind the last of those that lead to it, where nothing turns back. Within a column, parts
+  * stand as those do that lead to them.
+  */
+object GraphLayout:
+
+  def of(graph: LoopGraph): Map[String, Spot] =
+    val forward = withoutTurns(graph)
+    val before  = forward.groupMap(_.to)(_.from).withDefaultValue(Vector.empty)
+    val columns = (1 to graph.stages.size).foldLeft(graph.stages.map(_ -> 0).toMap): (columns, _) =>
+      forward.foldLeft(columns)((known, edge) =>
+        known.updated(edge.to, known(edge.to).max(known(edge.from) + 1))
+      )
+    val inColumns = graph.stages.groupBy(columns).toVector.sortBy(_._1)
+    val tallest   = inColumns.map(_._2.size).maxOption.getOrElse(0)
+    inColumns.foldLeft(Map.empty[String, Spot]): (placed, column) =>
+      val (at, names) = column
+      def above(name: String) =
+        val rows = before(name).flatMap(placed.get).map(_.row)
+        if rows.isEmpty then 0.0 else rows.sum / rows.size
+      placed ++ names.sortBy(name => (above(name), name)).zipWithIndex.map((name, row) =>
+        name -> Spot(at, row + (tallest - names.size) / 2.0)
+      )
+
+  /** The edges but for those that close a circle, as one finds them who follows them from the sources. */
+  private def withoutTurns(graph: LoopGraph): Vector[(from: String, to: String)] =
+    val leads                            = graph.edges.groupBy(_.from).withDefaultValue(Vector.empty)
+    type Found = (closed: Set[String], forward: Vector[(from: String, to: String)])
+    def visit(found: Found, name: String, open: Set[String]): Found =
+      if found.closed(name) then found
+      else
+        val passed = leads(name).filterNot(edge => open(edge.to) || edge.to == name).foldLeft(found): (found, edge) =>
+          val on = visit(found, edge.to, open + name)
+          (closed = on.closed, forward = on.forward :+ edge)
+        (closed = passed.closed + name, forward = passed.forward)
+    val sources = graph.stages.filter(name => graph.edges.forall(_.to != name))
+    (sources ++ graph.stages)
+      .foldLeft((closed = Set.empty[String], forward = Vector.empty[(from: String, to: String)]))((found, name) =>
+        visit(found, name, Set.empty)
+      )
+      .forward

@@ -1,0 +1,51 @@
+package skein.loop
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.duration.DurationInt
+import scala.concurrent.{Future, Promise}
+import skein.policy.{Action, Fleet}
+import skein.port.{Sensor, VehicleError, VehiclePort}
+import skein.record.{Record, RecordError, Recorder, Written}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** The graph of a loop without a flight: it is started for vehicles that never say where they are, its interpreter is
+  * asked of its parts, and it is ended.
+  */
+object LoopInstance:
+
+  /** Absent for `paused`, which is no graph but a sequence of steps. */
+  def graph(kind: LoopKind, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
+      system: ActorSystem
+  ): Future[Option[LoopGraph]] =
+    import system.dispatcher
+    if kind == LoopKind.Paused then Future.successful(None)
+    else
+      val crafts                              = fleet.agents.map(agent => Silent(agent.policy.sensors))
+      val team                                = Team(fleet, crafts, Clock.system, Forgetting, settings)
+      val flight                              = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
+      val running                             = RunningGraph(team.meters)
+      // A graph that has just been started tells nothing yet.
+      def ask(left: Int): Future[Option[LoopGraph]] = running.shape().flatMap:
+        case None if left > 0 => after(AskEvery)(ask(left - 1))
+        case found            => Future.successful(found)
+      ask(MostAsked).andThen(_ => flight.stop())
+
+  private val AskEvery  = 10.millis
+  private val MostAsked = 500
+
+  private final class Silent(asked: Set[String]) extends VehiclePort:
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]]                 = Future.never
+    def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = Future.never
+    def hover(): Future[Either[VehicleError, Boolean]]                            = Future.successful(Right(true))
+    override val sensors: Map[String, Sensor] = asked.iterator.map(_ -> Unheard).toMap
+
+  private object Unheard extends Sensor:
+    def columns: Vector[String]                                          = Vector.empty
+    def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = Future.never
+
+  private object Forgetting extends Recorder:
+    def offer(record: Record): Unit                   = ()
+    val failure: Future[RecordError]                  = Promise[RecordError]().future
+    def close(): Future[Either[RecordError, Written]] = Future.successful(Right(Written.nothing))

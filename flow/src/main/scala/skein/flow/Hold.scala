@@ -1,0 +1,33 @@
+package skein.flow
+
+import java.util.concurrent.ConcurrentHashMap
+import java.util.concurrent.atomic.AtomicBoolean
+
+/** Whether vehicles hold their positions for now, whatever is decided: one switch for all that share it, thrown from any
+  * thread. [[Steer]] obeys it.
+  */
+final class Hold:
+  private val holding   = AtomicBoolean()
+  private val listeners = ConcurrentHashMap.newKeySet[() => Unit]()
+
+  def isHeld: Boolean = holding.get
+
+  /** @return
+    *   whether that was new
+    */
+  def hold(): Boolean = turn(to = true)
+
+  /** @return
+    *   whether that was new
+    */
+  def release(): Boolean = turn(to = false)
+
+  private def turn(to: Boolean): Boolean =
+    val isNew = holding.compareAndSet(!to, to)
+    if isNew then listeners.forEach(_())
+    isNew
+
+  /** Calls `listener` at every change, until what it returns is called. */
+  private[flow] def listen(listener: () => Unit): () => Unit =
+    listeners.add(listener): Unit
+    () => listeners.remove(listener): Unit

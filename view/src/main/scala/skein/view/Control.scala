@@ -1,0 +1,14 @@
+package skein.view
+
+/** What may be done to a flight from the page. */
+enum Control:
+  /** Its vehicles hover and nobody decides, until it continues or ends. */
+  case Pause
+
+  case Continue
+
+  /** Ends it; its vehicles hover. */
+  case Abort
+
+  /** In a path and in a list. */
+  def word: String = toString.toLowerCase(java.util.Locale.ROOT)
