@@ -19,8 +19,9 @@ private[cli] final class OnShow(shows: Shows):
     val feed  = Feed()
     val gauge = GraphGauge()
     graphs.put(heading.flight.id, gauge): Unit
-    val graph = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
-    val controls = Control.values.map(control => control -> (() => flown.get.foreach(act(control, _, heading.flight.id))))
+    val graph    = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
+    val controls =
+      Control.values.map(control => control -> (() => flown.get.foreach(act(control, _, heading.flight.id))))
     shows.add(LiveShow(heading, feed, Vector(graph), controls = controls.toMap))
     feed.offer
 
@@ -57,10 +58,10 @@ private[cli] final class GraphGauge:
     if shape.get.isEmpty then
       given ExecutionContext = ExecutionContext.parasitic
       for known <- running do known.shape().foreach(found => shape.compareAndSet(None, found))
-    val known                    = shape.get.getOrElse(LoopGraph(Vector.empty, Vector.empty))
-    val spots                    = GraphLayout.of(known)
-    val meters                  = running.fold(Map.empty)(_.meters.all.map(meter => meter.name -> meter).toMap)
-    val stages                  = known.stages.map: name =>
+    val known  = shape.get.getOrElse(LoopGraph(Vector.empty, Vector.empty))
+    val spots  = GraphLayout.of(known)
+    val meters = running.fold(Map.empty)(_.meters.all.map(meter => meter.name -> meter).toMap)
+    val stages = known.stages.map: name =>
       val spot  = spots(name)
       val stage = ujson.Obj("name" -> name, "column" -> spot.column, "row" -> spot.row)
       for meter <- meters.get(name) do

@@ -71,7 +71,12 @@ object GraphFigure:
   private def back(from: Box, to: Box, below: Double) =
     val end = Point(to.middle, to.bottom)
     val way =
-      Vector(Point(from.middle, from.bottom), Point(from.middle, below), Point(to.middle, below), end.moved(0, 6))
+      Vector(
+        Point(from.middle, from.bottom),
+        Point(from.middle, below),
+        Point(to.middle, below),
+        end.moved(0, 6)
+      )
     Vector(Shape.Path(way, Some(turns)), tip(end, Vector((-4, 7), (4, 7)), turns.colour))
 
   private def tip(at: Point, corners: Vector[(Int, Int)], colour: Colour) =

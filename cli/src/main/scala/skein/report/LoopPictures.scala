@@ -24,13 +24,16 @@ object LoopPictures:
         kind    <- summary.flight.loopKind
         known   <- summary.scenario
       yield (kind = kind, fleet = known.fleet)
-    drawn(flown.filter(_.fleet.agents.size <= MostVehicles).distinctBy(loop => (loop.kind, loop.fleet.agents.map(_.name))))
+    drawn(flown.filter(_.fleet.agents.size <= MostVehicles).distinctBy(loop =>
+      (loop.kind, loop.fleet.agents.map(_.name))
+    ))
 
   /** Those of the loops that are graphs. Blocks. */
   def drawn(loops: Seq[Loop]): Vector[Figure] =
     for (loop, graph) <- graphs(loops)
     yield Figure(
-      s"graph-${loop.kind.label}" + (if loop.fleet.agents.size == 2 then "" else s"-${loop.fleet.agents.size}"),
+      s"graph-${loop.kind.label}" + (if loop.fleet.agents.size == 2 then ""
+                                     else s"-${loop.fleet.agents.size}"),
       s"The graph of ${loop.kind.label}",
       "The parts by their names in the code and what leads where, as the stream's interpreter runs them; below, what is fed back.",
       GraphFigure(graph)

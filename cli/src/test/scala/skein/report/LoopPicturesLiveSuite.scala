@@ -32,7 +32,8 @@ object LoopPicturesLiveSuite:
     Documentation.root.resolve(s"docs/pictures/${figure.name}.svg") -> Svg.file(figure.drawing, figure.title)
   )
 
-  def graphs: Vector[(LoopKind, skein.loop.LoopGraph)] = LoopPictures.graphs(kinds.map((_, fleet))).map((loop, graph) => (loop.kind, graph))
+  def graphs: Vector[(LoopKind, skein.loop.LoopGraph)] =
+    LoopPictures.graphs(kinds.map((_, fleet))).map((loop, graph) => (loop.kind, graph))
 
 @main def drawLoops(): Unit =
   for (file, text) <- LoopPicturesLiveSuite.drawn do

@@ -30,7 +30,15 @@ class ReportSuite extends munit.FunSuite:
   folder.test("a report is one page and its figures, each as SVG and PNG"): folder =>
     val output = Report.write(set, folder.resolve("new/folder")).fold(fail(_), identity)
     assert(Files.size(output.page) > 10_000)
-    val names = Set("trajectories", "distance", "observations", "latency", "deviation", "graph-sequential", "graph-stream")
+    val names = Set(
+      "trajectories",
+      "distance",
+      "observations",
+      "latency",
+      "deviation",
+      "graph-sequential",
+      "graph-stream"
+    )
     assertEquals(ReportFigures.of(set).map(_.name).toSet, names)
     for name <- names do
       val stem     = output.page.resolveSibling("figures").resolve(name).toString

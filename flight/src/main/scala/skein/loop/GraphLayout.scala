@@ -24,7 +24,7 @@ object GraphLayout:
     val inColumns = graph.stages.groupBy(columns).toVector.sortBy(_._1)
     val tallest   = inColumns.map(_._2.size).maxOption.getOrElse(0)
     inColumns.foldLeft(Map.empty[String, Spot]): (placed, column) =>
-      val (at, names) = column
+      val (at, names)         = column
       def above(name: String) =
         val rows = before(name).flatMap(placed.get).map(_.row)
         if rows.isEmpty then 0.0 else rows.sum / rows.size
@@ -34,18 +34,20 @@ object GraphLayout:
 
   /** The edges but for those that close a circle, as one finds them who follows them from the sources. */
   private def withoutTurns(graph: LoopGraph): Vector[(from: String, to: String)] =
-    val leads                            = graph.edges.groupBy(_.from).withDefaultValue(Vector.empty)
+    val leads = graph.edges.groupBy(_.from).withDefaultValue(Vector.empty)
     type Found = (closed: Set[String], forward: Vector[(from: String, to: String)])
     def visit(found: Found, name: String, open: Set[String]): Found =
       if found.closed(name) then found
       else
-        val passed = leads(name).filterNot(edge => open(edge.to) || edge.to == name).foldLeft(found): (found, edge) =>
-          val on = visit(found, edge.to, open + name)
-          (closed = on.closed, forward = on.forward :+ edge)
+        val passed = leads(name).filterNot(edge => open(edge.to) || edge.to == name).foldLeft(found):
+          (found, edge) =>
+            val on = visit(found, edge.to, open + name)
+            (closed = on.closed, forward = on.forward :+ edge)
         (closed = passed.closed + name, forward = passed.forward)
     val sources = graph.stages.filter(name => graph.edges.forall(_.to != name))
     (sources ++ graph.stages)
-      .foldLeft((closed = Set.empty[String], forward = Vector.empty[(from: String, to: String)]))((found, name) =>
-        visit(found, name, Set.empty)
+      .foldLeft((closed = Set.empty[String], forward = Vector.empty[(from: String, to: String)]))(
+        (found, name) =>
+          visit(found, name, Set.empty)
       )
       .forward

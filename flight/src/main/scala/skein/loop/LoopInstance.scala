@@ -22,10 +22,10 @@ object LoopInstance:
     import system.dispatcher
     if kind == LoopKind.Paused then Future.successful(None)
     else
-      val crafts                              = fleet.agents.map(agent => Silent(agent.policy.sensors))
-      val team                                = Team(fleet, crafts, Clock.system, Forgetting, settings)
-      val flight                              = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
-      val running                             = RunningGraph(team.meters)
+      val crafts  = fleet.agents.map(agent => Silent(agent.policy.sensors))
+      val team    = Team(fleet, crafts, Clock.system, Forgetting, settings)
+      val flight  = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
+      val running = RunningGraph(team.meters)
       // A graph that has just been started tells nothing yet.
       def ask(left: Int): Future[Option[LoopGraph]] = running.shape().flatMap:
         case None if left > 0 => after(AskEvery)(ask(left - 1))
@@ -36,13 +36,13 @@ object LoopInstance:
   private val MostAsked = 500
 
   private final class Silent(asked: Set[String]) extends VehiclePort:
-    def read(): Future[Either[VehicleError, Stamped[Kinematics]]]                 = Future.never
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]]               = Future.never
     def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = Future.never
-    def hover(): Future[Either[VehicleError, Boolean]]                            = Future.successful(Right(true))
-    override val sensors: Map[String, Sensor] = asked.iterator.map(_ -> Unheard).toMap
+    def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
+    override val sensors: Map[String, Sensor]          = asked.iterator.map(_ -> Unheard).toMap
 
   private object Unheard extends Sensor:
-    def columns: Vector[String]                                          = Vector.empty
+    def columns: Vector[String]                                       = Vector.empty
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = Future.never
 
   private object Forgetting extends Recorder:

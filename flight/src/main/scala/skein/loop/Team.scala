@@ -375,7 +375,9 @@ final class Team(
             log.note(
               EventKind.Dropped,
               Some(vehicle),
-              s"command ${decision.sequence} not sent ${if hold.isHeld then "while the flight is paused" else "before the end"}"
+              s"command ${decision.sequence} not sent ${
+                  if hold.isHeld then "while the flight is paused" else "before the end"
+                }"
             ),
           hold
         )

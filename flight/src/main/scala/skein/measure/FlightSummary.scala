@@ -69,7 +69,8 @@ final case class FlightSummary(
     * paused stands beside it.
     */
   def published: Option[Published.Flight] =
-    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined || paused.isDefined then None
+    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined || paused.isDefined then
+      None
     else flight.loopKind.flatMap(Published.flight(_, flight.link))
 
   def count(kind: EventKind): Int = events.getOrElse(kind, 0)

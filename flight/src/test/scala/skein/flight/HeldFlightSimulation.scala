@@ -59,7 +59,8 @@ class HeldFlightSimulation extends munit.FunSuite:
               // The paused loop waits for nothing but the simulator, and is over at once.
               val at = Span.ofSeconds(if loop == LoopKind.Paused then 0 else 3)
               if loop == LoopKind.Paused then pause() else after(at)(pause())
-              after(at + Span.ofSeconds(5))(if stopping then rig.stop("by the test") else rig.continue("by the test"))
+              after(at + Span.ofSeconds(5))(if stopping then rig.stop("by the test")
+              else rig.continue("by the test"))
               rig.landed.map(landed => (landed.outcome, recorder))
       .value
 
@@ -75,15 +76,18 @@ class HeldFlightSimulation extends munit.FunSuite:
       )
       val Vector(from, to) = turns.map(_.at): @unchecked
       // Decisions of the paused loop bear the simulator's time, which stands still.
-      val sent      = recording.commands.map(_.sentAt)
-      val settled   = from + Span.ofMillis(500)
+      val sent    = recording.commands.map(_.sentAt)
+      val settled = from + Span.ofMillis(500)
       assertEquals(sent.count(at => at > settled && at < to), 0)
       assert(sent.count(_ >= to) > 20, sent.size.toString)
       if loop != LoopKind.Paused then
         assert(sent.count(_ < from) > 10, sent.size.toString)
         assertEquals(recording.decisions.count(made => made.decidedAt > settled && made.decidedAt < to), 0)
         for made <- recording.decisions if made.decidedAt > to do
-          assert(made.observations.ownAge < Span.ofMillis(400), s"decision ${made.sequence} at ${made.decidedAt.since(to)}")
+          assert(
+            made.observations.ownAge < Span.ofMillis(400),
+            s"decision ${made.sequence} at ${made.decidedAt.since(to)}"
+          )
         // To hover is to hold the place where that was heard: a fast vehicle comes back to it.
         for name <- recording.heading.vehicles.map(_.name) do
           val held = recording.readings

@@ -270,7 +270,7 @@ class SteerSuite extends munit.FunSuite:
         def send(command: Int) =
           hear(s"move $command")
           vehicle.send(command)
-        val hold                            = Hold()
+        val hold                        = Hold()
         def at(time: Int)(act: => Unit) = system.scheduler.scheduleOnce(time.millis)(act): Unit
         at(150)(hold.hold(): Unit)
         at(450)(hold.release(): Unit)

@@ -75,20 +75,20 @@ object FlightTopics:
     case _                       => None
 
   private def keyOf(number: Long, record: Record): String = record match
-    case reading: Reading                      => reading.vehicle
-    case measured: Measurement                 => s"${measured.vehicle} ${measured.sensor}"
-    case sensing: Sensing                      => s"${sensing.vehicle} ${sensing.sensor}"
-    case decision: Decision                    => decision.vehicle
-    case sighting: Sighting                    => s"${sighting.decider} ${sighting.vehicle}"
-    case planned: Planned                      => planned.vehicle
-    case prediction: Prediction                => s"${prediction.decider} ${prediction.vehicle}"
-    case command: Command                      => command.vehicle
-    case answer: Acknowledgement               => answer.vehicle
-    case truth: Truth                          => truth.vehicle
+    case reading: Reading        => reading.vehicle
+    case measured: Measurement   => s"${measured.vehicle} ${measured.sensor}"
+    case sensing: Sensing        => s"${sensing.vehicle} ${sensing.sensor}"
+    case decision: Decision      => decision.vehicle
+    case sighting: Sighting      => s"${sighting.decider} ${sighting.vehicle}"
+    case planned: Planned        => planned.vehicle
+    case prediction: Prediction  => s"${prediction.decider} ${prediction.vehicle}"
+    case command: Command        => command.vehicle
+    case answer: Acknowledgement => answer.vehicle
+    case truth: Truth            => truth.vehicle
     case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"
-    case event: Event                          => event.vehicle.getOrElse("")
-    case _: Latency | _: Ending                => ""
-    case _: Flight | _: Parameter | _: Vehicle => number.toString
+    case event: Event                                              => event.vehicle.getOrElse("")
+    case _: Latency | _: Ending                                    => ""
+    case _: Flight | _: Parameter | _: Vehicle                     => number.toString
 
   private def publishedAt(record: Record): Option[Instant] = record match
     case prediction: Prediction => Some(prediction.madeAt)

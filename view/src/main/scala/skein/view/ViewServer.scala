@@ -157,7 +157,10 @@ object ViewServer:
           case _ => refused(StatusCodes.MethodNotAllowed, "expected GET or POST")
 
   private def listed(show: Show) =
-    ujson.Obj("id" -> show.id, "controls" -> ujson.Arr.from(Control.values.filter(show.controls.contains).map(_.word)))
+    ujson.Obj(
+      "id"       -> show.id,
+      "controls" -> ujson.Arr.from(Control.values.filter(show.controls.contains).map(_.word))
+    )
 
   private def wanted(path: String, shows: Vector[Show]): Vector[() => Unit] =
     if path == "/hover" then shows.flatMap(_.controls.get(Control.Pause))

@@ -27,8 +27,8 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private final class Served(limits: Limits):
     val done: ConcurrentLinkedQueue[Control] = ConcurrentLinkedQueue()
-    val feed: Feed             = Feed()
-    val show: LiveShow         =
+    val feed: Feed                           = Feed()
+    val show: LiveShow                       =
       LiveShow(
         Samples.heading,
         feed,
@@ -139,7 +139,10 @@ class ViewServerLiveSuite extends munit.FunSuite:
           !text.replace("http://www.w3.org/2000/svg", "").contains("://") || path == "/connection.js",
           path
         )
-    assertEquals(get(port, "/flights")._2, """[{"id":"stream-vpn","controls":["pause","continue","abort"]}]""")
+    assertEquals(
+      get(port, "/flights")._2,
+      """[{"id":"stream-vpn","controls":["pause","continue","abort"]}]"""
+    )
     for path <- Seq("/../build.sbt", "/page.js/", "/nothing", "//etc/passwd") do
       assertEquals(get(port, path)._1, 404)
 
@@ -165,23 +168,24 @@ class ViewServerLiveSuite extends munit.FunSuite:
     sockets.foreach(_.close())
     assertEquals(served.server.counts.refusedConnections, 995L)
 
-  serving().test("a flight is paused, continued and ended by whoever has the token, and by nobody else"): served =>
-    val port                                          = served.server.port
-    def post(path: String, headers: HttpHeader*): Int =
-      val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
-      val response = await(Http().singleRequest(request))
-      response.discardEntityBytes(): Unit
-      response.status.intValue
-    val right = RawHeader("X-Skein-Token", "right")
-    val path  = "/flights/stream-vpn/abort"
-    assertEquals(post(path), 401)
-    assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
-    assertEquals(post(path, right, Origin("https://evil.example")), 403)
-    assertEquals(post("/flights/other/abort", right), 404)
-    assertEquals(post("/hover"), 401)
-    assertEquals(post("/flights/stream-vpn/hover", right), 404)
-    assertEquals(served.done.size, 0)
-    for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
-      assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
-    import Control.*
-    assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
+  serving().test("a flight is paused, continued and ended by whoever has the token, and by nobody else"):
+    served =>
+      val port                                          = served.server.port
+      def post(path: String, headers: HttpHeader*): Int =
+        val request  = HttpRequest(HttpMethods.POST, s"http://127.0.0.1:$port$path", headers)
+        val response = await(Http().singleRequest(request))
+        response.discardEntityBytes(): Unit
+        response.status.intValue
+      val right = RawHeader("X-Skein-Token", "right")
+      val path  = "/flights/stream-vpn/abort"
+      assertEquals(post(path), 401)
+      assertEquals(post(path, RawHeader("X-Skein-Token", "wrong")), 401)
+      assertEquals(post(path, right, Origin("https://evil.example")), 403)
+      assertEquals(post("/flights/other/abort", right), 404)
+      assertEquals(post("/hover"), 401)
+      assertEquals(post("/flights/stream-vpn/hover", right), 404)
+      assertEquals(served.done.size, 0)
+      for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
+        assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
+      import Control.*
+      assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
