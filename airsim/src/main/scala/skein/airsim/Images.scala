@@ -78,6 +78,33 @@ final case class Scan(
 ):
   def size: Int = points.length / 3
 
+  /** How far, in the plane, the nearest point is in each of so many equal sectors of the compass, clockwise from north, m;
+    * of points in the LIDAR's own frame.
+    *
+    * @param bandM
+    *   points more than this above or below are passed over
+    * @param farM
+    *   told where there is none
+    */
+  def nearest(sectors: Int, bandM: Double, farM: Double): Array[Double] =
+    import orientation.{w, x, y, z}
+    val found = Array.fill(sectors)(farM)
+    var at    = 0
+    while at < points.length do
+      val (front, right, down) = (points(at).toDouble, points(at + 1).toDouble, points(at + 2).toDouble)
+      val below                =
+        2 * (x * z - w * y) * front + 2 * (y * z + w * x) * right + (1 - 2 * (x * x + y * y)) * down
+      if math.abs(below) <= bandM then
+        val north =
+          (1 - 2 * (y * y + z * z)) * front + 2 * (x * y - w * z) * right + 2 * (x * z + w * y) * down
+        val east =
+          2 * (x * y + w * z) * front + (1 - 2 * (x * x + z * z)) * right + 2 * (y * z - w * x) * down
+        val turns  = StrictMath.atan2(east, north) / (2 * math.Pi)
+        val sector = (((turns + 1) % 1) * sectors).toInt.min(sectors - 1)
+        found(sector) = found(sector).min(math.sqrt(north * north + east * east))
+      at += 3
+    found
+
 /** Reads pictures and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones passed over,
   * missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
   */

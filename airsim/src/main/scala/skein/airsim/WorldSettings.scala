@@ -1,6 +1,7 @@
 package skein.airsim
 
 import scala.util.control.NonFatal
+import skein.scenario.Equipment
 import skein.units.*
 import ujson.{Num, Obj, Value}
 
@@ -79,17 +80,46 @@ object WorldSettings:
       case e: Misfit   => Left(e.error)
       case NonFatal(e) => Left(SettingsError.NotJson(e.getMessage))
 
-  /** A `settings.json` with these vehicles. */
-  def render(vehicles: Seq[VehicleSettings]): String =
+  /** A `settings.json` with these vehicles, and what they carry to see by. */
+  def render(vehicles: Seq[VehicleSettings], equipment: Seq[Equipment] = Nil): String =
     val entries = vehicles.map: vehicle =>
-      vehicle.name -> Obj(
+      val carried = equipment.filter(_.vehicle == vehicle.name)
+      val entry   = Obj(
         "VehicleType" -> vehicle.vehicleType,
         "X"           -> vehicle.startNed.x,
         "Y"           -> vehicle.startNed.y,
         "Z"           -> vehicle.startNed.z,
         "Yaw"         -> math.toDegrees(vehicle.yaw.value)
       )
+      val sensors = carried.collect { case lidar: Equipment.Lidar => lidar.name -> rendered(lidar) }
+      val cameras = carried.collect { case camera: Equipment.Camera => camera.name -> rendered(camera) }
+      if sensors.nonEmpty then entry("Sensors") = Obj.from(sensors)
+      if cameras.nonEmpty then entry("Cameras") = Obj.from(cameras)
+      vehicle.name -> entry
     Obj("SettingsVersion" -> 1.2, "SimMode" -> "Multirotor", "Vehicles" -> Obj.from(entries)).render(2)
+
+  private def rendered(lidar: Equipment.Lidar): Obj = Obj(
+    "SensorType"         -> SensorKind.Lidar.number,
+    "Enabled"            -> true,
+    "NumberOfChannels"   -> lidar.channels,
+    "PointsPerSecond"    -> lidar.pointsPerSecond,
+    "RotationsPerSecond" -> lidar.rotationsPerSecond,
+    "Range"              -> lidar.rangeM,
+    "VerticalFOVLower"   -> lidar.verticalFovDeg._1,
+    "VerticalFOVUpper"   -> lidar.verticalFovDeg._2,
+    "DataFrame"          -> "SensorLocalFrame"
+  )
+
+  private def rendered(camera: Equipment.Camera): Obj = Obj(
+    "CaptureSettings" -> ujson.Arr(
+      Obj(
+        "ImageType"   -> ImageKind.Scene.number,
+        "Width"       -> camera.width,
+        "Height"      -> camera.height,
+        "FOV_Degrees" -> camera.fovDeg
+      )
+    )
+  )
 
   /** Leaves the reading at the first value that does not fit. */
   final private class Misfit(val error: SettingsError) extends RuntimeException(error.message)

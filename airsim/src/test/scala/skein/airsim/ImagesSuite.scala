@@ -109,6 +109,21 @@ class ImagesSuite extends munit.FunSuite:
     val cosys = Obj(Str("point_cloud") -> Arr(), Str("groundtruth") -> Arr(Str("tree")))
     assertEquals(scan(Wire.pack(cosys)).map(_._1.size), Right(0))
 
+  test("the nearest point by direction of the compass, whichever way the vehicle is turned"):
+    // Two to the front of different depths, one to the right, one too far below.
+    val points                        = Array[Float](8, 0, 0, 6, 0.1f, 1, 0, 5, 0, 0, -3, 2.5f)
+    def near(orientation: Quaternion) = Scan(points, Array.empty, Vector3.Zero, orientation)
+      .nearest(sectors = 4, bandM = 2, farM = 40)
+      .toSeq
+      .map(metres => math.round(metres * 100) / 100.0)
+    assertEquals(near(Quaternion.Identity), Seq(6.0, 5.0, 40.0, 40.0))
+    // Its front to the south-west: what was ahead lies there, what was to the right to the north-west.
+    val turned = StrictMath.toRadians(225) / 2
+    assertEquals(
+      near(Quaternion(StrictMath.cos(turned), 0, 0, StrictMath.sin(turned))),
+      Seq(40.0, 40.0, 6.0, 5.0)
+    )
+
   test("of malformed replies nothing is thrown"):
     val replies = Vector(
       (sent(picture, picture), (bytes: Array[Byte]) => images(bytes, raw, raw)),

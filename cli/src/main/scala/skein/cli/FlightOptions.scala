@@ -26,6 +26,10 @@ final case class FlightOptions(
     scenario: Option[String],
     @arg(doc = "NAME=VALUE: a setting of the scenario, for example ring-m=10; may be given several times")
     set: Seq[String],
+    @arg(doc =
+      "what stands in the built-in simulator's world: empty, forest, street, or a file; without it, what the scenario says"
+    )
+    scene: Option[String],
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
@@ -86,6 +90,7 @@ final case class FlightOptions(
       "period"          -> period,
       "seed"            -> seed,
       "scenario"        -> scenario,
+      "scene"           -> scene,
       "policies"        -> strings(policy),
       "predictor"       -> predictor,
       "moves-in-flight" -> movesInFlight,

@@ -51,10 +51,15 @@ final class FlyCommand(using Scenarios)
     for
       settings  <- options.flights.settings
       simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
-      _         <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
-      out       <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
-      clock     <- ClockKind.parse(options.clock).left.map("--clock: " + _)
-      flown     <- clock match
+      _         <- Either.cond(
+        simulator.isEmpty || settings.scene.isEmpty,
+        (),
+        "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
+      )
+      _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
+      out   <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
+      clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
+      flown <- clock match
         case ClockKind.Real =>
           for
             _ <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)

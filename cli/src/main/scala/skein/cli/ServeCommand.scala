@@ -6,8 +6,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.link.{TcpTransport, TransportError}
-import skein.scene.{Scene, SceneFile}
-import skein.settings.TextFile
+import skein.settings.{NamedScene, TextFile}
 import skein.simulator.{Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 
@@ -47,8 +46,8 @@ object ServeCommand
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
       )
       world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
-      scene <- sceneOf(options.scene)
-      _     <- serve(SimulatorSettings(world, address, overload, options.speed, scene = scene))
+      scene <- NamedScene.read(options.scene).left.map("--scene: " + _)
+      _     <- serve(SimulatorSettings(world, address, overload, options.speed, scene = scene.scene))
     yield ()
 
   private def overloadOf(text: String): Either[String, Overload] = text match
@@ -66,14 +65,6 @@ object ServeCommand
       world     <- WorldSettings.parse(text).left.map(error => s"$file: ${error.message}")
       supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
     yield supported
-
-  private def sceneOf(name: String): Either[String, Scene] =
-    SceneFile.named(name).map(Right(_)).getOrElse:
-      for
-        text <-
-          TextFile.read(name).left.map(error => s"--scene: no ${SceneFile.Names.mkString(", ")}, and $error")
-        scene <- SceneFile.parse(text, name).left.map(_.message)
-      yield scene
 
   private def serve(settings: SimulatorSettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")

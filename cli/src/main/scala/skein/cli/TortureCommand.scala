@@ -2,6 +2,7 @@ package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
+import skein.settings.NamedScene
 import skein.scenario.{Scenario, Scenarios}
 import skein.torture.{Ordeal, Torture, Verdict}
 import skein.units.*
@@ -20,6 +21,10 @@ final case class TortureOptions(
       "whose task is flown (default: duels, several side by side, where there are any, else the first)"
     )
     scenario: Option[String],
+    @arg(doc =
+      "what stands in the world: empty, forest, street, or a file; without it, what the scenario says"
+    )
+    scene: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -44,8 +49,9 @@ final class TortureCommand(using scenarios: Scenarios)
       threads = options.threads.getOrElse(Runtime.getRuntime.availableProcessors)
       _ <- Either.cond(options.seeds > 0 && threads > 0, (), "--seeds and --threads: expected 1 or more")
       shown = Shown(options.json.value)
-      task <- scenarioOf(options.scenario)
-      failed = fly(options, duration, threads, task, shown)
+      task  <- scenarioOf(options.scenario)
+      scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
+      failed = fly(options, duration, threads, task, scene, shown)
       _      = if options.json.value then shown.tables(Seq(broken(failed)), "")
       _ <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
     yield ()
@@ -74,6 +80,7 @@ final class TortureCommand(using scenarios: Scenarios)
       duration: Span,
       threads: Int,
       task: Option[Scenario],
+      scene: Option[NamedScene],
       shown: Shown
   ): Vector[Verdict] =
     val startedAt = System.nanoTime()
@@ -89,7 +96,7 @@ final class TortureCommand(using scenarios: Scenarios)
       )
 
     Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed"):
-      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task):
+      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task, scene):
         verdict =>
           flown += 1
           if !verdict.isClean then
@@ -99,7 +106,7 @@ final class TortureCommand(using scenarios: Scenarios)
             shown.say(
               s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
                   ""
-                )(name => s" --scenario $name")}"
+                )(name => s" --scenario $name")}${options.scene.fold("")(name => s" --scene $name")}"
             )
           if System.nanoTime() - shownAt > 10_000_000_000L then
             shownAt = System.nanoTime()

@@ -1,7 +1,9 @@
 package skein.report
 
 import skein.measure.{Distribution, Numbers, ScenarioFlights}
+import skein.record.EventKind
 import skein.scenario.{Measured, Scenario}
+import skein.settings.NamedScene
 
 /** Tables of a scenario's flights. */
 object ScenarioTables:
@@ -12,7 +14,8 @@ object ScenarioTables:
   def flights(flown: ScenarioFlights): TextTable =
     val names = flown.scenario.measures.map(_.title)
     TextTable(
-      Vector("<loop", "<link", "flown s") ++ withPaused(names, "vs paused") :+ "off truth m",
+      Vector("<loop", "<link", "flown s") ++ withPaused(names, "vs paused") ++ contactsTitle(flown) :+
+        "off truth m",
       flown.flights.map: flight =>
         val cells = flight.result.measured.map(text)
         Vector(
@@ -22,8 +25,19 @@ object ScenarioTables:
         ) ++ withPaused(
           cells,
           flown.deviation(flight).fold("")(share => s"${Numbers.signed(share * 100)} %")
-        ) :+ flown.offTruthM(flight).fold("")(Numbers.fixed(_, 2))
+        ) ++ contactsTitle(
+          flown
+        ).map(_ => contacts(flight).toString) :+ flown.offTruthM(flight).fold("")(Numbers.fixed(_, 2))
     )
+
+  /** Where there is something to touch. */
+  private def contactsTitle(flown: ScenarioFlights): Option[String] =
+    Option.when(
+      NamedScene.shipped(flown.scenario.scene).exists(!_.isEmpty) || flown.flights.exists(contacts(_) > 0)
+    )("contacts")
+
+  /** Each time that a vehicle touched something. */
+  private def contacts(flight: ScenarioFlights.Flown): Int = flight.summary.count(EventKind.Contact)
 
   /** Behind the first measure, if there is any. */
   private def withPaused(cells: Vector[String], against: String): Vector[String] =
@@ -68,21 +82,24 @@ object ScenarioTables:
     val order  = flown.flights.map(flight => (flight.summary.name, flight.summary.flight.link)).distinct
     val names  = flown.scenario.measures.map(_.title)
     TextTable(
-      Vector("<loop", "<link", "flights") ++ names :+ "off truth m",
+      Vector("<loop", "<link", "flights") ++ names ++ contactsTitle(flown) :+ "off truth m",
       order.map: group =>
         val flights = groups(group)
         Vector(group._1, group._2, flights.size.toString) ++
-          names.indices.map(index => summed(flights.map(_.result.measured(index)))) :+
+          names.indices.map(index => summed(flights.map(_.result.measured(index)))) ++
+          contactsTitle(flown).map(_ => inFlights(flights.map(contacts(_).toDouble))) :+
           spreadText(flights.flatMap(flown.offTruthM))
     )
 
   private def summed(measures: Vector[Measured]): String =
     val values = measures.flatMap(_.value)
-    if measures.head.measure.isCount then
-      s"${Numbers.fixed(values.sum, 0)} in ${values.count(_ > 0)} flights"
+    if measures.head.measure.isCount then inFlights(values)
     else
       val missing = measures.size - values.size
       spreadText(values) + (if missing > 0 then s", $missing never" else "")
+
+  private def inFlights(counts: Vector[Double]): String =
+    s"${Numbers.fixed(counts.sum, 0)} in ${counts.count(_ > 0)} flights"
 
   private def spreadText(values: Vector[Double]): String =
     def two(value: Double) = Numbers.fixed(value, 2)

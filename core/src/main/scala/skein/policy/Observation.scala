@@ -24,6 +24,8 @@ import skein.units.*
   * @param sensed
   *   what the sensors of the own vehicle said last, by name: those that the policy asked for ([[AgentPolicy.sensors]])
   *   and that have answered before
+  * @param actsIn
+  *   how long until the command acts, by the forecast; zero where nothing is predicted
   */
 final case class Observation(
     self: Int,
@@ -34,7 +36,8 @@ final case class Observation(
     decisions: Long,
     cruise: MetresPerSecond,
     altitude: Metres,
-    sensed: Map[String, Sensed] = Map.empty
+    sensed: Map[String, Sensed] = Map.empty,
+    actsIn: Span = Span.Zero
 ):
   def own: Seen = vehicles(self)
 

@@ -24,6 +24,12 @@ trait Scenario extends Product:
   /** How long it flies, unless it is told otherwise. */
   def duration: Span = Span.ofSeconds(60)
 
+  /** What stands in the world that it is flown in, unless a flight is told otherwise: a scene that ships. */
+  def scene: String = "empty"
+
+  /** What its vehicles carry to see by. */
+  def equipment: Vector[Equipment] = Vector.empty
+
   /** Whether it is over before its time; asked upon every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 

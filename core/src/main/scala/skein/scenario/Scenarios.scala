@@ -47,5 +47,6 @@ object Scenarios:
     ScenarioKind(PaperDuel()),
     ScenarioKind(Surround()),
     ScenarioKind(Formation()),
-    ScenarioKind(Crossing())
+    ScenarioKind(Crossing()),
+    ScenarioKind(Forest())
   )

@@ -135,15 +135,16 @@ final class FlightRigs(
           // Altitudes count from where each vehicle starts, as in its own frame.
           Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
         )
-        crafts = vehicles.map(vehicle =>
-          AirSimVehicle(
+        crafts = vehicles.map: vehicle =>
+          val craft = AirSimVehicle(
             vehicle,
             lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
-        )
+          Equipped.by(settings.scenario, craft, vehicle)
         _ <- Team.missingSensor(fleet, crafts).fold(client.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
+        _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, watch)
       yield
         val loopSettings = settings.loopSettings.copy(seed = plan.seed)
         val planners     =
@@ -199,13 +200,30 @@ final class FlightRigs(
       SimulatorServer
         .start(
           SimulatorSettings(
-            WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
-            FlightRigs.anyPort
+            WorldSettings(vehicles, text = WorldSettings.render(vehicles, settings.scenario.equipment)),
+            FlightRigs.anyPort,
+            scene = settings.world.scene
           ),
           transport,
           clock
         )
         .map(Some(_))
+
+  private def watchContacts(
+      opened: Opened,
+      address: Address,
+      vehicles: Vector[Multirotor],
+      recorder: Recorder
+  ): Future[Unit] =
+    ContactWatch
+      .start(
+        AirSimClient(RpcClient(transport, address, clock), FlightRigs.askTimeout),
+        vehicles,
+        settings.period,
+        clock,
+        recorder
+      )
+      .map(contacts => opened.closing(contacts)(_.close()): Unit)
 
   /** Over a connection of its own, without the link: this is not part of the flight. */
   private def prepare(address: Address): Future[Vector[Multirotor]] =

@@ -67,8 +67,17 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       agent.speed,
       Metres(agent.startPositionNed.z),
       view.sensed(self).map: (sensor, reading) =>
-        sensor -> Sensed(reading.columns, reading.values.value, age(view, now, reading.values))
+        sensor -> Sensed(reading.columns, reading.values.value, age(view, now, reading.values)),
+      actsIn(view, now)
     )
+
+  private def actsIn(view: TeamView, now: Instant): Span =
+    val acting =
+      for
+        clocks    <- view.alignment
+        estimates <- view.estimates
+      yield clocks.toController(estimates(self).predictedFor).since(now).max(Span.Zero)
+    acting.getOrElse(Span.Zero)
 
   private def seen(view: TeamView, now: Instant, vehicle: Int): Seen =
     val reading = view.readings(vehicle).get.state

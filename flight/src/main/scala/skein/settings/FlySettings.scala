@@ -27,6 +27,8 @@ import skein.vehicle.ReducedModel
   *   of every decision; without one, policies are waited for
   * @param fallback
   *   what is done where the deadline is missed
+  * @param scene
+  *   what stands in the built-in simulator's world; without one, what the scenario says
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -40,8 +42,12 @@ final case class FlySettings(
     deadline: Option[Span] = None,
     fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,
-    planning: PlanSettings = PlanSettings()
+    planning: PlanSettings = PlanSettings(),
+    scene: Option[NamedScene] = None
 ):
+
+  /** What stands in the world. */
+  def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
   /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
     * vehicle's altitude. They keep the scenario's separation and geofences.
@@ -203,6 +209,8 @@ object FlySettings:
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 
   private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+
+  private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
 
   private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 

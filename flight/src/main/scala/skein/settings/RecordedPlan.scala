@@ -27,7 +27,7 @@ object RecordedPlan:
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[Parameter] =
-    ScenarioSettings.recorded(settings.scenario) ++ Seq(
+    ScenarioSettings.recorded(settings.scenario) ++ NamedScene.recorded(settings.world) ++ Seq(
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
@@ -74,6 +74,7 @@ object RecordedPlan:
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
         else Right(PlanSettings())
       scenario <- RecordedScenario.of(recording)
+      scene    <- NamedScene.ofRecording(parameters)
       settings = FlySettings(
         List(loop),
         List(link),
@@ -89,7 +90,8 @@ object RecordedPlan:
         predictor = now.orElse(older).getOrElse(settings.predictor),
         movesInFlight = moves.getOrElse(settings.movesInFlight),
         deadline = within.map(Span.ofNanos),
-        fallback = fallback.getOrElse(settings.fallback)
+        fallback = fallback.getOrElse(settings.fallback),
+        scene = Some(scene)
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy)
     )

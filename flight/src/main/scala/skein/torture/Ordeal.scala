@@ -3,6 +3,7 @@ package skein.torture
 import skein.link.{Fault, TimedFault}
 import skein.loop.LoopKind
 import skein.scenario.{PaperDuel, Scenario}
+import skein.settings.NamedScene
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 
@@ -20,6 +21,8 @@ import skein.units.*
   *   when somebody ends the flight before its time
   * @param clockAhead
   *   of the simulator against the controller, until it is started again
+  * @param scene
+  *   what stands in the world
   */
 final case class Ordeal(
     seed: Long,
@@ -34,7 +37,8 @@ final case class Ordeal(
     restarts: Vector[Restart],
     disk: Disk,
     stopAt: Option[Span],
-    clockAhead: Span = Span.Zero
+    clockAhead: Span = Span.Zero,
+    scene: NamedScene = NamedScene.Empty
 ):
   /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to stand still
     * costs the simulator a worker for each: with many vehicles `stream` flies in their place.

@@ -2,6 +2,7 @@ package skein.torture
 
 import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
 import skein.scenario.Scenario
+import skein.settings.NamedScene
 import skein.units.*
 
 /** How one flight stood its ordeal. */
@@ -11,9 +12,16 @@ final case class Verdict(ordeal: Ordeal, violations: Vector[String]):
 object Torture:
 
   /** Flies the ordeal of one seed. A flight that cannot be flown to its end is a violation, too. */
-  def of(seed: Long, duration: Span, scenario: Option[Scenario] = None): Verdict =
+  def of(
+      seed: Long,
+      duration: Span,
+      scenario: Option[Scenario] = None,
+      scene: Option[NamedScene] = None
+  ): Verdict =
     val drawn  = Ordeal.of(seed, duration)
-    val ordeal = scenario.fold(drawn)(drawn.flying)
+    val flown  = scenario.fold(drawn)(drawn.flying)
+    val ordeal =
+      scene.orElse(NamedScene.shipped(flown.scenario.scene)).fold(flown)(in => flown.copy(scene = in))
     Verdict(ordeal, violations(Checks.violations(TortureFlight.fly(ordeal))))
 
   /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
@@ -25,6 +33,8 @@ object Torture:
     *
     * @param scenario
     *   that is flown; without one, duels
+    * @param scene
+    *   what stands in the world; without one, what the scenario says
     * @param onVerdict
     *   told of each as it comes, on the calling thread
     */
@@ -32,12 +42,13 @@ object Torture:
       seeds: Iterator[Long],
       duration: Span,
       threads: Int,
-      scenario: Option[Scenario] = None
+      scenario: Option[Scenario] = None,
+      scene: Option[NamedScene] = None
   )(onVerdict: Verdict => Unit): Unit =
     val pool                     = Executors.newFixedThreadPool(threads)
     val ended                    = ExecutorCompletionService[Verdict](pool)
     def submit(seed: Long): Unit =
-      val flight: Callable[Verdict] = () => of(seed, duration, scenario)
+      val flight: Callable[Verdict] = () => of(seed, duration, scenario, scene)
       val _                         = ended.submit(flight)
     try
       var underWay = 0

@@ -7,7 +7,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.*
-import skein.flight.FlightRigs
+import skein.flight.{Equipped, FlightRigs}
 import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
@@ -70,7 +70,11 @@ object TortureFlight:
     )
     private val operator = Operator(
       scenario,
-      SimulatorSettings(WorldSettings(world, text = WorldSettings.render(world)), address),
+      SimulatorSettings(
+        WorldSettings(world, text = WorldSettings.render(world, ordeal.scenario.equipment)),
+        address,
+        scene = ordeal.scene.scene
+      ),
       tap,
       network.host("operator"),
       clock
@@ -84,12 +88,18 @@ object TortureFlight:
     def fly(): Future[Evidence] =
       for
         vehicles <- operator.start(ordeal.clockAhead)
-        multirotors = vehicles.zipWithIndex.map: (vehicle, index) =>
+        asked = vehicles.zipWithIndex.map((vehicle, index) =>
+          Multirotor(client, vehicle.name, vehicle.originNed, index)
+        )
+        multirotors = asked.map(vehicle =>
           AirSimVehicle(
-            Multirotor(client, vehicle.name, vehicle.originNed, index),
+            vehicle,
             lost => recorder.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
-        crafts       = multirotors.map(WatchedVehicle(_, clock))
+        )
+        crafts = multirotors.zip(asked).map((craft, vehicle) =>
+          WatchedVehicle(Equipped.by(ordeal.scenario, craft, vehicle), clock)
+        )
         stepper      = WatchedTime(AirSimTime(client))
         loopSettings =
           if PaperDuel.isAsPublished(ordeal.scenario) then LoopSettings().asPublished else LoopSettings()

@@ -4,7 +4,7 @@ import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Success
 import skein.policy.Action
-import skein.port.{SteppedTime, VehicleError, VehiclePort}
+import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
@@ -26,6 +26,8 @@ final case class Answer(question: Long, state: Stamped[Kinematics])
 final class WatchedVehicle(craft: VehiclePort, clock: Clock)(using ExecutionContext) extends VehiclePort:
   private val moves = mutable.ArrayBuffer.empty[Sending]
   private val told  = mutable.ArrayBuffer.empty[Answer]
+
+  override def sensors: Map[String, Sensor] = craft.sensors
 
   val reads, commands     = CallCount()
   private var lastIsHover = false

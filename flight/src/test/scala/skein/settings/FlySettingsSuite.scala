@@ -44,6 +44,29 @@ class FlySettingsSuite extends munit.FunSuite:
       val said = read(text).left.getOrElse("")
       assert(clue(said).contains("expected a duration with unit, such as 40s, came '40'"))
 
+  test("a scene is one that ships, a file, or else what the scenario says"):
+    assertEquals(read("").map(_.world.name), Right("empty"))
+    assertEquals(read("skein.fly.scenario = forest").map(_.world.name), Right("forest"))
+    assertEquals(read("skein.fly { scenario = forest, scene = street }").map(_.world.name), Right("street"))
+    val file = Files.createTempFile("scene", ".conf")
+    try
+      Files.writeString(file, "objects = [{ pole = [0.1, 5], at = [10, 0] }]")
+      val own = read(s"""skein.fly.scene = "$file" """).map(_.world)
+      assertEquals(own.map(_.scene.objects.size), Right(1))
+      val kept = own.map(NamedScene.recorded(_).map(parameter => parameter.name -> parameter.value).toMap)
+      Files.writeString(file, "objects = []")
+      // A recording has all of it.
+      assertEquals(
+        kept.flatMap(NamedScene.ofRecording).map(_.scene.objects.map(_.name)),
+        Right(Vector("Pole1"))
+      )
+      Files.writeString(file, "ground = 7")
+      assert(clue(read(s"""skein.fly.scene = "$file" """)).isLeft)
+    finally Files.delete(file)
+    assert(
+      clue(read("skein.fly.scene = wood").left.getOrElse("")).contains("no empty, forest, street")
+    )
+
   test("a deadline is one where it is set"):
     assertEquals(read("").map(_.deadline), Right(None))
     assertEquals(read("skein.fly.deadline = 20 ms").map(_.deadline), Right(Some(Span.ofMillis(20))))

@@ -375,6 +375,9 @@ enum EventKind:
   /** A step of the paused simulator was not as long as asked for. */
   case StepDrift
 
+  /** A vehicle touched something. */
+  case Contact
+
   /** A call was given up because the flight had ended. */
   case Cancelled
 

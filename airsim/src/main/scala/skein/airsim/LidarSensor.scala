@@ -1,0 +1,21 @@
+package skein.airsim
+
+import scala.concurrent.{ExecutionContext, Future}
+import skein.port.{Sensor, VehicleError}
+import skein.scenario.Equipment
+import skein.signal.Stamped
+
+/** A lidar as policies read it: see [[Equipment.Lidar]]. Its points have to come in its own frame (`"DataFrame":
+  * "SensorLocalFrame"`). Scans come on connections of their own.
+  */
+final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar) extends Sensor:
+  val columns: Vector[String] = Vector("northM", "eastM", "downM") ++
+    Vector.tabulate(Equipment.Sectors)(sector => f"range${sector * 360 / Equipment.Sectors}%03dM")
+
+  def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = eyes
+    .scan(lidar.name)
+    .map(_.left.map(VehicleErrors.errorOf).map(_.map(scan =>
+      val at = scan.positionNed
+      IArray(at.x, at.y, at.z) ++
+        IArray.unsafeFromArray(scan.nearest(Equipment.Sectors, Equipment.BandM, lidar.rangeM))
+    )))(using ExecutionContext.parasitic)

@@ -1,0 +1,132 @@
+package skein.policy
+
+import skein.units.*
+
+/** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The Dynamic Window
+  * Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23). Headings and speeds that could be
+  * commanded are each flown forward past the points of the newest scan, by a model in which the velocity follows the
+  * command with a lag, and the one is taken that leads along the lane and keeps clear. Points stay where they were in the
+  * world; nothing is remembered of earlier scans. Without a scan, or upon one too old, the vehicle stands still.
+  *
+  * @param sensor
+  *   the lidar, as [[skein.scenario.Equipment.Lidar]] tells what it says
+  * @param laneNorthM
+  *   a place on the lane
+  * @param keepM
+  *   from the vehicle's body, if there is room
+  * @param bodyM
+  *   from its middle to its farthest corner
+  * @param lagS
+  *   of the velocity behind the command
+  */
+final case class DynamicWindow(
+    sensor: String,
+    laneNorthM: Double,
+    laneEastM: Double,
+    laneHeading: Radians,
+    cruiseMps: Double,
+    keepM: Double = 1.2,
+    bodyM: Double = 0.5,
+    lagS: Double = 0.55,
+    horizonS: Double = 3
+) extends PlanarPolicy:
+  import DynamicWindow.*
+
+  type Memory = Unit
+  def start: Unit = ()
+
+  override def sensors: Set[String] = Set(sensor)
+
+  def planar(seen: Observation, memory: Unit): (Planar, Unit) =
+    val last = seen.headings(seen.self).value
+    val went = seen.sensed.get(sensor).filter(_.age < TooOld) match
+      case None       => Planar(Radians(last), Some(MetresPerSecond(0)))
+      case Some(scan) => best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, last, scan)
+    (went, ())
+
+  // What is left of the velocity at each instant looked at, and how far it has carried.
+  private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray
+  private val left           = instants.map(t => StrictMath.exp(-t / lagS))
+  private val (laneN, laneE) =
+    (StrictMath.cos(laneHeading.value), StrictMath.sin(laneHeading.value))
+
+  private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): Planar =
+    val points = near(position, scan)
+    // Back to the lane over some way, not straight.
+    val aside        = -(position.x - laneNorthM) * laneE + (position.y - laneEastM) * laneN
+    val aimRad       = laneHeading.value - StrictMath.atan2(aside, AheadM)
+    val (aimN, aimE) = (StrictMath.cos(aimRad), StrictMath.sin(aimRad))
+    var least        = Double.PositiveInfinity
+    var chosen       = Planar(Radians(aimRad), Some(MetresPerSecond(0)))
+    for turn <- Turns; share <- Shares do
+      val headingRad = aimRad + turn
+      val speed      = cruiseMps * share
+      val (n, e)     = (speed * StrictMath.cos(headingRad), speed * StrictMath.sin(headingRad))
+      val (clear, free, north, east) = flown(points, position, velocity, n, e)
+      val progress = ((north - position.x) * aimN + (east - position.y) * aimE) / (cruiseMps * horizonS)
+      val near     = ((keepM - clear) / keepM).max(0)
+      val cost     = Ahead * (1 - progress) + Clear * near * near +
+        (if free < instants.length then Hit * (1 + 1 - free.toDouble / instants.length) else 0.0) +
+        Steady * (1 - StrictMath.cos(headingRad - lastRad))
+      if cost < least then
+        least = cost
+        chosen = Planar(Radians(headingRad), Some(MetresPerSecond(speed)))
+    chosen
+
+  /** How clear of all points a command keeps the body, m; after how many instants it touches one; and where it leads. */
+  private def flown(
+      points: Array[Double],
+      position: Vector3,
+      velocity: Vector3,
+      n: Double,
+      e: Double
+  ): (Double, Int, Double, Double) =
+    var (north, east) = (position.x, position.y)
+    var clear2        = Double.PositiveInfinity
+    var at            = 0
+    var free          = instants.length
+    while at < instants.length do
+      val carried = lagS * (1 - left(at))
+      north = position.x + n * instants(at) + (velocity.x - n) * carried
+      east = position.y + e * instants(at) + (velocity.y - e) * carried
+      var point = 0
+      while point < points.length do
+        val (dn, de) = (points(point) - north, points(point + 1) - east)
+        val apart2   = dn * dn + de * de
+        if apart2 < clear2 then clear2 = apart2
+        point += 2
+      if free == instants.length && clear2 < bodyM * bodyM then free = at
+      at += 1
+    (math.sqrt(clear2) - bodyM, free, north, east)
+
+  /** North and east of each point within reach. */
+  private def near(position: Vector3, scan: Sensed): Array[Double] =
+    val reach  = cruiseMps * horizonS + keepM + bodyM
+    val points = Array.newBuilder[Double]
+    val count  = scan.values.size - FirstRange
+    for sector <- 0 until count do
+      val range      = scan.values(FirstRange + sector)
+      val azimuthRad = 2 * math.Pi * (sector + 0.5) / count
+      val north      = scan.values(0) + range * StrictMath.cos(azimuthRad)
+      val east       = scan.values(1) + range * StrictMath.sin(azimuthRad)
+      if StrictMath.hypot(north - position.x, east - position.y) < reach then
+        points += north
+        points += east
+    points.result()
+
+object DynamicWindow:
+  /** Behind where the lidar was. */
+  private val FirstRange = 3
+
+  private val StepS  = 0.15
+  private val AheadM = 10.0
+  private val TooOld = Span.ofSeconds(1)
+
+  private val Turns  = (-24 to 24).sortBy(_.abs).map(turn => StrictMath.toRadians(5.0 * turn))
+  private val Shares = Vector(1.0, 0.65, 0.3)
+
+  // How much each thing counts.
+  private val Ahead  = 1.0
+  private val Clear  = 2.0
+  private val Hit    = 5.0
+  private val Steady = 0.15

@@ -1,0 +1,19 @@
+package skein.flight
+
+import skein.airsim.{LidarSensor, Multirotor}
+import skein.port.{Sensor, VehiclePort}
+import skein.scenario.{Equipment, Scenario}
+
+/** A vehicle with more sensors than its own. */
+private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sensor]) extends VehiclePort:
+  export vehicle.{act, hover, read}
+  override val sensors: Map[String, Sensor] = vehicle.sensors ++ more
+
+private[skein] object Equipped:
+
+  /** With what it carries by a scenario. */
+  def by(scenario: Scenario, vehicle: VehiclePort, multirotor: Multirotor): VehiclePort =
+    val lidars = scenario.equipment.collect:
+      case lidar: Equipment.Lidar if lidar.vehicle == multirotor.name =>
+        lidar.name -> LidarSensor(multirotor.eyes, lidar)
+    if lidars.isEmpty then vehicle else Equipped(vehicle, lidars.toMap)

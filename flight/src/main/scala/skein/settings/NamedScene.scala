@@ -1,0 +1,47 @@
+package skein.settings
+
+import skein.record.Parameter
+import skein.scene.{Scene, SceneFile}
+
+/** What stands in the world, and what it is called.
+  *
+  * @param name
+  *   of a scene that ships, or a file's path
+  * @param text
+  *   of the file; absent for a scene that ships
+  */
+final case class NamedScene private (name: String, text: Option[String], scene: Scene):
+  /** Whether there is anything to touch. */
+  def isEmpty: Boolean = scene.objects.isEmpty
+
+object NamedScene:
+  val Empty: NamedScene = NamedScene("empty", None, Scene.Empty)
+
+  /** A scene that ships, or that of a file. */
+  def read(name: String): Either[String, NamedScene] = shipped(name).map(Right(_)).getOrElse:
+    for
+      text <- TextFile.read(name).left.map(error => s"no ${SceneFile.Names.mkString(", ")}, and $error")
+      read <- ofText(name, text)
+    yield read
+
+  def shipped(name: String): Option[NamedScene] = SceneFile.named(name).map(NamedScene(name, None, _))
+
+  /** As a recording keeps it: nothing of the empty one, and all of a file's. */
+  def recorded(flown: NamedScene): Seq[Parameter] =
+    if flown.name == Empty.name then Nil
+    else Parameter(Name, flown.name) +: flown.text.toSeq.map(Parameter(Text, _))
+
+  /** @param parameters
+    *   of a recording, by name
+    */
+  def ofRecording(parameters: Map[String, String]): Either[String, NamedScene] =
+    (parameters.get(Name), parameters.get(Text)) match
+      case (None, _)                => Right(Empty)
+      case (Some(name), Some(text)) => ofText(name, text)
+      case (Some(name), None)       => shipped(name).toRight(s"its parameter '$Name': no scene '$name' ships")
+
+  private def ofText(name: String, text: String): Either[String, NamedScene] =
+    SceneFile.parse(text, name).map(NamedScene(name, Some(text), _)).left.map(_.message)
+
+  private val Name = "scene"
+  private val Text = "scene.text"

@@ -1,0 +1,55 @@
+package skein.flight
+
+import skein.loop.{LoopKind, Outcome, Replay}
+import skein.record.EventKind
+import skein.scenario.{Forest, PaperDuel, Scenarios}
+import skein.settings.{FlySettings, NamedScene, RecordedPlan}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** Flights among things that can be touched. */
+class SceneFlightSimulation extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
+  private def settings(loop: LoopKind, duration: Span) =
+    FlySettings(List(loop), List(LatencyProfile.vpn), duration, Span.ofMillis(100), seed = 1)
+
+  private def fly(settings: FlySettings): VirtualLanding =
+    VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
+
+  private def contacts(flown: VirtualLanding) =
+    flown.recorder.recording.events.filter(_.kind == EventKind.Contact)
+
+  test("a duel among trees touches them: every contact is on record, and the scene is, too"):
+    val duel = settings(LoopKind.Stream, Span.ofSeconds(30))
+      .copy(scenario = PaperDuel(altitudeM = 5), scene = NamedScene.shipped("forest"))
+    val flown = fly(duel)
+    assertEquals(flown.landed.outcome, Outcome.Completed)
+    assert(contacts(flown).nonEmpty, "nobody touched a tree")
+    assert(contacts(flown).forall(_.detail.startsWith("Tree")), contacts(flown).map(_.detail).mkString("; "))
+    val recording = flown.recorder.recording
+    assertEquals(RecordedPlan.of(recording).map(_.settings.world.name), Right("forest"))
+    assertEquals(fly(duel).recorder.digest, flown.recorder.digest)
+
+  test("a duel in an empty world is asked nothing of contacts"):
+    val flown = fly(settings(LoopKind.Stream, Span.ofSeconds(2)))
+    assertEquals(contacts(flown).size, 0)
+    assertEquals(flown.recorder.recording.heading.parameters.filter(_.name.startsWith("scene")), Seq.empty)
+
+  for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
+    test(s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and decide the same again"):
+      val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 3))
+      val flown    = fly(crossing)
+      assertEquals(flown.landed.outcome, Outcome.Completed)
+      assertEquals(contacts(flown).map(_.detail).toVector, Vector.empty)
+      val recording = flown.recorder.recording
+      val last      = recording.readings.groupBy(_.vehicle).values.map(_.last.state.value.positionNed.x)
+      assert(last.forall(_ > 112), s"they came to $last m")
+      assertEquals(Replay(crossing.fleet, recording).firstDifference, None)
+
+  test("what is touched again within half a second is one contact, anything else another"):
+    val tree = skein.airsim.Collision(Instant.ofNanos(0), Vector3.Zero, Vector3.Zero, "Tree1")
+    assert(ContactWatch.isNew(tree, None))
+    assert(!ContactWatch.isNew(tree.copy(at = Instant.Epoch + Span.ofMillis(500)), Some(tree)))
+    assert(ContactWatch.isNew(tree.copy(at = Instant.Epoch + Span.ofMillis(501)), Some(tree)))
+    assert(ContactWatch.isNew(tree.copy(objectName = "Tree2"), Some(tree)))
