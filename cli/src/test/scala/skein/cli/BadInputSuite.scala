@@ -40,7 +40,7 @@ class BadInputSuite extends munit.FunSuite:
     assertRefused(FlyCommand(), Seq("--config", path.toString), "expected a file, came the folder")
     assertRefused(FlyCommand(), Seq("--config", path.resolve("none").toString), "there is no file")
     assertRefused(FlyCommand(), Seq("--config", config("a = " + "[" * 200_000)), "nested too deeply")
-    assertRefused(FlyCommand(), Seq("--config", config("skein.fly.sede = 1")), "the nearest is 'seed'")
+    assertRefused(FlyCommand(), Seq("--config", config("skein.fly.seedd = 1")), "the nearest is 'seed'")
     assertRefused(FlyCommand(), Seq("--config", config("duration = 5 s")), "no setting 'duration'")
 
   folder.test("a policy of a number that is too large is refused"): path =>
