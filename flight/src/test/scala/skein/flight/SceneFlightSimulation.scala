@@ -1,5 +1,6 @@
 package skein.flight
 
+import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome, Replay}
 import skein.record.EventKind
 import skein.scenario.{Forest, PaperDuel, Scenarios}
@@ -9,6 +10,8 @@ import skein.units.*
 
 /** Flights among things that can be touched. */
 class SceneFlightSimulation extends munit.FunSuite:
+  override val munitTimeout: Duration = 5.minutes
+
   private given Scenarios = Scenarios.ours
 
   private def settings(loop: LoopKind, duration: Span) =
@@ -21,7 +24,7 @@ class SceneFlightSimulation extends munit.FunSuite:
     flown.recorder.recording.events.filter(_.kind == EventKind.Contact)
 
   test("a duel among trees touches them: every contact is on record, and the scene is, too"):
-    val duel = settings(LoopKind.Stream, Span.ofSeconds(30))
+    val duel = settings(LoopKind.Stream, Span.ofSeconds(20))
       .copy(scenario = PaperDuel(altitudeM = 5), scene = NamedScene.shipped("forest"))
     val flown = fly(duel)
     assertEquals(flown.landed.outcome, Outcome.Completed)
@@ -38,7 +41,7 @@ class SceneFlightSimulation extends munit.FunSuite:
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
     test(s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and decide the same again"):
-      val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 3))
+      val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 2))
       val flown    = fly(crossing)
       assertEquals(flown.landed.outcome, Outcome.Completed)
       assertEquals(contacts(flown).map(_.detail).toVector, Vector.empty)
