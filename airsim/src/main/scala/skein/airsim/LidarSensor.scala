@@ -10,7 +10,9 @@ import skein.signal.Stamped
   */
 final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar) extends Sensor:
   val columns: Vector[String] = Vector("northM", "eastM", "downM") ++
-    Vector.tabulate(Equipment.Sectors)(sector => f"range${sector * 360 / Equipment.Sectors}%03dM")
+    Vector.tabulate(Equipment.Sectors): sector =>
+      val from = (sector * 360 / Equipment.Sectors).toString
+      s"range${"0" * (3 - from.length)}${from}M"
 
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = eyes
     .scan(lidar.name)
