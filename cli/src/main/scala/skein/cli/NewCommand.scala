@@ -36,7 +36,7 @@ object NewCommand
       yield
         Console.out.println(s"written: $folder")
         Console.out.println(s"fly it: cd $folder && ./skein fly --clock virtual")
-        Console.out.println("It builds from what ./sbtw publishLocal has put on this machine.")
+        Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
     case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
 
   private def write(folder: Path, name: String): Either[String, Unit] =

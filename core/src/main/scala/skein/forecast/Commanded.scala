@@ -1,7 +1,7 @@
 package skein.forecast
 
 import skein.units.Instant
-import skein.vehicle.Setpoint
+import skein.vehicle.Guidance
 
 /** One command sent to a vehicle.
   *
@@ -10,7 +10,7 @@ import skein.vehicle.Setpoint
   */
 final case class Commanded(
     sequence: Long,
-    setpoint: Setpoint,
+    guidance: Guidance,
     sentAt: Instant,
     answeredAt: Option[Instant] = None
 )

@@ -1,8 +1,9 @@
 package skein.forecast
 
+import scala.annotation.tailrec
 import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
-import skein.vehicle.{Setpoint, VehicleModel}
+import skein.vehicle.{Guidance, Setpoint, VehicleModel}
 
 /** What is known of one vehicle's past and of what is on its way to it. Instants are the controller's, except where
   * they come from the simulator: `validAt` and everything named after it.
@@ -105,7 +106,15 @@ final case class Track[S] private (
 
   private def advancedTo(validAt: Instant, delays: OneWayDelays, now: Instant): S =
     legsTo(validAt, delays, now).foldLeft(state): (flown, leg) =>
-      model.advanced(flown, leg.command.fold(resting)(_.setpoint), leg.span)
+      guided(flown, leg.command.fold(resting)(_.guidance), leg.span)
+
+  private def guided(from: S, guidance: Guidance, span: Span): S =
+    val period                                  = guidance.period.getOrElse(span)
+    @tailrec def flown(state: S, left: Span): S =
+      val part = left.min(period)
+      val next = model.advanced(state, guidance.setpoint(model.kinematics(state)), part)
+      if part < left then flown(next, left - part) else next
+    flown(from, span)
 
   /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one sent earlier.
     */

@@ -1,6 +1,7 @@
 package skein.vehicle
 
-import skein.units.Vector3
+import skein.signal.Kinematics
+import skein.units.{Span, Vector3}
 
 /** What roll and pitch are wanted for; each case names the two numbers it needs. */
 enum HorizontalMode:
@@ -58,7 +59,10 @@ final case class Setpoint(
     third: Double,
     yaw: YawMode = YawMode.Rate,
     yawGoal: Double = 0.0
-):
+) extends Guidance:
+  def setpoint(now: Kinematics): Setpoint = this
+  def period: Option[Span]                = None
+
   /** The same with this yaw, rad from north. */
   def withYaw(yawRad: Double): Setpoint = copy(yaw = YawMode.Angle, yawGoal = yawRad)
 

@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.policy.{Action, Yaw}
 import skein.units.*
-import skein.vehicle.Setpoint
+import skein.vehicle.{Guidance, PathFollowing, Setpoint}
 
 /** What of an action stands for it where headings and speeds are asked for, and what the flight controller makes of it. */
 private object Acting:
@@ -22,11 +22,13 @@ private object Acting:
     case _                                    => 0)
 
   /** What a model of the vehicle is told, for a prediction. */
-  def setpoint(action: Action): Setpoint = action match
-    case Action.Velocity(velocity, yaw) => turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
-    case Action.VelocityAt(north, east, down, yaw) => turned(Setpoint.velocityZ(north, east, down.value), yaw)
-    case Action.Position(position, _, yaw)         => turned(Setpoint.hold(position), yaw)
-    case Action.Turn(yaw)                          => turned(Setpoint.velocity(0, 0, 0), yaw)
+  def guidance(action: Action): Guidance = action match
+    case Action.Velocity(velocity, yaw) =>
+      turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, velocity)
+    case Action.VelocityAt(north, east, down, yaw) =>
+      turned(Setpoint.velocityZ(north, east, down.value), yaw, Vector3(north, east, 0))
+    case Action.Position(position, speed, yaw)     => PositionGuidance(position, speed, yaw)
+    case Action.Turn(yaw)                          => turned(Setpoint.velocity(0, 0, 0), yaw, Vector3.Zero)
     case Action.Attitude(roll, pitch, yaw, thrust) =>
       Setpoint.anglesThrottle(roll.value, pitch.value, yaw.value, thrust)
     case Action.Hover => Setpoint.velocity(0, 0, 0)
@@ -35,9 +37,12 @@ private object Acting:
   private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
     if StrictMath.hypot(northMps, eastMps) < 1e-9 then beforeRad else StrictMath.atan2(eastMps, northMps)
 
-  private def turned(setpoint: Setpoint, yaw: Yaw): Setpoint = yaw match
-    case Yaw.Towards(heading)    => setpoint.withYaw(heading.value)
-    case Yaw.Turning(rate)       => setpoint.withYawRate(rate)
+  /** With the yaw that AirSim makes of it for a vehicle that flies along `travelNed` (`adjustYaw`). */
+  def turned(setpoint: Setpoint, yaw: Yaw, travelNed: Vector3): Setpoint = yaw match
+    case Yaw.Towards(heading)                                            => setpoint.withYaw(heading.value)
+    case Yaw.Turning(rate)                                               => setpoint.withYawRate(rate)
+    case Yaw.Forward if travelNed.norm > PathFollowing.DistanceAccuracyM =>
+      setpoint.withYaw(StrictMath.atan2(travelNed.y, travelNed.x))
     case Yaw.Still | Yaw.Forward => setpoint
 
   /** AirSim's. */

@@ -16,7 +16,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, Recorder}
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
-import skein.vehicle.Setpoint
+import skein.vehicle.{Guidance, Setpoint}
 
 /** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
 final class Team(
@@ -177,7 +177,7 @@ final class Team(
               (view, None)
             case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
             case LoopEvent.Moved(move)       =>
-              val command = Commanded(move.decision, setpoint(move), move.sentAt)
+              val command = Commanded(move.decision, guidance(move), move.sentAt)
               (view.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
             case LoopEvent.Due(deciders) =>
               (view, request(view, deciders))
@@ -466,11 +466,11 @@ final class Team(
   private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
-  private def setpoint(move: Move): Setpoint =
+  private def guidance(move: Move): Guidance =
     move.action.fold {
       val velocity = fleet.agents(move.vehicle).velocityNed(move.headingRad, move.speed)
       Setpoint.velocityZ(velocity.x, velocity.y, altitude(move.vehicle).value)
-    }(Acting.setpoint)
+    }(Acting.guidance)
 
   private def action(decision: Decision): Action =
     decision.action.getOrElse:

@@ -7,7 +7,7 @@ import skein.policy.{Action, Fleet}
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.signal.*
 import skein.units.*
-import skein.vehicle.{Quadrotor, QuadrotorState, Setpoint}
+import skein.vehicle.{Guidance, Quadrotor, QuadrotorState, Setpoint}
 
 /** Quadrotors in AirSim's physics behind a link, without wire or server: each direction of each vehicle delays by half
   * of a sampled round trip and keeps the order. Their clock is not the controller's. A move answers when it is
@@ -22,12 +22,12 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
   private val step      = Span.ofSeconds(quadrotor.stepS)
   private val start     = clock.now()
   private val states    = scenario.agents.map(agent => quadrotor.hovering(agent.startPositionNed))
-  private val setpoints = scenario.agents.map(agent => Setpoint.hold(agent.startPositionNed)).toArray
-  private val seeds     = SplitMix64(seed)
-  private val linkSeed  = seeds.nextLong()
-  private var steps     = 0L
-  private var running   = true
-  private var ranFrom   = (start, 0L)
+  private val guidance = scenario.agents.map[Guidance](agent => Setpoint.hold(agent.startPositionNed)).toArray
+  private val seeds    = SplitMix64(seed)
+  private val linkSeed = seeds.nextLong()
+  private var steps    = 0L
+  private var running  = true
+  private var ranFrom  = (start, 0L)
 
   /** After every step of physics: the simulator's time and the states. */
   var watch: (Span, Vector[QuadrotorState]) => Unit = (_, _) => ()
@@ -64,7 +64,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
 
   private def stepOnce(): Unit =
     steps += 1
-    for (state, setpoint) <- states.zip(setpoints) do quadrotor.step(state, setpoint)
+    for (state, goal) <- states.zip(guidance) do quadrotor.step(state, goal.setpoint(state.kinematics))
     watch(step * steps, states)
 
   private final class Line:
@@ -93,7 +93,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
       val ended = Promise[Boolean]()
       for
         _ <- there.cross()
-        _ = replaceBy(Acting.setpoint(action), Some(ended))
+        _ = replaceBy(Acting.guidance(action), Some(ended))
         finished <- ended.future
         _        <- back.cross()
       yield Right(finished)
@@ -105,8 +105,8 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
         _ <- back.cross()
       yield Right(true)
 
-    private def replaceBy(setpoint: Setpoint, next: Option[Promise[Boolean]]): Unit =
+    private def replaceBy(goal: Guidance, next: Option[Promise[Boolean]]): Unit =
       catchUp()
-      setpoints(vehicle) = setpoint
+      guidance(vehicle) = goal
       flying.foreach(_.success(false))
       flying = next

@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.airsim.wire.YawMode
 import skein.units.*
-import skein.vehicle.Setpoint
+import skein.vehicle.{PathFollowing, Setpoint}
 
 /** A move under way. AirSim's calls loop every 20 ms of simulated time: look at the vehicle, renew its goal, end when
   * done or when their time is over (`MultirotorApiBase`).
@@ -28,9 +28,6 @@ private[simulator] enum Progress:
   case Ended(result: Boolean, goal: Option[Setpoint])
 
 private[simulator] object Move:
-  /** Time between two turns. */
-  val Period: Span = Span.ofMillis(20)
-
   /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text of the
     * exception that AirSim throws.
     */
@@ -78,7 +75,7 @@ private[simulator] object Move:
   /** The yaw of a vehicle that is to look where it goes, if the drivetrain says so. */
   def facing(drivetrain: Int, yaw: YawMode, travelNed: Vector3): YawMode =
     if drivetrain != ForwardOnly || yaw.is_rate then yaw
-    else if travelNed.norm <= DistanceAccuracyM then YawMode.Still
+    else if travelNed.norm <= PathFollowing.DistanceAccuracyM then YawMode.Still
     else
       YawMode(
         false,
@@ -86,9 +83,6 @@ private[simulator] object Move:
       )
 
   val ForwardOnly = 1
-
-  /** Nearer than this AirSim takes two places for one. */
-  val DistanceAccuracyM = 0.5
 
   val ApproximatelyZeroMps = 0.05
 

@@ -3,7 +3,7 @@ package skein.simulator
 import skein.airsim.wire.YawMode
 import skein.units.*
 import skein.units.Decimals.fixed
-import skein.vehicle.Setpoint
+import skein.vehicle.{PathFollowing, Setpoint}
 
 /** How a path is flown.
   *
@@ -72,15 +72,11 @@ final private[simulator] class PathMove private (
 
   private def towardsAim(position: Vector3): Setpoint =
     val way       = aim.point - position
-    val distance  = way.norm
     val remaining = before(last) - before(reached.segment) - reached.offsetM
     val speed     = if speedMps > 3 && remaining <= 0 then 1.0 else speedMps
-    val velocity  =
-      if distance < Move.DistanceAccuracyM then Vector3.Zero
-      else way * (math.min(speed, distance / Move.Period.toSeconds) / distance)
-    val down = if math.abs(way.z) <= Move.DistanceAccuracyM then 0.0 else velocity.z
+    val velocity  = PathFollowing.velocityNed(way, speed)
     Move.withYaw(
-      Setpoint.velocity(velocity.x, velocity.y, down),
+      Setpoint.velocity(velocity.x, velocity.y, velocity.z),
       Move.facing(travel.drivetrain, travel.yaw, way)
     )
 
@@ -101,7 +97,7 @@ private[simulator] object PathMove:
   private case class Place(segment: Int, offsetM: Double, point: Vector3)
 
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>
-    val perTurn   = speedMps * Move.Period.toSeconds
+    val perTurn   = speedMps * PathFollowing.Period.toSeconds
     val lookahead = travel.lookaheadM
     if path.isEmpty then Right((_, _) => Progress.Ended(true, None))
     else if travel.drivetrain == Move.ForwardOnly && travel.yaw.is_rate then
@@ -111,14 +107,14 @@ private[simulator] object PathMove:
       Left(
         s"lookahead value ${lookahead.fixed(6)} is too small for velocity ${speedMps.fixed(6)}. It must be at least ${perTurn.fixed(6)}"
       )
-    else if lookahead > 0 && Move.DistanceAccuracyM > lookahead then
+    else if lookahead > 0 && PathFollowing.DistanceAccuracyM > lookahead then
       Left(
-        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's distance accuracy ${Move.DistanceAccuracyM.fixed(6)}."
+        s"lookahead value ${lookahead.fixed(6)} is smaller than drone's distance accuracy ${PathFollowing.DistanceAccuracyM.fixed(6)}."
       )
     else
       val distance =
         if lookahead > 0 then lookahead.toDouble
-        else math.max(perTurn * (if travel.adaptive > 0 then 30 else 40), Move.DistanceAccuracyM * 1.5)
+        else PathFollowing.lookaheadM(speedMps, travel.adaptive > 0)
       Right(PathMove(
         vehicle.state.positionNed +: path.toVector,
         speedMps,

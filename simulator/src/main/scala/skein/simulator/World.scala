@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.scene.{Lidar, Placement, Scene, SceneObject}
 import skein.units.*
-import skein.vehicle.Quadrotor
+import skein.vehicle.{PathFollowing, Quadrotor}
 
 /** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time it is.
   *
@@ -167,7 +167,7 @@ final class World(
           end(vehicle, result)
 
   private def goOn(vehicle: Int, running: Running): Unit =
-    moves(vehicle) = Some(running.copy(dueAt = clock + Move.Period))
+    moves(vehicle) = Some(running.copy(dueAt = clock + PathFollowing.Period))
 
   private def end(vehicle: Int, result: Boolean): Unit =
     moves(vehicle).foreach(running => ended += Ended(vehicle, running.token, result))

@@ -1,0 +1,21 @@
+package skein.loop
+
+import skein.policy.Yaw
+import skein.signal.Kinematics
+import skein.units.*
+import skein.vehicle.{Guidance, PathFollowing, Setpoint}
+
+/** [[skein.policy.Action.Position]] as AirSim flies it, for a prediction: along the straight line from where the vehicle is. AirSim's
+  * line begins where the command arrived; the two differ by what a vehicle has strayed since.
+  */
+final private[loop] case class PositionGuidance(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw)
+    extends Guidance:
+  private val lookaheadM = PathFollowing.lookaheadM(speed.value, isAdaptive = true)
+
+  val period: Option[Span] = Some(PathFollowing.Period)
+
+  def setpoint(now: Kinematics): Setpoint =
+    val way      = positionNed - now.positionNed
+    val aim      = way * (lookaheadM / way.norm).min(1)
+    val velocity = PathFollowing.velocityNed(aim, speed.value)
+    Acting.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, aim)
