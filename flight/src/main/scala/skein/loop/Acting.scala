@@ -2,10 +2,11 @@ package skein.loop
 
 import skein.policy.{Action, Yaw}
 import skein.units.*
-import skein.vehicle.{Guidance, PathFollowing, Setpoint}
+import skein.vehicle.{Guidance, Setpoint}
 
 /** What of an action stands for it where headings and speeds are asked for, and what the flight controller makes of it. */
 private object Acting:
+  import PositionGuidance.turned
 
   /** Rad: where it flies, or else where it looks; the heading before where it says neither. */
   def headingRad(action: Action, beforeRad: Double): Double = action match
@@ -36,14 +37,6 @@ private object Acting:
 
   private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
     if StrictMath.hypot(northMps, eastMps) < 1e-9 then beforeRad else StrictMath.atan2(eastMps, northMps)
-
-  /** With the yaw that AirSim makes of it for a vehicle that flies along `travelNed` (`adjustYaw`). */
-  def turned(setpoint: Setpoint, yaw: Yaw, travelNed: Vector3): Setpoint = yaw match
-    case Yaw.Towards(heading)                                            => setpoint.withYaw(heading.value)
-    case Yaw.Turning(rate)                                               => setpoint.withYawRate(rate)
-    case Yaw.Forward if travelNed.norm > PathFollowing.DistanceAccuracyM =>
-      setpoint.withYaw(StrictMath.atan2(travelNed.y, travelNed.x))
-    case Yaw.Still | Yaw.Forward => setpoint
 
   /** AirSim's. */
   private val LandingMps = 0.2

@@ -10,6 +10,8 @@ import skein.vehicle.{Guidance, PathFollowing, Setpoint}
   */
 final private[loop] case class PositionGuidance(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw)
     extends Guidance:
+  import PositionGuidance.turned
+
   private val lookaheadM = PathFollowing.lookaheadM(speed.value, isAdaptive = true)
 
   val period: Option[Span] = Some(PathFollowing.Period)
@@ -18,4 +20,14 @@ final private[loop] case class PositionGuidance(positionNed: Vector3, speed: Met
     val way      = positionNed - now.positionNed
     val aim      = way * (lookaheadM / way.norm).min(1)
     val velocity = PathFollowing.velocityNed(aim, speed.value)
-    Acting.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, aim)
+    turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, aim)
+
+private[loop] object PositionGuidance:
+
+  /** With the yaw that AirSim makes of it for a vehicle that flies along `travelNed` (`adjustYaw`). */
+  def turned(setpoint: Setpoint, yaw: Yaw, travelNed: Vector3): Setpoint = yaw match
+    case Yaw.Towards(heading)                                            => setpoint.withYaw(heading.value)
+    case Yaw.Turning(rate)                                               => setpoint.withYawRate(rate)
+    case Yaw.Forward if travelNed.norm > PathFollowing.DistanceAccuracyM =>
+      setpoint.withYaw(StrictMath.atan2(travelNed.y, travelNed.x))
+    case Yaw.Still | Yaw.Forward => setpoint
