@@ -150,7 +150,7 @@ lazy val blocks = project
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
   .dependsOn(core, mcap % "compile->compile;test->test")
-  .settings(libraryDependencies ++= duckdb +: (pekkoStream ++ munit))
+  .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere) ++ pekkoStream ++ munit)
 
 /** What a browser and Foxglove see of a flight, over WebSockets. */
 lazy val view = project

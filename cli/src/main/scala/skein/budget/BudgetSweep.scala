@@ -29,10 +29,16 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
     *
     * @param onProgress
     *   told how many episodes are flown
+    * @param onRow
+    *   told of all rows that are known, after each
     * @return
     *   or why there is none
     */
-  def map(onProgress: Long => Unit, isCancelled: () => Boolean): Either[String, LatencyBudget] =
+  def map(
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean,
+      onRow: Vector[Vector[Option[Tally]]] => Unit = _ => ()
+  ): Either[String, LatencyBudget] =
     for
       truth <- swept.truth
       per   <- tolerance.per(truth).left.map(mistake => s"${swept.formula}: $mistake")
@@ -42,7 +48,10 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
             val flown = above.flatten.flatten.size.toLong * episodes
             swept
               .tallies(row.flatten, episodes, done => onProgress(flown + done), isCancelled)
-              .map(tallies => above :+ spread(row, tallies))
+              .map: tallies =>
+                val known = above :+ spread(row, tallies)
+                onRow(known)
+                known
     yield LatencyBudget(axes.meansMs, axes.jittersMs, rows, truth, per)
 
   /** Episodes of the map. */

@@ -11,6 +11,7 @@ import skein.search.TeamQuestion
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
 import skein.units.Span
+import skein.view.{Shows, TaskShow}
 
 /** Options of `./skein budget`. */
 final case class BudgetOptions(
@@ -47,6 +48,7 @@ final case class BudgetOptions(
     oneWay: Flag,
     @arg(doc = "folder for map.svg, map.png, map.csv and map.json")
     out: String = "budget",
+    view: ViewOptions,
     @arg(doc = "the map as JSON on standard output, as in map.json; all else goes to the error output")
     json: Flag
 )
@@ -83,8 +85,11 @@ final class BudgetCommand(using scenarios: Scenarios)
         "--loop: the paused loop is the truth and feels no latency; expected another"
       )
       folder <- OutFolder.made("--out", options.out)
-      maps   <- fly(options, swept.toVector, tolerance, axes, legs)
-      files  <- write(maps, folder)
+      shows = Shows()
+      task  = TaskShow("budget")
+      _     = shows.add(task)
+      maps  <- options.view.serving(shows)(fly(options, swept.toVector, tolerance, axes, legs, task))
+      files <- write(maps, folder)
     yield
       val shown = Shown(options.json.value)
       if options.json.value then Console.out.println(BudgetMap.json(maps))
@@ -179,7 +184,8 @@ final class BudgetCommand(using scenarios: Scenarios)
       flown: Vector[Swept],
       tolerance: Tolerance,
       axes: BudgetAxes,
-      legs: Legs
+      legs: Legs,
+      task: TaskShow
   ): Either[String, Vector[BudgetMap]] =
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
@@ -194,7 +200,21 @@ final class BudgetCommand(using scenarios: Scenarios)
           )
           startedAt = System.nanoTime()
           line      = ProgressLine(sweep.expected, Console.err)
-          budget <- sweep.map(done => line.show(done, ""), () => stopped)
+          onShow    = BudgetOnShow(
+            task,
+            s"${swept.loop} every ${PolicyFile.brief(swept.periodMs)} ms",
+            sweep.expected,
+            axes,
+            swept.formula + (if swept.unit.isEmpty then "" else s", ${swept.unit}")
+          )
+          budget <- sweep.map(
+            done =>
+              line.show(done, "")
+              onShow.flown(done)
+            ,
+            () => stopped,
+            onShow.rows
+          )
           _ = line.end()
           _ = shown.say(f"${sweep.expected}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s")
           marks <-

@@ -35,6 +35,7 @@ final case class FlyOptions(
     twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String],
+    beside: BesideOptions,
     view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
@@ -59,6 +60,8 @@ final class FlyCommand(using Scenarios)
       _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
       out   <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
+      _     <- options.beside.checked(clock)
+      sinks = BesideOptions.Sinks(options.beside, out)
       flown <- clock match
         case ClockKind.Real =>
           for
@@ -67,18 +70,31 @@ final class FlyCommand(using Scenarios)
             _ <- warmUp(settings)
             shows = Shows()
             flown <-
-              options.view.serving(shows)(flyLive(
+              options.view.serving(shows, controlled = true)(flyLive(
                 settings,
                 simulator,
                 out,
-                Option.when(options.view.view.value)(OnShow(shows))
+                Option.when(options.view.view.value)(OnShow(shows)),
+                sinks
               ))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case ClockKind.Virtual if simulator.isEmpty =>
-          nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
+          for
+            _      <- nothingToOverwrite(settings.plans, out)
+            landed <- flyVirtual(settings, out)
+            _      <- Arguments.all(landed)(one => options.beside.exported(one.plan, out))
+          yield Flown(landed, None)
         case ClockKind.Virtual =>
           Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
-      _ <- all(report(flown.landed, out, Shown(options.json.value)), flown.grounded.toLeft(()))
+      unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
+      _ <- all(
+        report(flown.landed, out, Shown(options.json.value)),
+        Either.cond(
+          unwritten.isEmpty && flown.grounded.isEmpty,
+          (),
+          (unwritten ++ flown.grounded).mkString("\n")
+        )
+      )
     yield ()
 
   /** @param grounded
@@ -113,13 +129,15 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       simulator: Option[Address],
       out: Path,
-      shown: Option[OnShow]
+      shown: Option[OnShow],
+      sinks: BesideOptions.Sinks
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator, tell = tell)
     try
-      if simulator.isEmpty then flyTogether(rigs, settings.plans, settings, out, shown).map(Flown(_, None))
-      else flyInTurn(rigs, settings, out, shown)
+      if simulator.isEmpty then
+        flyTogether(rigs, settings.plans, settings, out, shown, sinks).map(Flown(_, None))
+      else flyInTurn(rigs, settings, out, shown, sinks)
     finally
       val _ = Edge.await(system.terminate())
 
@@ -128,7 +146,8 @@ final class FlyCommand(using Scenarios)
       rigs: FlightRigs,
       settings: FlySettings,
       out: Path,
-      shown: Option[OnShow]
+      shown: Option[OnShow],
+      sinks: BesideOptions.Sinks
   )(using system: ActorSystem): Either[String, Flown] =
     val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
       if before.grounded.isDefined then before
@@ -136,7 +155,7 @@ final class FlyCommand(using Scenarios)
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
       else
         Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(rigs, Vector(plan), settings, out, shown) match
+        flyTogether(rigs, Vector(plan), settings, out, shown, sinks) match
           case Left(reason)  => before.copy(grounded = Some(reason))
           case Right(landed) => before.copy(landed = before.landed ++ landed)
     flown.grounded match
@@ -148,7 +167,8 @@ final class FlyCommand(using Scenarios)
       plans: Vector[FlightPlan],
       settings: FlySettings,
       out: Path,
-      shown: Option[OnShow]
+      shown: Option[OnShow],
+      sinks: BesideOptions.Sinks
   )(using system: ActorSystem): Either[String, Vector[Landed]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()
@@ -156,9 +176,19 @@ final class FlyCommand(using Scenarios)
     Edge
       .untilInterrupted(() => abandon()):
         Edge.await(Future.firstCompletedOf(Seq(
-          LiveFlights.start(rigs, plans, out, heading => shown.fold((_: Record) => ())(_.observe(heading))),
+          LiveFlights.start(
+            rigs,
+            plans,
+            out,
+            heading => shown.fold((_: Record) => ())(_.observe(heading)),
+            sinks.open
+          ),
           abandoned.future
         )))
+      .left
+      .map: why =>
+        sinks.discard(plans)
+        why
       .map: flights =>
         shown.foreach(_.flying(flights))
         val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)

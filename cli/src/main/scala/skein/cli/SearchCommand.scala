@@ -12,6 +12,7 @@ import skein.search.*
 import skein.settings.PolicyFile
 import skein.simd.LaneFunction
 import skein.units.Span
+import skein.view.{Shows, TaskShow}
 
 /** Options of `./skein search`. */
 final case class SearchOptions(
@@ -48,6 +49,7 @@ final case class SearchOptions(
     out: Option[String],
     @arg(doc = "a folder whose search was stopped: goes on with it, and ends as if it had not been stopped")
     resume: Option[String],
+    view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -65,13 +67,19 @@ final class SearchCommand(using scenarios: Scenarios)
       threads <- options.forward.threadCount
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      _ <- question match
-        case duel: SearchQuestion =>
-          duel.setup.flatMap(setup => run(setup, folder, state.getOrElse(setup.search.start), threads, shown))
-        case team: TeamQuestion =>
-          team.setup.flatMap(setup =>
-            TeamSearch(setup, folder, threads, shown).run(state.getOrElse(setup.search.start))
-          )
+      shows                     = Shows()
+      task                      = TaskShow("search")
+      _                         = shows.add(task)
+      _ <- options.view.serving(shows):
+        question match
+          case duel: SearchQuestion =>
+            duel.setup.flatMap(setup =>
+              run(setup, folder, state.getOrElse(setup.search.start), threads, shown, task)
+            )
+          case team: TeamQuestion =>
+            team.setup.flatMap(setup =>
+              TeamSearch(setup, folder, threads, shown, task).run(state.getOrElse(setup.search.start))
+            )
     yield ()
 
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
@@ -171,9 +179,16 @@ final class SearchCommand(using scenarios: Scenarios)
       folder: Path,
       from: SearchState,
       threads: Int,
-      shown: Shown
+      shown: Shown,
+      task: TaskShow
   ): Either[String, Unit] =
-    val batch = setup.batch(threads)
+    val batch  = setup.batch(threads)
+    val onShow = SearchOnShow(
+      task,
+      s"${setup.family.name}, ${setup.question.conditions.loop} over ${setup.question.link}",
+      setup.search.expected,
+      measured(setup)
+    )
     say(shown, introduction(setup, batch))
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
@@ -181,7 +196,9 @@ final class SearchCommand(using scenarios: Scenarios)
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
       val searched  =
         SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
-          .run(from, () => stopped)(state => line.show(state.flown, progress(setup, state)))
+          .run(from, () => stopped): state =>
+            line.show(state.flown, progress(setup, state))
+            onShow.step(state, progress(setup, state))
       line.end()
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
@@ -192,7 +209,10 @@ final class SearchCommand(using scenarios: Scenarios)
         )
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
-        else conclude(setup, batch, folder, state, shown).map(_ => if !state.isDone then say(shown, goOn))
+        else
+          conclude(setup, batch, folder, state, shown, onShow).map(_ =>
+            if !state.isDone then say(shown, goOn)
+          )
 
   private def introduction(setup: SearchSetup, batch: DuelBatch): String =
     import setup.{family, objective, opponent, question}
@@ -217,7 +237,8 @@ final class SearchCommand(using scenarios: Scenarios)
       batch: DuelBatch,
       folder: Path,
       state: SearchState,
-      shown: Shown
+      shown: Shown,
+      onShow: SearchOnShow
   ): Either[String, Unit] =
     val effort = Effort.of(setup, batch)
     // Somebody who stops a search does not wait for long.
@@ -228,7 +249,7 @@ final class SearchCommand(using scenarios: Scenarios)
       file <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <-
-        if state.isDone then landscape(setup, batch, folder, result, effort.within(fresh), shown)
+        if state.isDone then landscape(setup, batch, folder, result, effort.within(fresh), shown, onShow)
         else Right(Vector.empty)
     yield say(shown, s"written: ${(file ++ pictures).mkString(", ")}")
 
@@ -238,7 +259,8 @@ final class SearchCommand(using scenarios: Scenarios)
       folder: Path,
       result: SearchResult,
       effort: Effort,
-      shown: Shown
+      shown: Shown,
+      onShow: SearchOnShow
   ): Either[String, Vector[Path]] =
     say(shown, "drawing the landscape")
     val land = Landscape.of(
@@ -246,17 +268,19 @@ final class SearchCommand(using scenarios: Scenarios)
       result.policy.parameters,
       setup.evaluator(batch),
       SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
-      onMap = effort.onMap
+      onMap = effort.onMap,
+      onRow = onShow.landscape
     )
     val title =
       s"${setup.family.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
-    val unit    = setup.objective.unit
-    val drawing =
-      LandscapeFigure(land, title, setup.objective.formula + (if unit.isEmpty then "" else s", $unit"))
+    val drawing = LandscapeFigure(land, title, measured(setup))
     OutFolder.write(
       folder,
       OutFolder.picture("landscape", drawing, title) :+ OutFolder.text("landscape.csv", land.csv)
     )
+
+  private def measured(setup: SearchSetup): String =
+    setup.objective.formula + (if setup.objective.unit.isEmpty then "" else s", ${setup.objective.unit}")
 
   private def brief(value: Double): String = PolicyFile.brief(value)
 

@@ -9,6 +9,7 @@ import skein.link.{TcpTransport, TransportError}
 import skein.settings.{NamedScene, TextFile}
 import skein.simulator.{Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
+import skein.view.Shows
 
 /** Options of `./skein serve`. */
 final case class ServeOptions(
@@ -23,7 +24,8 @@ final case class ServeOptions(
     @arg(doc = "speed of the simulator's clock against the machine's")
     speed: Double = 1.0,
     @arg(doc = "what stands in the world: empty, forest, street, or a file")
-    scene: String = "empty"
+    scene: String = "empty",
+    view: ViewOptions
 )
 
 object ServeCommand
@@ -47,7 +49,13 @@ object ServeCommand
       )
       world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
       scene <- NamedScene.read(options.scene).left.map("--scene: " + _)
-      _     <- serve(SimulatorSettings(world, address, overload, options.speed, scene = scene.scene))
+      shows = Shows()
+      _ <- options.view.serving(shows)(
+        serve(
+          SimulatorSettings(world, address, overload, options.speed, scene = scene.scene),
+          Option.when(options.view.view.value)(shows)
+        )
+      )
     yield ()
 
   private def overloadOf(text: String): Either[String, Overload] = text match
@@ -66,7 +74,7 @@ object ServeCommand
       supported <- SimulatorSettings.supported(world).left.map(error => s"$file: ${error.message}")
     yield supported
 
-  private def serve(settings: SimulatorSettings): Either[String, Unit] =
+  private def serve(settings: SimulatorSettings, shows: Option[Shows]): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
@@ -80,8 +88,10 @@ object ServeCommand
         system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
           system.dispatcher
         )
+      val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
       val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
       telling.cancel()
+      shown.foreach(_.cancel())
       Edge.await(server.close())
       outcome
     catch case error: TransportError => Left(error.getMessage)

@@ -5,10 +5,25 @@ import skein.lanes.TeamBatch
 import skein.optimise.SearchState
 import skein.search.*
 import skein.settings.PolicyFile.brief
+import skein.view.TaskShow
 
 /** `./skein search --scenario`: a search over a scenario's settings, to its end or until it is stopped. */
-private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int, shown: Shown):
+private[cli] final class TeamSearch(
+    setup: TeamSetup,
+    folder: Path,
+    threads: Int,
+    shown: Shown,
+    task: TaskShow
+):
   import TeamSearch.*
+
+  private val measured = setup.formula + (if setup.unit.isEmpty then "" else s", ${setup.unit}")
+  private val onShow   = SearchOnShow(
+    task,
+    s"${setup.kind.name}, ${setup.question.conditions.loop} over ${setup.question.link}",
+    setup.search.expected,
+    measured
+  )
 
   def run(from: SearchState): Either[String, Unit] =
     val batch = setup.batch(threads)
@@ -19,7 +34,9 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
       val searched  =
         SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
-          .run(from, () => stopped)(state => line.show(state.flown, progress(state)))
+          .run(from, () => stopped): state =>
+            line.show(state.flown, progress(state))
+            onShow.step(state, progress(state))
       line.end()
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
@@ -68,12 +85,12 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
       result.best,
       setup.evaluator(batch),
       SearchResult.FreshFrom until SearchResult.FreshFrom + (if byLanes then LandscapeEpisodes else 2),
-      onMap = if byLanes then OnMap else ScalarOnMap
+      onMap = if byLanes then OnMap else ScalarOnMap,
+      onRow = onShow.landscape
     )
     val title =
       s"${setup.kind.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
-    val drawing =
-      LandscapeFigure(land, title, setup.formula + (if setup.unit.isEmpty then "" else s", ${setup.unit}"))
+    val drawing = LandscapeFigure(land, title, measured)
     OutFolder.write(
       folder,
       OutFolder.picture("landscape", drawing, title) :+ OutFolder.text("landscape.csv", land.csv)

@@ -7,7 +7,7 @@ import skein.loop.planning.BackgroundThread
 import skein.units.Clock
 import skein.view.{Shows, Token, ViewServer}
 
-/** Whether and where a flight can be looked at. */
+/** Whether and where a flight, or other work, can be looked at. */
 final case class ViewOptions(
     @arg(doc = "shows it in the browser and in Foxglove, at an address that is printed")
     view: Flag,
@@ -23,8 +23,12 @@ final case class ViewOptions(
     )
     viewOrigin: Seq[String]
 ):
-  /** Serves `shows` while `body` runs, if that is wanted. */
-  def serving[A](shows: Shows)(body: => Either[String, A]): Either[String, A] =
+  /** Serves `shows` while `body` runs, if that is wanted.
+    *
+    * @param controlled
+    *   whether anything can be done to them from the page
+    */
+  def serving[A](shows: Shows, controlled: Boolean = false)(body: => Either[String, A]): Either[String, A] =
     if !view.value then body
     else
       val port = viewPort.getOrElse(ViewServer.DefaultPort)
@@ -50,8 +54,8 @@ final case class ViewOptions(
               )
           ).flatMap: server =>
             Console.err.println(
-              s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}; " +
-                s"token of the page's controls: ${token.word}"
+              s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}" +
+                (if controlled then s"; token of the page's controls: ${token.word}" else "")
             )
             try body
             finally Edge.await(server.close()): Unit

@@ -10,7 +10,7 @@ import skein.policy.SearchSpace
   * @param y
   *   of the second, if there is one
   * @param cells
-  *   by y, then by x; one row without y
+  *   by y, then by x; one row without y. Rows are missing at the end of a map that is not done
   */
 final case class Landscape(
     space: SearchSpace,
@@ -47,6 +47,8 @@ object Landscape:
     *   of every cell
     * @param onMap
     *   points along each axis of a map
+    * @param onRow
+    *   told of the map after each of its rows
     */
   def of(
       space: SearchSpace,
@@ -54,7 +56,8 @@ object Landscape:
       evaluator: Evaluator,
       episodes: Range,
       onCurve: Int = OnCurve,
-      onMap: Int = OnMap
+      onMap: Int = OnMap,
+      onRow: Landscape => Unit = _ => ()
   ): Landscape =
     def values(axis: Int, count: Int) =
       Vector.tabulate(count)(i => space.axes(axis).least + space.axes(axis).width * i / (count - 1))
@@ -64,11 +67,11 @@ object Landscape:
     else
       val Vector(x, y) = mostSensitive(space, best, evaluator, episodes): @unchecked
       val (xs, ys)     = (values(x, onMap), values(y, onMap))
-      val cells        = evaluator.tallies(
-        for yValue <- ys; xValue <- xs yield best.updated(x, xValue).updated(y, yValue),
-        episodes
-      )
-      Landscape(space, best, x, Some(y), xs, ys, cells.grouped(onMap).toVector)
+      ys.foldLeft(Landscape(space, best, x, Some(y), xs, ys, Vector.empty)): (below, yValue) =>
+        val row  = evaluator.tallies(xs.map(xValue => best.updated(x, xValue).updated(y, yValue)), episodes)
+        val land = below.copy(cells = below.cells :+ row)
+        onRow(land)
+        land
 
   /** The two axes along which the objective's mean varies most, in the order of the space. */
   private def mostSensitive(

@@ -6,7 +6,7 @@ import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.loop.RunningGraph
-import skein.record.{DuckDbRecorder, Heading, ObservedRecorder, Record}
+import skein.record.{DuckDbRecorder, Heading, ObservedRecorder, Record, RowSink}
 import skein.settings.FlightPlan
 
 /** Flights in real time, side by side, each with a recording of its own in `folder`. */
@@ -53,6 +53,8 @@ object LiveFlights:
     *
     * @param observe
     *   is shown every record of a flight that begins with a heading; it must not wait for anything
+    * @param beside
+    *   what takes a flight's rows besides its recording, or why it cannot
     * @return
     *   or why they cannot be flown; those that had started were stopped again
     */
@@ -60,11 +62,12 @@ object LiveFlights:
       rigs: FlightRigs,
       plans: Vector[FlightPlan],
       folder: Path,
-      observe: Heading => Record => Unit = _ => _ => ()
+      observe: Heading => Record => Unit = _ => _ => (),
+      beside: (FlightPlan, Heading) => Either[String, Vector[RowSink]] = (_, _) => Right(Vector.empty)
   )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
     Future
-      .sequence(plans.map(start(rigs, _, folder, observe)))
+      .sequence(plans.map(start(rigs, _, folder, observe, beside)))
       .flatMap: started =>
         val flying = started.collect { case Right(rig) => rig }
         started.collectFirst { case Left(reason) => reason } match
@@ -81,14 +84,18 @@ object LiveFlights:
       rigs: FlightRigs,
       plan: FlightPlan,
       folder: Path,
-      observe: Heading => Record => Unit
+      observe: Heading => Record => Unit,
+      beside: (FlightPlan, Heading) => Either[String, Vector[RowSink]]
   )(using system: ActorSystem): Future[Either[String, FlightRig]] =
     import system.dispatcher
     val heading = rigs.heading(plan, clockKind = "real")
-    DuckDbRecorder
-      .open(plan.file(folder), heading)
+    val opened  = beside(plan, heading) match
+      case Left(reason) => Future.successful(Left(reason))
+      case Right(sinks) =>
+        DuckDbRecorder.open(plan.file(folder), heading, beside = sinks).map(_.left.map(_.message))
+    opened
       .flatMap:
-        case Left(error)     => Future.successful(Left(error.message))
+        case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
           rigs
             .start(plan, ObservedRecorder(recorder, observe(heading)))

@@ -10,7 +10,7 @@ package skein.loop
 final case class Spot(column: Int, row: Double)
 
 /** A column for each part: one behind the last of those that lead to it, where nothing turns back. Within a column, parts
-  * stand as those do that lead to them.
+  * stand as those do that lead to them; what turns back stands below.
   */
 object GraphLayout:
 
@@ -21,6 +21,7 @@ object GraphLayout:
       forward.foldLeft(columns)((known, edge) =>
         known.updated(edge.to, known(edge.to).max(known(edge.from) + 1))
       )
+    val turning   = graph.edges.filterNot(forward.contains).map(_.from).toSet
     val inColumns = graph.stages.groupBy(columns).toVector.sortBy(_._1)
     val tallest   = inColumns.map(_._2.size).maxOption.getOrElse(0)
     inColumns.foldLeft(Map.empty[String, Spot]): (placed, column) =>
@@ -28,7 +29,7 @@ object GraphLayout:
       def above(name: String) =
         val rows = before(name).flatMap(placed.get).map(_.row)
         if rows.isEmpty then 0.0 else rows.sum / rows.size
-      placed ++ names.sortBy(name => (above(name), name)).zipWithIndex.map((name, row) =>
+      placed ++ names.sortBy(name => (above(name), turning(name), name)).zipWithIndex.map((name, row) =>
         name -> Spot(at, row + (tallest - names.size) / 2.0)
       )
 

@@ -10,7 +10,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.{Failure, Success}
 
-/** Writes a flight into one DuckDB file while it flies. Records wait in a bounded queue; a stream of its own, on the
+/** Writes a flight into one DuckDB file while it flies, and gives its rows to others who write them elsewhere. Records wait in a bounded queue; a stream of its own, on the
   * dispatcher for blocking work, commits them every [[DuckDbRecorder.commitInterval]] or every
   * [[DuckDbRecorder.batchSize]] rows. What is committed survives a kill of the process.
   */
@@ -51,27 +51,48 @@ object DuckDbRecorder:
   /** Rows committed at once at the most. */
   val batchSize = 4096
 
-  /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made. */
-  def open(file: Path, heading: Heading, capacity: Int = defaultCapacity)(using
+  /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made.
+    *
+    * @param beside
+    *   get every row that is committed, and are closed with this
+    */
+  def open(
+      file: Path,
+      heading: Heading,
+      capacity: Int = defaultCapacity,
+      beside: Vector[RowSink] = Vector.empty
+  )(using
       system: ActorSystem
   ): Future[Either[RecordError, DuckDbRecorder]] =
     given ExecutionContext = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
-    Future(RecordingFile.create(file, heading)).map(_.map(start(_, capacity)))
+    Future(RecordingFile.create(file, heading)).map(_.map: made =>
+      val rows = Numbered(beside)
+      rows.put(heading.records)
+      start(made, capacity, rows))
 
-  private def start(file: RecordingFile, capacity: Int)(using ActorSystem, ExecutionContext): DuckDbRecorder =
+  private def start(file: RecordingFile, capacity: Int, rows: Numbered)(using
+      ActorSystem,
+      ExecutionContext
+  ): DuckDbRecorder =
     val failed           = Promise[RecordError]()
     val ending           = AtomicReference(Option.empty[Ending])
     val closing          = Promise[Unit]()
     val (queue, drained) = Source
       .queue[Record](capacity)
       .groupedWithin(batchSize, commitInterval)
-      .map(file.write)
+      .map: batch =>
+        val written = file.write(batch)
+        if written.isRight then rows.put(batch)
+        written
       .takeWhile(_.isRight, inclusive = true)
       .toMat(Sink.foreach(_.left.foreach(failed.trySuccess)))(Keep.both)
       .addAttributes(ActorAttributes.dispatcher(Dispatchers.DefaultBlockingDispatcherId))
       .run()
     def finish(): Either[RecordError, Written] =
-      for last <- ending.get do file.end(last).left.foreach(failed.trySuccess)
+      for last <- ending.get do
+        file.end(last).left.foreach(failed.trySuccess)
+        rows.put(Seq(last))
+      rows.close()
       val written = file.close()
       written.left.foreach(failed.trySuccess)
       failed.future.value.fold(written)(reason => Left(reason.get))
@@ -82,3 +103,14 @@ object DuckDbRecorder:
         failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
         Future.successful(finish())
     DuckDbRecorder(capacity, queue, failed, ending, closing, closed)
+
+  /** Numbers rows as the file does, for those beside it. */
+  private final class Numbered(beside: Vector[RowSink]):
+    private var next = 0L
+
+    def put(records: Seq[Record]): Unit =
+      val rows = records.zipWithIndex.map((record, index) => (next + index, record))
+      next += records.size
+      beside.foreach(_.put(rows))
+
+    def close(): Unit = beside.foreach(_.close())

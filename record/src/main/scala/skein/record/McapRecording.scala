@@ -30,20 +30,16 @@ object McapRecording:
       _    <- attempt(RecordError.ExportFailed(file, _))(McapFile.write(file, options)(write(rows, _)))
     yield ()
 
-  private val options = WriterOptions(library = "skein")
+  private[record] val options = WriterOptions(library = "skein")
 
   private def write(rows: Vector[(Long, Record)], mcap: McapWriter): Unit =
-    val channels = Channels(mcap)
-    val names    = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
-    val from     =
+    val names = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
+    val from  =
       rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
         Instant.ofNanos(0)
       )
-    val topics = FlightTopics(names, from, Some(firstOffset(rows)))
-    mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
-    FlightTopics.all(names).foreach(channels.add)
-    topics.opening.foreach(channels.put)
-    rows.foreach((number, record) => topics.of(number, record).foreach(channels.put))
+    val flight = Rows(mcap, names, from, Some(firstOffset(rows)))
+    rows.foreach(flight.put)
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
@@ -53,6 +49,22 @@ object McapRecording:
       first.state.receivedAt.since(first.state.validAt)
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
+
+  /** A flight in a file: its topics, and what is there before the first row, at once; then row by row. */
+  private[record] final class Rows(
+      mcap: McapWriter,
+      vehicles: Vector[String],
+      from: Instant,
+      offset: Option[Span]
+  ):
+    private val topics   = FlightTopics(vehicles, from, offset)
+    private val channels = Channels(mcap)
+
+    mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
+    FlightTopics.all(vehicles).foreach(channels.add)
+    topics.opening.foreach(channels.put)
+
+    def put(number: Long, record: Record): Unit = topics.of(number, record).foreach(channels.put)
 
   private final class Channels(mcap: McapWriter):
     private val schemas  = mutable.Map.empty[String, Int]

@@ -11,6 +11,7 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.link.{Address, Transport}
 import skein.rpc.{CallLines, Encoded, RpcRequest, RpcServer, ServerEvent, ServerStats}
+import skein.signal.Kinematics
 import skein.units.*
 import upack.Msg
 
@@ -46,12 +47,25 @@ final class SimulatorServer private (
   /** Simulated time skipped so far because the machine was too slow, or asleep. */
   def behind: Span = Span.ofNanos(behindNanos.get)
 
+  /** Where all vehicles truly are; never, once it is closed. */
+  def truth(): Future[SimulatorServer.Truth] =
+    val answer = Promise[SimulatorServer.Truth]()
+    simulator ! SimulatorServer.Message.Look(answer)
+    answer.future
+
   /** Stops listening and closes all connections; moves under way are not answered. */
   def close(): Future[Done] =
     simulator ! SimulatorServer.Message.Stop
     server.close()
 
 object SimulatorServer:
+
+  /** @param at
+    *   on the simulator's clock
+    * @param vehicles
+    *   world NED
+    */
+  final case class Truth(at: Instant, vehicles: Vector[(name: String, kinematics: Kinematics)])
 
   /** Starts a simulator. The future fails with the transport's error if it cannot listen there, such as
     * [[skein.link.TransportError.PortTaken]].
@@ -92,6 +106,7 @@ object SimulatorServer:
     /** Calls wait. */
     case Work
     case Wake
+    case Look(answer: Promise[Truth])
     case Stop
 
   final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg | Encoded]])
@@ -149,7 +164,29 @@ object SimulatorServer:
           orEnd:
             simulation.advance(clock.now())
             goOn()
+        case Message.Look(answer) =>
+          orEnd:
+            simulation.advance(clock.now())
+            answer.success(truth): Unit
+            goOn()
         case Message.Stop => Behaviors.stopped
+
+    private def truth =
+      val world = simulation.world
+      Truth(
+        world.now,
+        world.vehicles.map: vehicle =>
+          val state = vehicle.state
+          (
+            name = vehicle.settings.name,
+            kinematics = Kinematics(
+              vehicle.settings.startNed + vehicle.positionAt(world.now),
+              vehicle.velocityAt(world.now),
+              state.orientation,
+              state.angularVelocityFrd
+            )
+          )
+      )
 
     /** Pictures are drawn beside the simulation, which goes on meanwhile. */
     private def complete(

@@ -27,7 +27,7 @@ export class FlightMap {
     for (const vehicle of vehicles) {
       this.trail(vehicle, flight.now, x, y);
       const px = x(vehicle.east), py = y(vehicle.north);
-      if (vehicle.predicted) {
+      if (vehicle.predicted && !flight.paused) {
         pen.strokeStyle = pen.fillStyle = vehicle.colour;
         pen.lineWidth = 1.5;
         pen.setLineDash([3, 3]);
@@ -37,7 +37,7 @@ export class FlightMap {
         pen.arc(x(vehicle.predicted.east), y(vehicle.predicted.north), 5, 0, 7);
         pen.stroke();
       }
-      if (vehicle.command) {
+      if (vehicle.command && !flight.paused) {
         const from = vehicle.predicted ?? vehicle;
         pen.strokeStyle = "rgba(40,50,70,.45)";
         pen.lineWidth = 1.5;

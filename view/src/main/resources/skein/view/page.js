@@ -3,12 +3,14 @@ import { Flight } from "/flight.js";
 import { FlightMap } from "/map.js";
 import { Graph } from "/graph.js";
 import { Plots } from "/plots.js";
+import { Task } from "/task.js";
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending", "graph"];
+const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending", "graph", "progress", "curve", "landscape"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));
+const task = new Task(find("task"));
 
 let flight, connection, changed = false, recorded, playing, warnings;
 
@@ -17,6 +19,7 @@ window.skein = { get flight() { return flight; }, get recorded() { return record
 
 function show(id) {
   connection?.close();
+  task.clear();
   find("graph").hidden = true;
   find("control").hidden = !flights.find(one => one.id === id).controls.length;
   find("control").onsubmit = async event => {
@@ -45,7 +48,7 @@ function show(id) {
     },
     row(topic, row, logNs) {
       if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
-      else flight.row(topic.slice(7), row, logNs);
+      else if (!task.row(topic.slice(7), row)) flight.row(topic.slice(7), row, logNs);
       changed = true;
     },
     time(ns) { flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns); changed = true; },

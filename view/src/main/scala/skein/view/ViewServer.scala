@@ -103,6 +103,9 @@ object ViewServer:
       |}
       |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
       |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
+      |# Nobody who connects can fill a terminal: what is turned away is counted.
+      |pekko.loglevel = OFF
+      |pekko.stdout-loglevel = OFF
       |""".stripMargin)
     .withFallback(ConfigFactory.load())
 

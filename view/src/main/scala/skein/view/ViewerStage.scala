@@ -8,8 +8,8 @@ import skein.units.Clock
 /** One viewer's connection: what it says comes in whole, what it is shown goes out.
   *
   * '''Emits when''' downstream pulls and something waits for the viewer. '''Backpressures when''' never; what waits is
-  * bounded, and the newest wins. '''Completes when''' upstream has completed, or the viewer has said too much that is
-  * none of the protocol. '''Cancels when''' downstream cancels.
+  * bounded, and the newest wins. '''Completes when''' upstream has ended, in whichever way, or the viewer has said
+  * too much that is none of the protocol. '''Cancels when''' downstream cancels.
   */
 private[view] final class ViewerStage(show: Show, clock: Clock, counts: Counts)
     extends GraphStage[FlowShape[Message, Message]]:
@@ -38,6 +38,11 @@ private[view] final class ViewerStage(show: Show, clock: Clock, counts: Counts)
           case _                                                   => Left(s"a message has up to $most bytes")
         message.flatMap(obey).left.foreach(refuse)
         if refused > show.limits.refusals then completeStage() else pull(in)
+
+      /** What came was no frame: that is the viewer's mistake, and no failure of ours. */
+      override def onUpstreamFailure(error: Throwable): Unit =
+        counts.refusedMessage()
+        completeStage()
 
       def onPull(): Unit = send()
 

@@ -189,3 +189,19 @@ class ViewServerLiveSuite extends munit.FunSuite:
         assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
       import Control.*
       assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
+
+  serving().test("of thirty thousand malformed frames none disturbs another viewer"): served =>
+    val seed  = 20261122L
+    val other = connect(served.server.port, Protocol.Names*)()
+    val took  = MalformedFrames(served.server.port, "/flights/stream-vpn", seed).write(30_000)
+    assert(took > 70, s"seed $seed: $took connections")
+    assert(
+      served.server.counts.refusedMessages >= took / 2,
+      s"seed $seed: ${served.server.counts.refusedMessages}"
+    )
+    other.send("""{"op":"subscribe","subscriptions":[{"id":5,"channelId":4}]}""")
+    val channel = served.show.channels.find(_.topic.name == "/skein/reading").get.id
+    other.send(s"""{"op":"subscribe","subscriptions":[{"id":6,"channelId":$channel}]}""")
+    served.feed.offer(Samples.reading(7))
+    val data = other.until { case BinaryMessage.Strict(bytes) if bytes(0) == 1 && bytes(1) == 6 => bytes }
+    assertEquals(ujson.read(data.drop(13).utf8String)("sequence").num, 7.0)

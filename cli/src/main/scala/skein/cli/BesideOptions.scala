@@ -1,0 +1,73 @@
+package skein.cli
+
+import java.nio.file.Path
+import java.util.concurrent.ConcurrentLinkedQueue
+import mainargs.{ParserForClass, arg}
+import scala.jdk.CollectionConverters.*
+import skein.record.{ClockKind, Heading, McapRecording, McapRowSink, PostgresRowSink, RowSink}
+import skein.settings.FlightPlan
+
+/** Where flights are recorded besides their DuckDB files. */
+final case class BesideOptions(
+    @arg(doc =
+      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://USER:PASSWORD@HOST:PORT/DATABASE writes a live flight's tables there; may be given several times"
+    )
+    record: Seq[String]
+):
+  def checked(clock: ClockKind): Either[String, Unit] =
+    val unknown = record
+      .find(one => one != "mcap" && !isPostgres(one))
+      .map(other => s"--record: expected mcap or postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '$other'")
+    val untaken = Option.when(clock == ClockKind.Virtual && record.exists(isPostgres))(
+      "--record: flights in virtual time are not written to Postgres; expected mcap"
+    )
+    unknown.orElse(untaken).toLeft(())
+
+  private def isPostgres(one: String) = one.startsWith("postgres://") || one.startsWith("postgresql://")
+  private def wantsMcap               = record.contains("mcap")
+
+  private def sinksOf(plan: FlightPlan, folder: Path, heading: Heading): Seq[Either[String, RowSink]] =
+    record.distinct.map:
+      case "mcap" => McapRowSink.open(fileOf(plan, folder), heading).left.map(_.message)
+      case url    => PostgresRowSink.open(url, heading).left.map("--record: " + _)
+
+  private def fileOf(plan: FlightPlan, folder: Path) =
+    val recording = plan.file(folder)
+    recording.resolveSibling(recording.getFileName.toString.stripSuffix(".duckdb") + ".mcap")
+
+  /** Of a flight that is flown already.
+    *
+    * @return
+    *   or why not
+    */
+  def exported(plan: FlightPlan, folder: Path): Either[String, Unit] =
+    if wantsMcap then McapRecording.write(plan.file(folder), fileOf(plan, folder)).left.map(_.message)
+    else Right(())
+
+object BesideOptions:
+  given ParserForClass[BesideOptions] = ParserForClass[BesideOptions]
+
+  /** Those that are written while flights fly, and what went wrong with them. */
+  final class Sinks(options: BesideOptions, folder: Path):
+    private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
+
+    /** For a flight that begins. */
+    def open(plan: FlightPlan, heading: Heading): Either[String, Vector[RowSink]] =
+      val (wrong, sinks) = options.sinksOf(plan, folder, heading).partitionMap(identity)
+      if wrong.isEmpty then
+        sinks.foreach(sink => opened.add((plan.id, sink)))
+        Right(sinks.toVector)
+      else
+        sinks.foreach: sink =>
+          sink.close()
+          sink.discard()
+        Left(wrong.mkString("\n"))
+
+    /** These could not be flown: what was opened for them is taken away. */
+    def discard(flights: Seq[FlightPlan]): Unit =
+      for one <- opened.asScala if flights.exists(_.id == one.flight) do
+        one.sink.close()
+        one.sink.discard()
+        opened.remove(one): Unit
+
+    def failures: Vector[String] = opened.asScala.flatMap(_.sink.failure).toVector

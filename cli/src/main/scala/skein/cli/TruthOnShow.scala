@@ -1,0 +1,50 @@
+package skein.cli
+
+import java.util.concurrent.atomic.AtomicLong
+import org.apache.pekko.actor.{ActorSystem, Cancellable}
+import scala.concurrent.duration.DurationInt
+import skein.record.{Flight, Heading, Reading, Vehicle}
+import skein.signal.Stamped
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+import skein.view.{Feed, LiveShow, Shows}
+
+/** The vehicles of a simulator where they truly are, for viewers: as readings that took no time. */
+private[cli] object TruthOnShow:
+  private val Every = 50.millis
+
+  /** Until it is cancelled. */
+  def start(settings: SimulatorSettings, server: SimulatorServer, shows: Shows, clock: Clock)(using
+      system: ActorSystem
+  ): Cancellable =
+    import system.dispatcher
+    val feed     = Feed()
+    val sequence = AtomicLong()
+    shows.add(LiveShow(heading(settings, server, clock.now()), feed))
+    system.scheduler.scheduleWithFixedDelay(Every, Every)(() =>
+      server.truth().foreach: truth =>
+        val now    = clock.now()
+        val number = sequence.getAndIncrement()
+        for (name, kinematics) <- truth.vehicles do
+          feed.offer(Reading(number, name, Stamped(kinematics, truth.at, now, now)))
+    )
+
+  private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = Heading(
+    Flight(
+      "simulator",
+      "none",
+      "none",
+      0,
+      Span.ofNanos(Every.toNanos),
+      Span.Zero,
+      "real",
+      server.address.toString,
+      "where vehicles truly are",
+      "",
+      now
+    ),
+    settings.world.vehicles.map(vehicle =>
+      Vehicle(vehicle.name, "", MetresPerSecond(0), vehicle.startNed)
+    ),
+    Nil
+  )

@@ -1,0 +1,44 @@
+// Foxglove's own client: subscribes to every topic, holds every message to its topic's schema, and says what it saw.
+// node client.mjs FOLDER-OF-PACKAGES WEBSOCKET-URL SUBPROTOCOL, until the connection ends or standard input does
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+
+const [folder, url, protocol] = process.argv.slice(2);
+const require = createRequire(join(resolve(folder), "node_modules", "none.js"));
+const { FoxgloveClient } = require("@foxglove/ws-protocol");
+const WebSocket = require("ws");
+const Ajv = require("ajv");
+
+const schemas = new Ajv({ strict: false, validateFormats: false });
+const socket = new WebSocket(url, [protocol]);
+const client = new FoxgloveClient({ ws: socket });
+const topics = new Map(), bySubscription = new Map(), wrong = [], readings = [], statuses = [];
+let info;
+
+client.on("serverInfo", event => { info = event; });
+client.on("status", event => statuses.push(event.message));
+client.on("error", event => wrong.push(String(event)));
+client.on("advertise", channels => {
+  for (const channel of channels) {
+    const valid = schemas.compile(JSON.parse(channel.schema));
+    const topic = { name: channel.topic, schema: channel.schemaName, messages: 0, valid };
+    topics.set(channel.topic, topic);
+    bySubscription.set(client.subscribe(channel.id), topic);
+  }
+});
+client.on("message", ({ subscriptionId, timestamp, data }) => {
+  const topic = bySubscription.get(subscriptionId);
+  topic.messages++;
+  const message = JSON.parse(new TextDecoder().decode(data));
+  if (!topic.valid(message)) wrong.push(`${topic.name}: ${schemas.errorsText(topic.valid.errors)}`);
+  if (topic.name === "/skein/reading") readings.push([message.vehicle, message.sequence, message.positionNorthM, String(timestamp)]);
+});
+const tell = () => {
+  console.log(JSON.stringify({
+    protocol: socket.protocol, info, statuses, wrong: wrong.slice(0, 10), readings,
+    topics: [...topics.values()].map(({ name, schema, messages }) => ({ name, schema, messages })),
+  }));
+  process.exit(0);
+};
+client.on("close", tell);
+process.stdin.on("end", tell).resume();

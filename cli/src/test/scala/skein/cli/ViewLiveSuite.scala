@@ -1,0 +1,221 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.file.{Files, Path}
+import java.util.concurrent.Executors
+import scala.concurrent.duration.{Duration, DurationInt}
+import scala.concurrent.{Await, ExecutionContext, Future}
+import scala.util.Using
+import skein.record.*
+import skein.report.DuelReport
+import skein.scenario.Scenarios
+import skein.units.Clock
+import skein.view.{RecordedShow, Shows, ViewServer}
+
+/** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
+class ViewLiveSuite extends munit.FunSuite:
+  import ViewLiveSuite.*
+  private given Scenarios = DuelReport.scenarios
+
+  override val munitTimeout: Duration = 5.minutes
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("view"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def needed[A](tool: Either[String, A]): A =
+    tool.left.foreach(why => assume(false, why))
+    tool.toOption.get
+
+  private def browse(url: String, token: String, steps: ujson.Value*): ujson.Value =
+    val task = ujson.Obj("token" -> token, "steps" -> ujson.Arr(steps*)).render()
+    val said = JavaScriptTools.run(
+      240,
+      "node",
+      JavaScriptTools.script("browser.mjs"),
+      needed(JavaScriptTools.packages).toString,
+      needed(JavaScriptTools.browser),
+      url,
+      task
+    )
+    val seen = ujson.read(said.fold(fail(_), identity))
+    assertEquals((seen("problems"), seen("foreign")), (ujson.Arr(), ujson.Arr()))
+    seen
+
+  private def step(what: String, how: ujson.Value*): ujson.Value = ujson.Arr((ujson.Str(what) +: how)*)
+
+  folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
+    out =>
+      val packages = needed(JavaScriptTools.packages)
+      val flying   = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "10s")
+      val saids    = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
+        protocol -> Future(
+          JavaScriptTools.run(
+            240,
+            "node",
+            JavaScriptTools.script("client.mjs"),
+            packages.toString,
+            s"ws://127.0.0.1:${flying.port}/flights/predictive-vpn",
+            protocol
+          )
+        )(using threads)
+      flying.land()
+      val recorded =
+        RecordingReader.read(out.resolve("predictive-vpn.duckdb")).fold(
+          error => fail(error.message),
+          identity
+        )
+      val places = recorded.readings.map(row => (row.vehicle, row.sequence) -> row.state).toMap
+      for (protocol, said) <- saids do
+        val seen = ujson.read(Await.result(said, 1.minute).fold(fail(_), identity))
+        assertEquals((seen("protocol").str, seen("wrong")), (protocol, ujson.Arr()))
+        val counts = seen("topics").arr.map(topic => topic("name").str -> topic("messages").num.toInt).toMap
+        val topics = FlightTopics.all(recorded.heading.vehicles.map(_.name).toVector).map(_.name).toSet
+        assertEquals(counts.keySet, topics + "/skein/graph")
+        for topic <- Seq(
+            "reading",
+            "decision",
+            "command",
+            "prediction",
+            "acknowledgement",
+            "graph"
+          ).map("/skein/" + _) ++
+            Seq(
+              "/tf",
+              "/tf_static",
+              "/vehicles/Evader/pose",
+              "/vehicles/Pursuer/trail",
+              "/vehicles/Pursuer/body"
+            )
+        do assert(counts(topic) > 0, s"$topic: $counts")
+        val readings = seen("readings").arr
+        assert(readings.size > 60, readings.size.toString)
+        for read <- readings do
+          val state = places((read(0).str, read(1).num.toLong))
+          assertEquals(
+            (read(2).num, read(3).str.toLong),
+            (state.value.positionNed.x, state.receivedAt.toNanos)
+          )
+
+  folder.test("in a browser a flight is seen, paused and let go on, and its recording is played and sought"):
+    out =>
+      val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
+      val flying = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "30s")
+      val shown  =
+        "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
+      val seen = browse(
+        flying.url,
+        flying.token,
+        step(
+          "wait",
+          "window.skein?.flight?.vehicles.size === 2 && skein.flight.now > 4 && skein.frames > 10"
+        ),
+        step("ask", "before", shown),
+        step("ask", "parts", "document.querySelectorAll('#graph rect').length"),
+        step("click", "#pause"),
+        step("wait", "skein.flight.paused"),
+        step("sleep", 1500),
+        step("ask", "decided", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
+        step("sleep", 1500),
+        step("ask", "still", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
+        step("click", "#continue"),
+        step("wait", "!skein.flight.paused"),
+        step("wait", "[...skein.flight.vehicles.values()].every(one => one.decided > skein.flight.now - 1)"),
+        step("click", "#abort"),
+        step("wait", "skein.flight.ending")
+      )
+      flying.land()
+      val file     = out.resolve("predictive-vpn.duckdb")
+      val recorded = RecordingReader.read(file).fold(error => fail(error.message), identity)
+      val events   = recorded.events.map(_.kind)
+      assertEquals(
+        events.filter(Set(EventKind.Paused, EventKind.Continued, EventKind.Aborted)),
+        Vector(EventKind.Paused, EventKind.Continued, EventKind.Aborted)
+      )
+      assertEquals(seen("questions").arr.size, 3)
+      assertEquals(seen("told")("decided"), seen("told")("still"))
+      // Two of each part of a vehicle, and due, events, view, cast, steered, fan, record, feed back.
+      assertEquals(seen("told")("parts").num.toInt, 18)
+      for vehicle <- seen("told")("before").arr do
+        val places = recorded.readings.filter(_.vehicle == vehicle(0).str).map(_.state.value.positionNed)
+        assert(
+          places.exists(place => (place.x, place.y) == (vehicle(1).num, vehicle(2).num)),
+          vehicle.toString
+        )
+        assert(vehicle(3).num > 3)
+      replayed(file, recorded)
+
+  /** What the page shows at a time is what the recording held by then. */
+  private def replayed(file: Path, recorded: Recording): Unit =
+    val shows = Shows()
+    shows.add(RecordedShow.of(RecordingReader.records(file).fold(error => fail(error.message), identity)))
+    val server = Edge.await(ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0))
+    try
+      val shown =
+        "[skein.flight.now, ...[...skein.flight.vehicles.values()].map(one => [one.name, one.north])]"
+      val seen = browse(
+        server.url,
+        "",
+        step("wait", "window.skein?.recorded && skein.flight.vehicles.size === 2"),
+        step("wait", "Number(document.getElementById('seek').max) > 4"),
+        step("seek", 3),
+        step("wait", "Math.abs(skein.flight.now - 3) < 1e-6"),
+        step("wait", "[...skein.flight.vehicles.values()].every(one => one.north !== undefined)"),
+        step("sleep", 500),
+        step("ask", "at3", shown),
+        step("click", "#play"),
+        step("wait", "skein.playing.status === 'playing' && skein.flight.now > 3.5"),
+        step("click", "#play"),
+        step("wait", "skein.playing.status === 'paused'"),
+        step("seek", 1),
+        step("wait", "Math.abs(skein.flight.now - 1) < 1e-6"),
+        step("sleep", 500),
+        step("ask", "at1", shown)
+      )
+      val start = recorded.readings.map(_.state.receivedAt).min
+      for (asked, seconds) <- Seq("at3" -> 3, "at1" -> 1); vehicle <- seen("told")(asked).arr.drop(1) do
+        val until  = start + skein.units.Span.ofSeconds(seconds)
+        val newest =
+          recorded.readings.filter(row => row.vehicle == vehicle(0).str && row.state.receivedAt <= until).last
+        assertEquals(vehicle(1).num, newest.state.value.positionNed.x, s"${vehicle(0)} $asked")
+    finally Edge.await(server.close()): Unit
+
+object ViewLiveSuite:
+  /** What waits for other processes, each on a thread of its own. */
+  private val threads = ExecutionContext.fromExecutor(Executors.newCachedThreadPool())
+
+  /** `./skein fly --view` in this process. */
+  final class Flying(err: ByteArrayOutputStream, status: Future[Int]):
+    private def told(what: String): String = s"$what(\\S+)".r
+      .findFirstMatchIn(err.toString)
+      .fold(throw IllegalStateException(s"no '$what' in: $err"))(_.group(1).stripSuffix(","))
+
+    def url: String   = told("to be seen at ")
+    def token: String = told("controls: ")
+    def port: Int     = url.split(':').last.toInt
+
+    /** Waits for its end. */
+    def land(): Unit =
+      val ended = Await.result(status, 3.minutes)
+      if ended != 0 then throw IllegalStateException(s"it ended with $ended: $err")
+
+  object Flying:
+    def start(out: Path, options: String*)(using Scenarios): Flying =
+      val err    = ByteArrayOutputStream()
+      val status = Future(
+        Console.withOut(ByteArrayOutputStream())(Console.withErr(err)(
+          FlyCommand().run(options ++ Seq(
+            "--view",
+            "--view-port",
+            "0",
+            "--twins",
+            "0",
+            "--out",
+            out.toString
+          ))
+        ))
+      )(using threads)
+      while !err.toString.contains("controls: ") && !status.isCompleted do Thread.sleep(50)
+      Flying(err, status)

@@ -1,0 +1,89 @@
+package skein.cli
+
+import java.net.Socket
+import java.nio.charset.StandardCharsets.US_ASCII
+import java.nio.file.{Files, Path}
+import java.util.concurrent.atomic.AtomicLong
+import scala.util.Using
+import skein.record.{FlightTopics, RecordingReader}
+import skein.report.DuelReport
+import skein.scenario.Scenarios
+
+/** How late a flight's questions leave, by its recording.
+  *
+  * @param p99Ms
+  *   after the tick that each belongs to
+  */
+final case class Lateness(questions: Int, p50Ms: Double, p99Ms: Double, mostMs: Double)
+
+object Lateness:
+
+  /** Ticks are whole periods apart; the phase is that of the most punctual questions. */
+  def of(file: Path): Lateness =
+    val recorded =
+      RecordingReader.read(file).fold(error => throw IllegalStateException(error.message), identity)
+    val period = recorded.flight.period.toNanos
+    // The first second belongs to the start.
+    val sent   = recorded.readings.map(_.state.sentAt.toNanos).sorted
+    val steady = sent.filter(_ > sent.head + 1_000_000_000L)
+    val phases = steady.map(_ % period)
+    // Around the circle: the phase after which the most of it is empty.
+    val sorted = phases.sorted
+    val gaps   =
+      sorted.indices.map(at => Math.floorMod(sorted(at) - sorted(Math.floorMod(at - 1, sorted.size)), period))
+    val phase                   = sorted(gaps.indexOf(gaps.max))
+    val late                    = phases.map(one => Math.floorMod(one - phase, period) * 1e-6).sorted
+    def quantile(share: Double) = late(((late.size - 1) * share).round.toInt)
+    Lateness(late.size, quantile(0.5), quantile(0.99), late.last)
+
+/** Viewers that subscribe to every topic and throw away what comes: all as fast as it comes, but one that reads a byte a
+  * second.
+  */
+final class Viewers(port: Int, count: Int) extends AutoCloseable:
+  val bytes: AtomicLong    = AtomicLong()
+  @volatile private var on = true
+  private val sockets      = Vector.fill(count)(Socket("127.0.0.1", port))
+
+  sockets.zipWithIndex.foreach: (socket, index) =>
+    val out = socket.getOutputStream
+    out.write((s"GET / HTTP/1.1\r\nHost: 127.0.0.1:$port\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n" +
+      "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n").getBytes(US_ASCII))
+    // Numbers of channels count from 1; those that are not there are refused, and no more than a few.
+    val topics = FlightTopics.all(Vector("Evader", "Pursuer")).size + 1
+    val wanted = (1 to topics).map(at => s"""{"id":$at,"channelId":$at}""").mkString(",")
+    val text   = s"""{"op":"subscribe","subscriptions":[$wanted]}""".getBytes(US_ASCII)
+    out.write(Array(0x81, 0xfe, text.length >> 8, text.length, 0, 0, 0, 0).map(_.toByte))
+    out.write(text)
+    out.flush()
+    Thread.ofVirtual().start: () =>
+      try
+        val in     = socket.getInputStream
+        val buffer = new Array[Byte](if index == 0 then 1 else 65536)
+        while on && { val read = in.read(buffer); bytes.addAndGet(read.max(0)): Unit; read >= 0 } do
+          if index == 0 then Thread.sleep(1000)
+      catch case _: java.io.IOException => ()
+
+  def close(): Unit =
+    on = false
+    sockets.foreach(_.close())
+
+/** The same flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`. */
+@main def watchedFlights(seconds: Int, rounds: Int): Unit =
+  given Scenarios = DuelReport.scenarios
+  val folder      = Files.createTempDirectory("watched")
+  for round <- 1 to rounds; viewers <- Seq(0, 10) do
+    val out    = folder.resolve(s"$round-$viewers")
+    val flying =
+      ViewLiveSuite.Flying.start(out, "--loop", "predictive", "--link", "none", "--duration", s"${seconds}s")
+    val (bytes, heap) = Using.resource(Viewers(flying.port, viewers)): watching =>
+      Thread.sleep(seconds * 500L)
+      System.gc()
+      val heap = (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20
+      flying.land()
+      (watching.bytes.get, heap)
+    val late = Lateness.of(out.resolve("predictive-none.duckdb"))
+    println(
+      f"$viewers%2d viewers: ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
+        f"$bytes%,d bytes seen; heap $heap MiB in flight"
+    )

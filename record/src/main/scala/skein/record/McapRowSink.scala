@@ -1,0 +1,60 @@
+package skein.record
+
+import java.io.IOException
+import java.nio.channels.FileChannel
+import java.nio.file.StandardOpenOption.{CREATE, TRUNCATE_EXISTING, WRITE}
+import java.nio.file.{Files, Path}
+import scala.util.control.NonFatal
+import skein.mcap.McapWriter
+import skein.mcap.file.ChannelSink
+
+/** Writes a flight into an MCAP file while it flies: what [[McapRecording]] exports of its recording, message by message.
+  * Only until the first decision has estimated the offset between the clocks, poses are placed as if the first reading had
+  * taken no time. The file can be read up to its last second should the process end.
+  */
+final class McapRowSink private (channel: FileChannel, file: Path, heading: Heading) extends RowSink:
+  private val mcap = new McapWriter(ChannelSink(channel), McapRecording.options)
+
+  @volatile private var failed = Option.empty[String]
+
+  private lazy val flight = McapRecording.Rows(
+    mcap,
+    heading.vehicles.map(_.name).toVector,
+    heading.flight.startedAt,
+    offset = None
+  )
+  private var batches = 0L
+
+  def put(rows: Seq[(Long, Record)]): Unit = attempt:
+    rows.foreach(flight.put)
+    batches += 1
+    if batches % McapRowSink.FlushEvery == 0 then mcap.flush()
+
+  def close(): Unit =
+    attempt(mcap.finish())
+    try channel.close()
+    catch case error: IOException => failed = failed.orElse(Some(why(error)))
+
+  def discard(): Unit =
+    try Files.deleteIfExists(file): Unit
+    catch case error: IOException => failed = failed.orElse(Some(why(error)))
+
+  def failure: Option[String] = failed
+
+  private def attempt(write: => Unit): Unit = if failed.isEmpty then
+    try write
+    // Whatever it is, the recording goes on.
+    catch case NonFatal(error) => failed = Some(why(error))
+
+  private def why(error: Throwable) = s"cannot write $file: $error"
+
+object McapRowSink:
+  /** Of the recording's commits: a second. */
+  private val FlushEvery = 20
+
+  /** Makes the file, which must not be there yet. */
+  def open(file: Path, heading: Heading): Either[RecordError, McapRowSink] =
+    if Files.exists(file) then Left(RecordError.AlreadyExists(file))
+    else
+      try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading))
+      catch case error: IOException => Left(RecordError.CannotCreate(file, error.toString))

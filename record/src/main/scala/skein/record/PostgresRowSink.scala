@@ -1,0 +1,184 @@
+package skein.record
+
+import java.sql.{Connection, DriverManager, PreparedStatement, SQLException, Types}
+import java.util.Properties
+import java.util.concurrent.atomic.AtomicLong
+import java.util.concurrent.{ArrayBlockingQueue, TimeUnit}
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+import scala.util.control.NonFatal
+
+/** Writes a flight into a Postgres database beside its recording: the same tables, with the same columns, in a schema that
+  * bears the flight's name. A thread of its own writes; where the database is slower than the flight, rows beyond
+  * [[PostgresRowSink.Capacity]] are left out, and how many is told at the end.
+  */
+final class PostgresRowSink private (connection: Connection, schema: String, target: PostgresAddress)
+    extends RowSink:
+  import PostgresRowSink.*
+
+  private val queue            = ArrayBlockingQueue[(Long, Record)](Capacity)
+  private val lost             = AtomicLong()
+  private val inserts          = scala.collection.mutable.Map.empty[String, PreparedStatement]
+  @volatile private var ended  = false
+  @volatile private var failed = Option.empty[String]
+
+  private val writer = Thread.ofPlatform().daemon().name("skein-postgres").start(() => writeAll())
+
+  def put(rows: Seq[(Long, Record)]): Unit = rows.foreach: row =>
+    if failed.isDefined || !queue.offer(row) then lost.incrementAndGet(): Unit
+
+  def close(): Unit =
+    ended = true
+    writer.join(CloseWithin)
+    if writer.isAlive then
+      failed = failed.orElse(Some(s"did not take the last rows within ${CloseWithin / 1000} s"))
+      writer.interrupt()
+
+  def discard(): Unit =
+    attempt(
+      target,
+      Using.resource(target.connect())(_.createStatement().execute(s"DROP SCHEMA \"$schema\" CASCADE"))
+    )
+      .left
+      .foreach(why => failed = failed.orElse(Some(why)))
+
+  def failure: Option[String] =
+    val reasons =
+      failed ++ Option.when(lost.get > 0)(s"${lost.get} rows are missing, since it is slower than the flight")
+    Option.when(reasons.nonEmpty)(s"Postgres, schema $schema: ${reasons.mkString("; ")}")
+
+  private def writeAll(): Unit =
+    try
+      Using.resource(connection): _ =>
+        while !(ended && queue.isEmpty) do
+          val first = queue.poll(PollMillis, TimeUnit.MILLISECONDS)
+          if first != null then
+            val batch = java.util.ArrayList[(Long, Record)](BatchSize)
+            batch.add(first): Unit
+            queue.drainTo(batch, BatchSize - 1): Unit
+            write(batch.asScala.toVector)
+    catch case NonFatal(error) => failed = Some(s"${error.getMessage}".linesIterator.next())
+
+  private def write(rows: Vector[(Long, Record)]): Unit =
+    for (table, some) <- rows.groupBy((_, record) => Table.of(record)) do
+      val columns = table.columns.asInstanceOf[skein.record.Columns[Record]]
+      val insert  = inserts.getOrElseUpdate(table.name, connection.prepareStatement(insertOf(table)))
+      for (number, record) <- some do
+        insert.setLong(1, number)
+        columns.append(record, StatementRow(insert, connection, columns.definitions))
+        insert.addBatch()
+      insert.executeBatch(): Unit
+    connection.commit()
+
+  private def insertOf(table: Table[?]) =
+    val width = table.columns.definitions.size + 1
+    s"""INSERT INTO "$schema".${table.name} VALUES (${Vector.fill(width)("?").mkString(", ")})"""
+
+object PostgresRowSink:
+  /** Rows that may wait: at 20 vehicles and 10 Hz about a minute. */
+  val Capacity = 65536
+
+  private val BatchSize   = 1024
+  private val PollMillis  = 50L
+  private val CloseWithin = 10_000L
+
+  /** Connects, and makes the tables. Blocks.
+    *
+    * @param url
+    *   `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
+    * @return
+    *   or why not, without the password
+    */
+  def open(url: String, heading: Heading): Either[String, PostgresRowSink] =
+    for
+      target     <- PostgresAddress.parse(url)
+      connection <- attempt(target, target.connect())
+      schema = schemaOf(heading.flight)
+      made <- attempt(target, make(connection, schema, target)).left.map: why =>
+        connection.close()
+        why
+    yield made
+
+  /** Flights of one name are told apart by when they began. */
+  private def schemaOf(flight: Flight): String =
+    s"${flight.id.replaceAll("[^A-Za-z0-9_.-]", "_").take(40)}-${flight.startedAt.toNanos / 1_000_000}"
+
+  private def make(connection: Connection, schema: String, target: PostgresAddress): PostgresRowSink =
+    connection.setAutoCommit(false)
+    Using.resource(connection.createStatement()): statement =>
+      statement.execute(s"""CREATE SCHEMA "$schema"""")
+      statement.execute(s"""CREATE TABLE "$schema".format (version INTEGER NOT NULL)""")
+      statement.execute(s"""INSERT INTO "$schema".format VALUES (${RecordingFormat.version})""")
+      for table <- Table.all do
+        val columns = Column("row", "BIGINT") +: table.columns.definitions
+        val defined = columns.map(column => column.copy(sqlType = typeOf(column.sqlType)).sql)
+        statement.execute(s"""CREATE TABLE "$schema".${table.name} (${defined.mkString(", ")})"""): Unit
+    connection.commit()
+    PostgresRowSink(connection, schema, target)
+
+  private[record] def typeOf(duckDb: String): String = duckDb.replace("DOUBLE", "DOUBLE PRECISION")
+
+  private def attempt[A](target: PostgresAddress, action: => A): Either[String, A] =
+    try Right(action)
+    catch
+      case error: SQLException =>
+        Left(s"Postgres at ${target.shown}: ${error.getMessage.linesIterator.next()}")
+
+/** Sets the values of one row in the order of the columns; the first is the row's number. */
+private final class StatementRow(insert: PreparedStatement, connection: Connection, columns: Vector[Column])
+    extends RowWriter:
+  private var place = 1
+
+  private def next: Int =
+    place += 1
+    place
+
+  private def array(kind: String, values: Vector[Any]): Unit =
+    insert.setArray(next, connection.createArrayOf(kind, values.map(_.asInstanceOf[AnyRef]).toArray))
+
+  def text(value: String): Unit             = insert.setString(next, value)
+  def long(value: Long): Unit               = insert.setLong(next, value)
+  def double(value: Double): Unit           = insert.setDouble(next, value)
+  def longs(values: Vector[Long]): Unit     = array("bigint", values)
+  def doubles(values: Vector[Double]): Unit = array("float8", values)
+  def texts(values: Vector[String]): Unit   = array("text", values)
+
+  def nothing(): Unit =
+    val at = next
+    insert.setNull(
+      at,
+      columns(at - 2).sqlType match
+        case "VARCHAR"                   => Types.VARCHAR
+        case "BIGINT"                    => Types.BIGINT
+        case "DOUBLE"                    => Types.DOUBLE
+        case kind if kind.endsWith("[]") => Types.ARRAY
+        case other                       => throw IllegalArgumentException(s"column of type $other")
+    )
+
+/** Where a Postgres database is.
+  *
+  * @param shown
+  *   without the password
+  */
+private[record] final case class PostgresAddress(jdbc: String, user: String, password: String, shown: String):
+  def connect(): Connection = DriverManager.getConnection(jdbc, properties)
+
+  private def properties: Properties =
+    val properties = Properties()
+    properties.setProperty("user", user)
+    properties.setProperty("password", password)
+    properties.setProperty("connectTimeout", PostgresAddress.ConnectSeconds)
+    properties.setProperty("socketTimeout", "10")
+    properties.setProperty("reWriteBatchedInserts", "true")
+    properties
+
+private[record] object PostgresAddress:
+  private val ConnectSeconds = "5"
+
+  private val Form = """postgres(?:ql)?://([^:@/]+)(?::([^@/]*))?@([^:/@]+)(?::(\d{1,5}))?/([^/?#]+)""".r
+
+  def parse(url: String): Either[String, PostgresAddress] = url match
+    case Form(user, password, host, port, database) =>
+      val at = s"$host:${Option(port).getOrElse("5432")}/$database"
+      Right(PostgresAddress(s"jdbc:postgresql://$at", user, Option(password).getOrElse(""), at))
+    case _ => Left("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")

@@ -1,0 +1,118 @@
+package skein.record
+
+import io.zonky.test.db.postgres.embedded.EmbeddedPostgres
+import java.nio.file.{Files, Path}
+import java.sql.Connection
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Await
+import scala.concurrent.duration.*
+import scala.util.{Try, Using}
+
+/** A real Postgres, in a process of its own. */
+class PostgresRowSinkLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+  private given system: ActorSystem   = ActorSystem("PostgresRowSinkLiveSuite")
+
+  private lazy val server: Try[EmbeddedPostgres] = Try(EmbeddedPostgres.builder().start())
+
+  override def afterAll(): Unit =
+    server.foreach(_.close())
+    val _ = Await.result(system.terminate(), 10.seconds)
+
+  private def url: String =
+    server.failed.foreach(why => assume(false, s"no Postgres starts here: $why"))
+    s"postgres://postgres:postgres@127.0.0.1:${server.get.getPort}/postgres"
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("recording"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def opened(heading: Heading) = PostgresRowSink.open(url, heading).fold(fail(_), identity)
+
+  private def heading(id: String) = Samples.heading.copy(flight = Samples.heading.flight.copy(id = id))
+
+  private def rowsOf(connection: Connection, table: Table[?], place: String): Vector[String] =
+    val names = ("row" +: table.columns.definitions.map(_.name)).mkString(", ")
+    Using.resource(connection.createStatement().executeQuery(s"SELECT $names FROM $place ORDER BY row")):
+      found =>
+        val width = found.getMetaData.getColumnCount
+        Iterator
+          .continually(found)
+          .takeWhile(_.next())
+          .map(row =>
+            (1 to width).map(at =>
+              row.getObject(at) match
+                case list: java.sql.Array => list.getArray.asInstanceOf[Array[Object]].mkString("[", ",", "]")
+                case other                => s"$other"
+            ).mkString("|")
+          )
+          .toVector
+
+  folder.test("every table has the recording's own rows, value by value"): folder =>
+    val file     = folder.resolve("flight.duckdb")
+    val named    = heading("every-table")
+    val sink     = opened(named)
+    val recorder =
+      Await.result(DuckDbRecorder.open(file, named, beside = Vector(sink)), 30.seconds).fold(
+        error => fail(error.message),
+        identity
+      )
+    for number <- 1L to 3000L do recorder.offer(Samples.reading(number))
+    Samples.oneOfEach.foreach(recorder.offer)
+    assert(Await.result(recorder.close(), 60.seconds).isRight)
+    assertEquals(sink.failure, None)
+    Using.resource(server.get.getPostgresDatabase.getConnection()): postgres =>
+      val schemas = Using.resource(postgres.createStatement().executeQuery(
+        "SELECT schema_name FROM information_schema.schemata WHERE schema_name LIKE 'every-table-%'"
+      ))(found => Iterator.continually(found).takeWhile(_.next()).map(_.getString(1)).toVector)
+      assertEquals(schemas.size, 1)
+      Using.resource(RecordingFile.connect(file, readOnly = true)): duckDb =>
+        for table <- Table.all do
+          val own = rowsOf(duckDb, table, table.name)
+          assert(own.nonEmpty, table.name)
+          assertEquals(rowsOf(postgres, table, s"\"${schemas.head}\".${table.name}"), own, table.name)
+
+  test("a database that stands still holds up nobody: rows beyond the queue are counted, and told"):
+    val named = heading("standing-still")
+    val sink  = opened(named)
+    Using.resource(server.get.getPostgresDatabase.getConnection()): other =>
+      other.setAutoCommit(false)
+      val schema = Using.resource(other.createStatement().executeQuery(
+        "SELECT schema_name FROM information_schema.schemata WHERE schema_name LIKE 'standing-still-%'"
+      ))(found => { found.next(): Unit; found.getString(1) })
+      // Nobody else can write to the table until this ends.
+      other.createStatement().execute(s"LOCK TABLE \"$schema\".reading IN ACCESS EXCLUSIVE MODE"): Unit
+      val rows = PostgresRowSink.Capacity + 10_000L
+      val from = System.nanoTime()
+      for number <- 1L to rows do sink.put(Seq((number, Samples.reading(number % 100))))
+      val spentMs = (System.nanoTime() - from) / 1_000_000
+      assert(spentMs < 5000, s"$spentMs ms")
+      other.rollback()
+    sink.close()
+    val said = sink.failure.getOrElse(fail("nothing was lost"))
+    assert("""(\d+) rows are missing""".r.findFirstMatchIn(said).exists(_.group(1).toInt >= 8000), said)
+
+  test("what was written for a flight that could not be flown is taken away again"):
+    val sink = opened(heading("not-flown"))
+    sink.close()
+    sink.discard()
+    assertEquals(sink.failure, None)
+    Using.resource(server.get.getPostgresDatabase.getConnection()): postgres =>
+      val found = postgres.createStatement().executeQuery(
+        "SELECT count(*) FROM information_schema.schemata WHERE schema_name LIKE 'not-flown-%'"
+      )
+      found.next(): Unit
+      assertEquals(found.getInt(1), 0)
+
+  test("where there is no server, or no address, one line says so, and no password"):
+    val nobody = PostgresRowSink.open("postgres://me:secret@127.0.0.1:1/db", Samples.heading)
+    assert(
+      nobody.left.exists(why => why.contains("127.0.0.1:1/db") && !why.contains("secret")),
+      nobody.toString
+    )
+    assertEquals(
+      PostgresRowSink.open("postgres://db", Samples.heading).left.toOption,
+      Some("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")
+    )
