@@ -6,7 +6,7 @@ import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
-import skein.settings.{FlySettings, PolicyFile, TextFile, VehicleChoice}
+import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.Span
 
@@ -25,6 +25,8 @@ import skein.units.Span
   *   direction; both 0: as the paper's duel begins
   * @param movesInFlight
   *   of one vehicle
+  * @param turnRateRadPerS
+  *   the most that a pursuer who learns turns
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -37,7 +39,8 @@ final case class EnvironmentSettings(
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
-    movesInFlight: Int = LoopTiming.MostOutstanding
+    movesInFlight: Int = LoopTiming.MostOutstanding,
+    turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS
 ):
   import EnvironmentSettings.*
 
@@ -55,6 +58,7 @@ final case class EnvironmentSettings(
       _       <- within("start_within_m", startWithinM._1, 0, MostM)
       _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
       _       <- within("moves_in_flight", movesInFlight, 1, 16)
+      _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, 10)
       vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("plant: " + _)
       delays  <- delaysOf(link).left.map("link: " + _)
       loopSettings = LoopSettings
@@ -137,8 +141,9 @@ object EnvironmentSettings:
               number(value => settings.copy(startWithinM = (value, settings.startWithinM._2)))
             case "start_most_m" =>
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
-            case "moves_in_flight" => number(value => settings.copy(movesInFlight = value.toInt))
-            case _                 => Left(s"no setting '$name'")
+            case "moves_in_flight"     => number(value => settings.copy(movesInFlight = value.toInt))
+            case "turn_rate_rad_per_s" => number(value => settings.copy(turnRateRadPerS = value))
+            case _                     => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
     Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")
