@@ -17,7 +17,7 @@ final case class LearnedPolicy(
     parameters: Vector[Double],
     turnRateRadPerS: Double,
     turnRad: Double
-) extends ObservingPolicy[Unit]:
+) extends ObservingPolicy[Double]:
   require(
     shape.inputs == LearnedPolicy.Inputs,
     s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
@@ -32,10 +32,11 @@ final case class LearnedPolicy(
   private val widest  = shape.widest
   private val scales  = LearnedPolicy.scales.toArray
 
-  def initial: Unit = ()
+  /** Nothing is remembered; a number flies by lanes. */
+  def initial: Double = 0
 
-  def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
-    Decided(seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad), ())
+  def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
+    Decided(seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad), memory)
 
   /** Of the most that it turns: −1 to 1, to the right. */
   def share(seen: PlanarObservation): Double =

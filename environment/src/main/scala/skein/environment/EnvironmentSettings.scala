@@ -45,7 +45,12 @@ final case class EnvironmentSettings(
   import EnvironmentSettings.*
 
   /** @return or what was expected and came */
-  private[environment] def resolved: Either[String, Resolved] =
+  private[environment] def resolved: Either[String, Resolved] = resolvedAgainst(None)
+
+  /** @param told
+    *   the opponent; without one, as it is named
+    */
+  private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
     for
       roles <- Learners.get(learners).toRight(
         s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
@@ -71,7 +76,7 @@ final case class EnvironmentSettings(
         )
       paper = Duel.paperAt(altitudeM, episodeS + SpareS)
       model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
-      against <- opponentFile(roles)
+      against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
       (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
         if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
       _ <- Option(

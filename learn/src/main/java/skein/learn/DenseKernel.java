@@ -38,16 +38,25 @@ final class DenseKernel {
               inner, columns, a, aAt + row * aRow, aStep,
               b, bAt + column + part * LANES, c, cAt + row * columns + column + part * LANES);
     }
-    for (; column + LANES <= columns; column += LANES)
-      for (int row = 0; row < rows; row++)
+    for (; column + LANES <= columns; column += LANES) {
+      int row = 0;
+      for (; row + 4 <= rows; row += 4)
+        four(inner, columns, a, aAt + row * aRow, aRow, aStep, b, bAt + column, c, cAt + row * columns + column);
+      for (; row < rows; row++)
         one(inner, columns, a, aAt + row * aRow, aStep, b, bAt + column, c, cAt + row * columns + column);
-    for (; column < columns; column++)
-      for (int row = 0; row < rows; row++) {
-        float sum = c[cAt + row * columns + column];
+    }
+    for (; column < columns; column++) {
+      int row = 0;
+      for (; row + 4 <= rows; row += 4)
+        column(inner, columns, a, aAt + row * aRow, aRow, aStep, b, bAt + column, c, cAt + row * columns + column);
+      for (; row < rows; row++) {
+        int at = cAt + row * columns + column;
+        float sum = c[at];
         for (int k = 0; k < inner; k++)
           sum = Math.fma(a[aAt + row * aRow + k * aStep], b[bAt + k * columns + column], sum);
-        c[cAt + row * columns + column] = sum;
+        c[at] = sum;
       }
+    }
   }
 
   /** Two rows of four vectors each: what the registers hold. */
@@ -97,5 +106,44 @@ final class DenseKernel {
           FloatVector.broadcast(SPECIES, a[aAt + k * aStep])
               .fma(FloatVector.fromArray(SPECIES, b, bAt + k * columns), sum);
     sum.intoArray(c, cAt);
+  }
+
+  /** Four rows of one vector each: four sums under way hide how long one takes. */
+  private static void four(
+      int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
+    FloatVector c0 = FloatVector.fromArray(SPECIES, c, cAt),
+        c1 = FloatVector.fromArray(SPECIES, c, cAt + columns),
+        c2 = FloatVector.fromArray(SPECIES, c, cAt + 2 * columns),
+        c3 = FloatVector.fromArray(SPECIES, c, cAt + 3 * columns);
+    for (int k = 0; k < inner; k++) {
+      int at = aAt + k * aStep;
+      FloatVector b0 = FloatVector.fromArray(SPECIES, b, bAt + k * columns);
+      c0 = FloatVector.broadcast(SPECIES, a[at]).fma(b0, c0);
+      c1 = FloatVector.broadcast(SPECIES, a[at + aRow]).fma(b0, c1);
+      c2 = FloatVector.broadcast(SPECIES, a[at + 2 * aRow]).fma(b0, c2);
+      c3 = FloatVector.broadcast(SPECIES, a[at + 3 * aRow]).fma(b0, c3);
+    }
+    c0.intoArray(c, cAt);
+    c1.intoArray(c, cAt + columns);
+    c2.intoArray(c, cAt + 2 * columns);
+    c3.intoArray(c, cAt + 3 * columns);
+  }
+
+  /** Four rows of one column. */
+  private static void column(
+      int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
+    float c0 = c[cAt], c1 = c[cAt + columns], c2 = c[cAt + 2 * columns], c3 = c[cAt + 3 * columns];
+    for (int k = 0; k < inner; k++) {
+      int at = aAt + k * aStep;
+      float b0 = b[bAt + k * columns];
+      c0 = Math.fma(a[at], b0, c0);
+      c1 = Math.fma(a[at + aRow], b0, c1);
+      c2 = Math.fma(a[at + 2 * aRow], b0, c2);
+      c3 = Math.fma(a[at + 3 * aRow], b0, c3);
+    }
+    c[cAt] = c0;
+    c[cAt + columns] = c1;
+    c[cAt + 2 * columns] = c2;
+    c[cAt + 3 * columns] = c3;
   }
 }

@@ -3,6 +3,7 @@ package skein.learn
 import java.nio.ByteBuffer
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
 import skein.policy.{LearnedPolicy, NeuralShape}
+import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
 /** One side of the duel, under the loop's timing. What is seen is scaled as [[LearnedPolicy]] scales it, and rewards so
@@ -50,15 +51,24 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
 object DuelTask:
   private val RewardScale = 0.1f
 
-  /** @return or what was expected and came */
-  def of(settings: EnvironmentSettings, count: Int, seed: Long): Either[String, DuelTask] =
+  /** @param opponent
+    *   of the other role; without one, as the settings name it
+    * @return
+    *   or what was expected and came
+    */
+  def of(
+      settings: EnvironmentSettings,
+      opponent: Option[PolicyFile],
+      count: Int,
+      seed: Long
+  ): Either[String, DuelTask] =
     if settings.learners == "both" then Left("learners: expected pursuer or evader, came 'both'")
     else if count < 1 || count > EnvironmentBatch.Most then
       Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, came $count")
     else
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
       EnvironmentBatch
-        .of(settings, count, Autoreset.SameStep, block)
+        .of(settings, count, Autoreset.SameStep, block, opponent)
         .map(batch => DuelTask(batch, EnvironmentBuffers(block, 1, count), seed))
 
   /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron by neuron.

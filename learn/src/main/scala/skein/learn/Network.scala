@@ -103,10 +103,10 @@ final class Pass(widths: Vector[Int], val rows: Int):
   def input: Array[Float]  = activations(0)
   def output: Array[Float] = activations(layers)
 
-  /** Derivatives of what is made small by the outputs; to be set before [[backward]]. */
+  /** Derivatives of what is made small by the outputs; to be set before going back. */
   def outputError: Array[Float] = errors(layers)
 
-  /** The same by the inputs, after [[backward]]. */
+  /** The same by the inputs, after [[backwardToInput]]. */
   def inputError: Array[Float] = errors(0)
 
   /** @param until
@@ -153,22 +153,27 @@ final class Pass(widths: Vector[Int], val rows: Int):
         row += 1
 
   /** The same for the inputs alone. */
-  def backwardToInput(network: Network, from: Int, until: Int): Unit = back(network, from, until)(_ => ())
+  def backwardToInput(network: Network, from: Int, until: Int): Unit =
+    back(network, from, until)(_ => ())
+    toInputs(network, 0, from, until)
 
   private def back(network: Network, from: Int, until: Int)(onLayer: Int => Unit): Unit =
     var layer = layers - 1
     while layer >= 0 do
       onLayer(layer)
-      val (ins, outs) = (widths(layer), widths(layer + 1))
-      val into        = errors(layer)
-      java.util.Arrays.fill(into, from * ins, until * ins, 0f)
-      val weights = network.weightsByOutput(layer)
-      DenseKernel.addProduct(until - from, outs, ins, errors(layer + 1), from * outs, outs, 1, weights, 0, into, from * ins)
       if layer > 0 then
-        val x   = activations(layer)
-        var i   = from * ins
-        val end = until * ins
+        toInputs(network, layer, from, until)
+        val (x, into) = (activations(layer), errors(layer))
+        var i         = from * widths(layer)
+        val end       = until * widths(layer)
         while i < end do
           if x(i) <= 0 then into(i) = 0
           i += 1
       layer -= 1
+
+  private def toInputs(network: Network, layer: Int, from: Int, until: Int): Unit =
+    val (ins, outs) = (widths(layer), widths(layer + 1))
+    val into        = errors(layer)
+    java.util.Arrays.fill(into, from * ins, until * ins, 0f)
+    val weights = network.weightsByOutput(layer)
+    DenseKernel.addProduct(until - from, outs, ins, errors(layer + 1), from * outs, outs, 1, weights, 0, into, from * ins)

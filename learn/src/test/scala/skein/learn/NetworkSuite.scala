@@ -58,6 +58,7 @@ class NetworkSuite extends munit.FunSuite:
       pass.forward(network, 0, 3)
       pass.backward(network, 0, 2, gradient)
       pass.backward(network, 2, 3, gradient)
+      pass.backwardToInput(network, 0, 3)
       val every = (network.parameters.length / 300).max(1)
       for at <- network.parameters.indices by every do
         assertEqualsDouble(gradient(at).toDouble, slope(network.parameters, at), 2e-3, s"parameter $at")
