@@ -28,7 +28,7 @@ final case class LearnOptions(
     @arg(doc = "between decisions for one vehicle (default: 100ms)")
     period: Option[String],
     forward: ForwardOptions,
-    @arg(doc = "decisions to learn from, of all environments together (default: 400000; ppo: 2000000)")
+    @arg(doc = "decisions to learn from, of all environments together (default: 600000; ppo: 2000000)")
     steps: Option[Long],
     @arg(doc = "hidden layers' widths of all networks (default: 32x32)")
     network: Option[String],
@@ -42,7 +42,7 @@ final case class LearnOptions(
     turnRate: Option[Double],
     @arg(doc = "of Adam (default: 0.001; ppo: 0.0003)")
     learningRate: Option[Double],
-    @arg(doc = "of a reward for each decision that it comes later (default: 0.99)")
+    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo: 0.99)")
     discount: Option[Double],
     @arg(doc = "transitions of an update (default: 256)")
     batch: Option[Int],
@@ -183,10 +183,10 @@ final class LearnCommand(using Scenarios)
   ): Either[String, Unit] =
     val result = LearnResult.measured(setup, batch, state, setup.question.fresh)
     for
-      file <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
+      file  <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
       flown <- if flights == 0 then Right(None) else virtual(setup, file.head, flights, shown)
-      all      = result.copy(flights = flown)
-      _        = shown.tables(Seq(all.section), Section.text(Seq(all.section)))
+      all = result.copy(flights = flown)
+      _   = shown.tables(Seq(all.section), Section.text(Seq(all.section)))
       pictures <- OutFolder.write(
         folder,
         OutFolder.picture("learning-curve", all.curve, s"Learning curve of ${setup.question.algorithm}") :+
@@ -203,7 +203,9 @@ final class LearnCommand(using Scenarios)
   ): Either[String, Option[Tally]] =
     val paper = SearchQuestion.paperOpponent(setup.role).text
     if setup.question.opponent != paper then
-      shown.say("no flights: they are flown against the paper's policy, and this one was not taught against it")
+      shown.say(
+        "no flights: they are flown against the paper's policy, and this one was not taught against it"
+      )
       Right(None)
     else LearnCommand.flown(setup.question, policy.toString, flights).map(Some(_))
 
@@ -238,7 +240,7 @@ object LearnCommand:
       conditions,
       options.link.getOrElse("vpn"),
       opponent.text,
-      options.steps.getOrElse(if onPolicy then 2_000_000L else 400_000L),
+      options.steps.getOrElse(if onPolicy then 2_000_000L else 600_000L),
       options.environments.getOrElse(64),
       lesson.toSeconds,
       start._1,
@@ -246,7 +248,7 @@ object LearnCommand:
       options.turnRate.getOrElse(3.0),
       LearnerSettings(
         hidden = shape.hidden,
-        discount = options.discount.getOrElse(0.99),
+        discount = options.discount.getOrElse(if onPolicy then 0.99 else 0.98),
         rate = options.learningRate.getOrElse(if onPolicy then 3e-4 else 1e-3),
         batch = options.batch.getOrElse(256),
         updatesPerStep = options.updatesPerStep.getOrElse(0.125)
@@ -258,7 +260,8 @@ object LearnCommand:
 
   private def range(text: String): Either[String, (Double, Double)] =
     text.split("\\.\\.", -1).map(_.toDoubleOption) match
-      case Array(Some(least), Some(most)) if least >= 0 && most >= least && most <= 1000 => Right((least, most))
+      case Array(Some(least), Some(most)) if least >= 0 && most >= least && most <= 1000 =>
+        Right((least, most))
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
   /** Mean distances of the last 10 s of flights in virtual time with a policy, against the paper's policy.

@@ -86,7 +86,11 @@ object LearnQuestion:
   private val MostEpisodes     = 1_000_000
 
   private def within(option: String, value: Double, least: Double, most: Double): Either[String, Unit] =
-    Either.cond(value >= least && value <= most, (), s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}, came $value")
+    Either.cond(
+      value >= least && value <= most,
+      (),
+      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}, came $value"
+    )
 
 /** Ready to learn. */
 final case class LearnSetup(

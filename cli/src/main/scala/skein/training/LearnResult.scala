@@ -26,7 +26,14 @@ final case class LearnResult(
   /** As a table. */
   def section: Section =
     def row(policy: String, where: String, tally: Tally, unit: String) =
-      Vector(policy, where, PolicyFile.brief(tally.mean), PolicyFile.brief(tally.halfWidth95), tally.count.toString, unit)
+      Vector(
+        policy,
+        where,
+        PolicyFile.brief(tally.mean),
+        PolicyFile.brief(tally.halfWidth95),
+        tally.count.toString,
+        unit
+      )
     val episodes = s"fresh episodes, ${objective.formula}"
     Section(
       s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
@@ -49,7 +56,11 @@ final case class LearnResult(
     )
 
   def csv: String =
-    state.scores.map(score => s"${score.steps},${score.mean},${score.sd}").mkString("steps,mean,sd\n", "\n", "\n")
+    state.scores.map(score => s"${score.steps},${score.mean},${score.sd}").mkString(
+      "steps,mean,sd\n",
+      "\n",
+      "\n"
+    )
 
   /** As a policy file. */
   def file: String = policy.hocon(

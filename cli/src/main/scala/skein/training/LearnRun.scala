@@ -49,12 +49,12 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
       isStopped: () => Boolean,
       onRound: LearnState => Unit
   ): Either[String, LearnState] =
-    val training                             = Training(task, learner, setup.stepsPerRound)
-    val evaluator                            = setup.evaluator(batch)
-    var state                                = from
-    var mistake: Either[String, Unit]        = Right(())
-    var savedAt                              = nanoTime()
-    def save(): Either[String, Unit]         = folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
+    val training                      = Training(task, learner, setup.stepsPerRound)
+    val evaluator                     = setup.evaluator(batch)
+    var state                         = from
+    var mistake: Either[String, Unit] = Right(())
+    var savedAt                       = nanoTime()
+    def save(): Either[String, Unit]  = folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do
       training.round(state.rounds, isStopped) match
         case Left(reason)   => mistake = Left(reason)
@@ -64,9 +64,10 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
           val isLast = state.rounds == setup.rounds
           if isLast || state.rounds % setup.roundsPerScore == 0 then
             val weights = DuelTask.parameters(learner.actor)
-            val tally   = evaluator.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head
-            val steps   = state.rounds * setup.stepsOfRound
-            val better  = state.best.forall: best =>
+            val tally   =
+              evaluator.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head
+            val steps  = state.rounds * setup.stepsOfRound
+            val better = state.best.forall: best =>
               if setup.objective.direction == Direction.Minimise then tally.mean < best.mean
               else tally.mean > best.mean
             state = state.copy(

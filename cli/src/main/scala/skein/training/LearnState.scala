@@ -75,7 +75,12 @@ object LearnFile:
       catch case failed: IOException => Left(s"cannot read $file: $failed")
 
   /** Whatever happens meanwhile, the folder has what was written before, or all of this. */
-  def write(folder: Path, question: LearnQuestion, state: LearnState, learner: Learner): Either[String, Unit] =
+  def write(
+      folder: Path,
+      question: LearnQuestion,
+      state: LearnState,
+      learner: Learner
+  ): Either[String, Unit] =
     try
       val file = numbers(folder, state.rounds)
       val out  = DataOutputStream(BufferedOutputStream(Files.newOutputStream(file), Buffer))

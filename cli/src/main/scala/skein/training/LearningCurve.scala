@@ -27,14 +27,15 @@ object LearningCurve:
       width = 560,
       height = 300
     )
-    def point(score: LearnScore, off: Double) = panel.at(score.steps / 1e3, (score.mean + off * score.sd).max(0))
+    def point(score: LearnScore, off: Double) =
+      panel.at(score.steps / 1e3, (score.mean + off * score.sd).max(0))
     val bands = scores.map: (_, colour, curve) =>
       val outline = curve.map(point(_, 1)) ++ curve.reverse.map(point(_, -1))
       Shape.Path(outline, None, Some(colour.faded(0.2)), closed = true)
     val curves = scores.map: (_, colour, curve) =>
       panel.curve(curve.map(score => (score.steps / 1e3, score.mean)), Stroke(colour, 2))
     def dashed(colour: Colour) = Stroke(colour, 1.6, Vector(5, 3))
-    val lines = levels.map: (_, colour, level) =>
+    val lines                  = levels.map: (_, colour, level) =>
       Shape.line(Point(panel.left, panel.atY(level)), Point(panel.right, panel.atY(level)), dashed(colour))
     val legend = Legend(
       panel.left,
@@ -44,7 +45,10 @@ object LearningCurve:
     Drawing(
       panel.right + 40,
       panel.bottom + 44,
-      (panel.title(title).moved(0, -22) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ bands ++ lines ++ curves
+      (panel.title(title).moved(
+        0,
+        -22
+      ) +: legend.shapes.map(_.moved(0, 22))) ++ panel.axes ++ bands ++ lines ++ curves
     )
 
   val learned: Colour = Colour(0x0072b2)

@@ -126,7 +126,8 @@ object PolicyFamily:
       shape.names.map(Axis(_, -3.0, 3.0)) ++
         Vector(turnRate, Axis("turnRad", 0.0, math.Pi, 0.0))
     ),
-    parameters => LearnedPolicy(shape, parameters.dropRight(2), parameters(parameters.size - 2), parameters.last)
+    parameters =>
+      LearnedPolicy(shape, parameters.dropRight(2), parameters(parameters.size - 2), parameters.last)
   )
 
   private val NeuralPrefix  = "neural:"

@@ -12,14 +12,14 @@ final class Adam(size: Int, val rate: Double) extends Saved:
 
   def step(parameters: Array[Float], gradient: Array[Float]): Unit =
     steps += 1
-    val (m, v)      = (mean, squares)
-    val unbiasMean  = 1 - StrictMath.pow(Adam.MeanDecay, steps.toDouble)
-    val unbiasRoot  = math.sqrt(1 - StrictMath.pow(Adam.SquaresDecay, steps.toDouble))
-    val by          = (rate * unbiasRoot / unbiasMean).toFloat
-    val small       = (Adam.Small * unbiasRoot).toFloat
-    val (b1, b2)    = (Adam.MeanDecay.toFloat, Adam.SquaresDecay.toFloat)
+    val (m, v)       = (mean, squares)
+    val unbiasMean   = 1 - StrictMath.pow(Adam.MeanDecay, steps.toDouble)
+    val unbiasRoot   = math.sqrt(1 - StrictMath.pow(Adam.SquaresDecay, steps.toDouble))
+    val by           = (rate * unbiasRoot / unbiasMean).toFloat
+    val small        = (Adam.Small * unbiasRoot).toFloat
+    val (b1, b2)     = (Adam.MeanDecay.toFloat, Adam.SquaresDecay.toFloat)
     val (new1, new2) = ((1 - Adam.MeanDecay).toFloat, (1 - Adam.SquaresDecay).toFloat)
-    var i           = 0
+    var i            = 0
     while i < size do
       val g = gradient(i)
       m(i) = b1 * m(i) + new1 * g

@@ -13,11 +13,11 @@ private[learn] final class Critics(
     settings: LearnerSettings,
     random: SplitMix64
 ) extends Saved:
-  private val inputs    = observations + actions
-  private val rows      = settings.batch
-  private val widths    = inputs +: settings.hidden :+ 1
-  val networks          = Vector.fill(count)(Network(widths).draw(random))
-  val targets           = networks.map: network =>
+  private val inputs = observations + actions
+  private val rows   = settings.batch
+  private val widths = inputs +: settings.hidden :+ 1
+  val networks       = Vector.fill(count)(Network(widths).draw(random))
+  val targets        = networks.map: network =>
     val copy = Network(widths)
     copy.take(network)
     copy
@@ -46,7 +46,13 @@ private[learn] final class Critics(
     value
 
   /** The slow copies' values of what was reached. */
-  def valueReached(reached: Array[Float], chosen: Array[Float], into: Array[Float], from: Int, until: Int): Unit =
+  def valueReached(
+      reached: Array[Float],
+      chosen: Array[Float],
+      into: Array[Float],
+      from: Int,
+      until: Int
+  ): Unit =
     feed(reached, chosen, from, until)
     for (pass, target) <- passes.zip(targets) do pass.forward(target, from, until)
     for row <- from until until do into(row) = least(row)

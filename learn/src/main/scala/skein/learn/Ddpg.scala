@@ -9,9 +9,9 @@ final class Ddpg(observations: Int, actions: Int, settings: LearnerSettings, see
     extends OffPolicy(observations, actions, settings, seed):
   import Ddpg.*
 
-  private val widths         = observations +: settings.hidden :+ actions
-  val actor: Network         = Network(widths).draw(initial, LastScale)
-  private[learn] val target  = Network(widths)
+  private val widths        = observations +: settings.hidden :+ actions
+  val actor: Network        = Network(widths).draw(initial, LastScale)
+  private[learn] val target = Network(widths)
   target.take(actor)
   private val optimiser      = Adam(actor.parameters.length, settings.rate)
   private[learn] val critics = Critics(1, observations, actions, settings, initial)
@@ -54,7 +54,13 @@ final class Ddpg(observations: Int, actions: Int, settings: LearnerSettings, see
     critics.follow()
 
   private def choose(by: Network, seen: Array[Float], from: Int, until: Int): Unit =
-    System.arraycopy(seen, from * observations, pass.input, from * observations, (until - from) * observations)
+    System.arraycopy(
+      seen,
+      from * observations,
+      pass.input,
+      from * observations,
+      (until - from) * observations
+    )
     pass.forward(by, from, until)
     var at = from * actions
     while at < until * actions do

@@ -19,8 +19,8 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
   val observations: Int = LearnedPolicy.Inputs
   val actions: Int      = 1
 
-  val seen, reached: Array[Float] = Array.ofDim(count * observations)
-  val rewards: Array[Float]       = Array.ofDim(count)
+  val seen, reached: Array[Float]       = Array.ofDim(count * observations)
+  val rewards: Array[Float]             = Array.ofDim(count)
   val terminated, ended: Array[Boolean] = Array.ofDim(count)
 
   def begin(round: Long): Unit =
@@ -74,13 +74,17 @@ object DuelTask:
   /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron by neuron.
     */
   def parameters(actor: Network): Vector[Double] =
-    require(actor.inputs == LearnedPolicy.Inputs, s"expected ${LearnedPolicy.Inputs} inputs, came ${actor.inputs}")
+    require(
+      actor.inputs == LearnedPolicy.Inputs,
+      s"expected ${LearnedPolicy.Inputs} inputs, came ${actor.inputs}"
+    )
     val widths = actor.widths.init :+ 1
     for
       layer  <- (0 until actor.layers).toVector
       neuron <- 0 until widths(layer + 1)
       outs    = actor.widths(layer + 1)
-      weights = (0 until widths(layer)).map(input => actor.parameters(actor.weightsAt(layer) + input * outs + neuron))
+      weights =
+        (0 until widths(layer)).map(input => actor.parameters(actor.weightsAt(layer) + input * outs + neuron))
       weight <- weights :+ actor.parameters(actor.biasesAt(layer) + neuron)
     yield weight.toDouble
 

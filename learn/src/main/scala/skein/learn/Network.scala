@@ -18,7 +18,8 @@ final class Network(val widths: Vector[Int]) extends Saved:
   val outputs: Int = widths.last
   val layers: Int  = widths.size - 1
 
-  private val starts = Vector.tabulate(layers)(layer => (widths(layer) + 1) * widths(layer + 1)).scanLeft(0)(_ + _)
+  private val starts =
+    Vector.tabulate(layers)(layer => (widths(layer) + 1) * widths(layer + 1)).scanLeft(0)(_ + _)
 
   /** Layer by layer: the weights, those of an input together, then the biases. [[changed]] is to be told of a change. */
   val parameters: Array[Float] = Array.ofDim(starts.last)
@@ -122,7 +123,19 @@ final class Pass(widths: Vector[Int], val rows: Int):
         System.arraycopy(network.parameters, network.biasesAt(layer), out, row * outs, outs)
         row += 1
       val (x, weightsAt) = (activations(layer), network.weightsAt(layer))
-      DenseKernel.addProduct(until - from, ins, outs, x, from * ins, ins, 1, network.parameters, weightsAt, out, from * outs)
+      DenseKernel.addProduct(
+        until - from,
+        ins,
+        outs,
+        x,
+        from * ins,
+        ins,
+        1,
+        network.parameters,
+        weightsAt,
+        out,
+        from * outs
+      )
       if layer < layers - 1 then
         var i   = from * outs
         val end = until * outs
@@ -142,7 +155,19 @@ final class Pass(widths: Vector[Int], val rows: Int):
       val error       = errors(layer + 1)
       val at          = network.weightsAt(layer)
       // Weights: inputs, turned, times errors.
-      DenseKernel.addProduct(ins, until - from, outs, activations(layer), from * ins, 1, ins, error, from * outs, gradient, at)
+      DenseKernel.addProduct(
+        ins,
+        until - from,
+        outs,
+        activations(layer),
+        from * ins,
+        1,
+        ins,
+        error,
+        from * outs,
+        gradient,
+        at
+      )
       val biases = network.biasesAt(layer)
       var row    = from
       while row < until do
@@ -176,4 +201,16 @@ final class Pass(widths: Vector[Int], val rows: Int):
     val into        = errors(layer)
     java.util.Arrays.fill(into, from * ins, until * ins, 0f)
     val weights = network.weightsByOutput(layer)
-    DenseKernel.addProduct(until - from, outs, ins, errors(layer + 1), from * outs, outs, 1, weights, 0, into, from * ins)
+    DenseKernel.addProduct(
+      until - from,
+      outs,
+      ins,
+      errors(layer + 1),
+      from * outs,
+      outs,
+      1,
+      weights,
+      0,
+      into,
+      from * ins
+    )

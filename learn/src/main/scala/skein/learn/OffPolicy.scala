@@ -6,16 +6,20 @@ import skein.signal.SplitMix64
 /** What learners have in common that learn from transitions of long ago: they remember them, and after each step make
   * updates on batches of them.
   */
-private[learn] abstract class OffPolicy(observations: Int, actions: Int, settings: LearnerSettings, seed: Long)
-    extends Learner:
-  protected val initial: SplitMix64         = SplitMix64(SplitMix64.seedOf(seed, -1))
-  protected var random: SplitMix64          = SplitMix64(seed)
-  protected val rows: Int                   = settings.batch
-  private[learn] val replay: ReplayBuffer   = ReplayBuffer(observations, actions, settings.replay)
-  private[learn] val batch: Transitions     = Transitions(observations, actions, rows)
-  private var steps                         = 0L
-  private var updates                       = 0L
-  private var deciding                      = Pass(Vector(1, 1), 1)
+private[learn] abstract class OffPolicy(
+    observations: Int,
+    actions: Int,
+    settings: LearnerSettings,
+    seed: Long
+) extends Learner:
+  protected val initial: SplitMix64       = SplitMix64(SplitMix64.seedOf(seed, -1))
+  protected var random: SplitMix64        = SplitMix64(seed)
+  protected val rows: Int                 = settings.batch
+  private[learn] val replay: ReplayBuffer = ReplayBuffer(observations, actions, settings.replay)
+  private[learn] val batch: Transitions   = Transitions(observations, actions, rows)
+  private var steps                       = 0L
+  private var updates                     = 0L
+  private var deciding                    = Pass(Vector(1, 1), 1)
 
   /** All that is learned, in a fixed order. */
   protected def learned: Vector[Saved]

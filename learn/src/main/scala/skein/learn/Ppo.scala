@@ -18,25 +18,25 @@ final class Ppo(
 ) extends Learner:
   import Ppo.*
 
-  private val initial      = SplitMix64(SplitMix64.seedOf(seed, -1))
-  private val actorWidths  = observations +: settings.hidden :+ actions
-  private val valueWidths  = observations +: settings.hidden :+ 1
-  val actor: Network       = Network(actorWidths).draw(initial, LastScale)
+  private val initial       = SplitMix64(SplitMix64.seedOf(seed, -1))
+  private val actorWidths   = observations +: settings.hidden :+ actions
+  private val valueWidths   = observations +: settings.hidden :+ 1
+  val actor: Network        = Network(actorWidths).draw(initial, LastScale)
   private[learn] val critic = Network(valueWidths).draw(initial)
 
   /** Logarithms of how widely each number of an action is drawn. */
-  private[learn] val widths    = Array.fill(actions)(StrictMath.log(FirstDeviation).toFloat)
-  private val actorOptimiser   = Adam(actor.parameters.length, settings.rate)
-  private val criticOptimiser  = Adam(critic.parameters.length, settings.rate)
-  private val widthsOptimiser  = Adam(actions, settings.rate)
-  private[learn] val rollout   = RolloutBuffer(observations, actions, environments, settings.horizon)
-  private val actorPass        = Pass(actorWidths, environments.max(settings.batch))
-  private val criticPass       = Pass(valueWidths, environments.max(settings.batch))
+  private[learn] val widths         = Array.fill(actions)(StrictMath.log(FirstDeviation).toFloat)
+  private val actorOptimiser        = Adam(actor.parameters.length, settings.rate)
+  private val criticOptimiser       = Adam(critic.parameters.length, settings.rate)
+  private val widthsOptimiser       = Adam(actions, settings.rate)
+  private[learn] val rollout        = RolloutBuffer(observations, actions, environments, settings.horizon)
+  private val actorPass             = Pass(actorWidths, environments.max(settings.batch))
+  private val criticPass            = Pass(valueWidths, environments.max(settings.batch))
   private[learn] val actorGradient  = Gradient(actor.parameters.length, settings.batch)
-  private val criticGradient   = Gradient(critic.parameters.length, settings.batch)
+  private val criticGradient        = Gradient(critic.parameters.length, settings.batch)
   private[learn] val widthsGradient = Gradient(actions, settings.batch)
-  private var random           = SplitMix64(seed)
-  private val logs, values     = Array.ofDim[Float](environments)
+  private var random                = SplitMix64(seed)
+  private val logs, values          = Array.ofDim[Float](environments)
 
   def isFinite: Boolean = actor.isFinite && critic.isFinite && widths.forall(_.isFinite)
 
@@ -87,11 +87,11 @@ final class Ppo(
 
   /** Of one batch: rows of the rollout, from a place in an order of them. */
   private[learn] def update(order: Array[Int], first: Int): Unit =
-    val count       = settings.batch
-    val chosen      = order.slice(first, first + count)
-    val mean        = chosen.iterator.map(at => rollout.advantages(at).toDouble).sum / count
-    val squares     = chosen.iterator.map(at => rollout.advantages(at) - mean).map(off => off * off).sum
-    val deviation   = math.sqrt(squares / count) + 1e-8
+    val count     = settings.batch
+    val chosen    = order.slice(first, first + count)
+    val mean      = chosen.iterator.map(at => rollout.advantages(at).toDouble).sum / count
+    val squares   = chosen.iterator.map(at => rollout.advantages(at) - mean).map(off => off * off).sum
+    val deviation = math.sqrt(squares / count) + 1e-8
     for gradient <- Seq(actorGradient, criticGradient, widthsGradient) do gradient.clear()
     workers.share(count): (part, from, until) =>
       for row <- from until until do
@@ -127,7 +127,7 @@ final class Ppo(
     val counts = if advantage >= 0 then ratio <= 1 + Clip else ratio >= 1 - Clip
     val by     = if counts then -advantage * ratio / count else 0.0
     for action <- 0 until actions do
-      val off     = offset(row, at, action)
+      val off      = offset(row, at, action)
       val squashed = StrictMath.tanh(actorPass.output(row * actions + action))
       actorPass.outputError(row * actions + action) =
         (by * off / StrictMath.exp(widths(action)) * (1 - squashed * squashed)).toFloat

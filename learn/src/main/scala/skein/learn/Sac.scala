@@ -10,18 +10,18 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
     extends OffPolicy(observations, actions, settings, seed):
   import Sac.*
 
-  private val widths               = observations +: settings.hidden :+ 2 * actions
-  val actor: Network               = Network(widths).draw(initial)
-  private val optimiser            = Adam(actor.parameters.length, settings.rate)
-  private[learn] val critics       = Critics(2, observations, actions, settings, initial)
-  private[learn] val temperature   = Temperature(settings.rate)
-  private val pass                 = Pass(widths, rows)
-  private[learn] val gradient      = Gradient(actor.parameters.length, rows)
-  private[learn] val noise         = Array.ofDim[Float](rows * actions)
-  private[learn] val chosen        = Array.ofDim[Float](rows * actions)
-  private val slopes               = Array.ofDim[Float](rows * actions)
-  private[learn] val logs          = Array.ofDim[Float](rows)
-  private[learn] val wanted        = Array.ofDim[Float](rows)
+  private val widths             = observations +: settings.hidden :+ 2 * actions
+  val actor: Network             = Network(widths).draw(initial)
+  private val optimiser          = Adam(actor.parameters.length, settings.rate)
+  private[learn] val critics     = Critics(2, observations, actions, settings, initial)
+  private[learn] val temperature = Temperature(settings.rate)
+  private val pass               = Pass(widths, rows)
+  private[learn] val gradient    = Gradient(actor.parameters.length, rows)
+  private[learn] val noise       = Array.ofDim[Float](rows * actions)
+  private[learn] val chosen      = Array.ofDim[Float](rows * actions)
+  private val slopes             = Array.ofDim[Float](rows * actions)
+  private[learn] val logs        = Array.ofDim[Float](rows)
+  private[learn] val wanted      = Array.ofDim[Float](rows)
 
   protected def learned: Vector[Saved] = Vector(actor, optimiser, critics, temperature)
 
@@ -48,7 +48,13 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
 
   /** Draws actions where rows of what is seen lead, and how likely each was. */
   private def draw(seen: Array[Float], from: Int, until: Int): Unit =
-    System.arraycopy(seen, from * observations, pass.input, from * observations, (until - from) * observations)
+    System.arraycopy(
+      seen,
+      from * observations,
+      pass.input,
+      from * observations,
+      (until - from) * observations
+    )
     pass.forward(actor, from, until)
     var row = from
     while row < until do

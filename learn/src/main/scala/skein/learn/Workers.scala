@@ -21,7 +21,7 @@ final class Workers(threads: Int) extends AutoCloseable:
       case Some(pool) if parts > 1 =>
         val all: Runnable = () => IntStream.range(0, parts).parallel().forEach(one)
         pool.submit(all).get(): Unit
-      case _                       => (0 until parts).foreach(one)
+      case _ => (0 until parts).foreach(one)
 
   def close(): Unit = pool.foreach(_.shutdownNow())
 

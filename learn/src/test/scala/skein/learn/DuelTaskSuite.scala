@@ -25,9 +25,9 @@ class DuelTaskSuite extends munit.FunSuite:
 
   for side <- Seq("pursuer", "evader") do
     test(s"the $side's episode is that of its policy in forward simulation"):
-      val actor    = drawn(8)
+      val actor      = drawn(8)
       val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
-      val policy   = LearnedPolicy(DuelTask.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
+      val policy     = LearnedPolicy(DuelTask.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
       // Without a network, delays are no matter of chance.
       val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
       val task     = DuelTask.of(settings, None, 1, 1).fold(fail(_), identity)
@@ -41,8 +41,8 @@ class DuelTaskSuite extends munit.FunSuite:
         task.step(Array(math.tanh(pass.output(0)).toFloat))
         reward += task.rewards(0)
         isOver = task.ended(0)
-      val duel  = Duel.paperAt(20, 20)
-      val both  =
+      val duel = Duel.paperAt(20, 20)
+      val both =
         if side == "pursuer" then duel.copy(pursuer = duel.pursuer.copy(policy = policy))
         else duel.copy(evader = duel.evader.copy(policy = policy))
       val flown = Rollout(both, LoopTiming.Stream(), none, Reduced.AirSim).fly(1)

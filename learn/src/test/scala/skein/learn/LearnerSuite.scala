@@ -55,7 +55,13 @@ class LearnerSuite extends munit.FunSuite:
 
     test(s"${algorithm.label}: equal seeds give equal weights to the bit, on any number of threads"):
       def weights(threads: Int, seed: Long) =
-        trained(algorithm, Integrator(16, 3), rounds = 3, seed = seed, threads = threads).actor.parameters.toVector
+        trained(
+          algorithm,
+          Integrator(16, 3),
+          rounds = 3,
+          seed = seed,
+          threads = threads
+        ).actor.parameters.toVector
       val one = weights(threads = 1, seed = 8)
       assertEquals(weights(threads = 3, seed = 8), one)
       assertNotEquals(weights(threads = 1, seed = 9), one)
@@ -84,7 +90,7 @@ class LearnerSuite extends munit.FunSuite:
 
   test("a learner whose weights are no numbers any more says so"):
     final class Endless extends SmallTask(16, 1, 1):
-      protected def start(row: Int): Unit     = seen(row) = drawn()
+      protected def start(row: Int): Unit  = seen(row) = drawn()
       def step(chosen: Array[Float]): Unit =
         java.util.Arrays.fill(rewards, Float.NaN)
     val workers  = Workers(1)

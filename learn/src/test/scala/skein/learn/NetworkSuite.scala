@@ -27,7 +27,8 @@ class NetworkSuite extends munit.FunSuite:
       pass.forward(network, 0, 2)
       pass.forward(network, 2, 5)
       for row <- 0 until 5 do
-        val expected = byHand(network, rows.slice(row * widths.head, (row + 1) * widths.head).map(_.toDouble).toSeq)
+        val expected =
+          byHand(network, rows.slice(row * widths.head, (row + 1) * widths.head).map(_.toDouble).toSeq)
         for (value, output) <- expected.zipWithIndex do
           assertEqualsDouble(pass.output(row * widths.last + output).toDouble, value, 1e-5, s"row $row")
 

@@ -52,8 +52,9 @@ class UpdateSuite extends munit.FunSuite:
       val raw               = mean + deviation * sac.noise(at)
       val action            = math.tanh(raw)
       // Density of a normal number squashed by tanh.
-      val density = math.exp(-0.5 * math.pow((raw - mean) / deviation, 2)) / (deviation * math.sqrt(2 * math.Pi)) /
-        (1 - action * action)
+      val density =
+        math.exp(-0.5 * math.pow((raw - mean) / deviation, 2)) / (deviation * math.sqrt(2 * math.Pi)) /
+          (1 - action * action)
       val soft = sac.critics.targets.map(value(_, reached, action)).min - 0.1 * math.log(density)
       assertEqualsDouble(
         sac.wanted(at).toDouble,
@@ -117,7 +118,11 @@ class UpdateSuite extends munit.FunSuite:
       (above - below) * 256
     critics.step()
     for at <- slopes.indices if math.abs(slopes(at)) > 5e-3 do
-      assertEqualsDouble((network.parameters(at) - before(at)).toDouble, -0.01 * math.signum(slopes(at)), 1e-4)
+      assertEqualsDouble(
+        (network.parameters(at) - before(at)).toDouble,
+        -0.01 * math.signum(slopes(at)),
+        1e-4
+      )
 
   test("DDPG: an update moves the actor towards higher values"):
     val ddpg = Ddpg(2, 1, settings, 6, Workers(1))
@@ -139,7 +144,7 @@ class UpdateSuite extends munit.FunSuite:
 
   test("PPO: advantages by hand, over an end for good and one for no reason of its own"):
     final class Three extends SmallTask(1, 1, 1):
-      protected def start(row: Int): Unit     = ()
+      protected def start(row: Int): Unit  = ()
       def step(chosen: Array[Float]): Unit = ()
     val (task, buffer) = (Three(), RolloutBuffer(1, 1, 1, 4))
     // Rewards 1 to 4; values 0.5; what is reached is worth 2. The second step terminates, the third is cut off.
@@ -171,11 +176,12 @@ class UpdateSuite extends munit.FunSuite:
     for at <- 0 until 4 do ppo.rollout.logs(at) = (logs(at) + Seq(0.05, -1.0, 0.1, 1.0)(at)).toFloat
     val mean      = ppo.rollout.advantages.map(_.toDouble).sum / 4
     val deviation = math.sqrt(ppo.rollout.advantages.map(a => math.pow(a - mean, 2)).sum / 4)
-    def loss()    = -(0 until 4).map: at =>
-      val advantage = (ppo.rollout.advantages(at) - mean) / deviation
-      val ratio     = math.exp(logs(at) - ppo.rollout.logs(at))
-      math.min(ratio * advantage, ratio.max(0.8).min(1.2) * advantage)
-    .sum / 4
+    def loss()    =
+      -(0 until 4).map: at =>
+        val advantage = (ppo.rollout.advantages(at) - mean) / deviation
+        val ratio     = math.exp(logs(at) - ppo.rollout.logs(at))
+        math.min(ratio * advantage, ratio.max(0.8).min(1.2) * advantage)
+      .sum / 4
     ppo.update(Array(0, 1, 2, 3), 0)
     // The gradient was made shorter by one factor at most.
     val gradient = ppo.actorGradient.of(0)
