@@ -4,6 +4,7 @@ import java.nio.file.{Files, Path}
 import java.time.LocalDateTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
+import skein.flight.NotFlown
 import skein.lanes.DuelBatch
 import skein.learn.LearnerSettings
 import skein.optimise.Tally
@@ -299,6 +300,6 @@ object LearnCommand:
         for plan <- settings.plans.filter(_.policy.isDefined); number <- 0 until flights
         yield plan.copy(seed = settings.seed + number)
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
-      _ <- Either.cond(missing.isEmpty, (), skein.flight.NotFlown.message(missing, plans.size))
+      _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
       distances = landed.flatMap(_.distance).flatMap(_.lastTenSeconds).map(_.mean)
     yield Tally.of(distances.size)(distances)

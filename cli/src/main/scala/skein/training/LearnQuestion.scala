@@ -68,6 +68,7 @@ final case class LearnQuestion(
       _ <- within("--steps", steps.toDouble, 1, MostSteps)
       _ <- within("--environments", environments, 1, MostEnvironments)
       _ <- within("--lesson", lessonS, 1, 3600)
+      _ <- within("--turn-rate", turnRateRadPerS, 1e-3, 10)
       _ <- within("--episodes", episodes, 2, MostEpisodes)
       _ <- within("--fresh", fresh, 2, MostEpisodes)
       _ <- learner.mistake.toLeft(())

@@ -49,12 +49,13 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
       isStopped: () => Boolean,
       onRound: LearnState => Unit
   ): Either[String, LearnState] =
-    val training                      = Training(task, learner, setup.stepsPerRound)
-    val evaluator                     = setup.evaluator(batch)
-    var state                         = from
-    var mistake: Either[String, Unit] = Right(())
-    var savedAt                       = nanoTime()
-    def save(): Either[String, Unit]  = folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
+    val training  = Training(task, learner, setup.stepsPerRound)
+    val evaluator = setup.evaluator(batch)
+    var state     = from
+    def save()    = folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
+    var savedAt   = nanoTime()
+
+    var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do
       training.round(state.rounds, isStopped) match
         case Left(reason)   => mistake = Left(reason)
@@ -78,7 +79,7 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
             mistake = save()
             savedAt = nanoTime()
           onRound(state)
-    // A round that was given up is in the learner, and so is not saved: it is learned again.
+    // A round that was given up is in the learner already, and so is not saved: it is learned again.
     mistake.map(_ => state)
 
 object LearnRun:

@@ -146,9 +146,8 @@ object EnvironmentSettings:
               number(value => settings.copy(startWithinM = (value, settings.startWithinM._2)))
             case "start_most_m" =>
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
-            case "moves_in_flight"     => number(value => settings.copy(movesInFlight = value.toInt))
-            case "turn_rate_rad_per_s" => number(value => settings.copy(turnRateRadPerS = value))
-            case _                     => Left(s"no setting '$name'")
+            case "moves_in_flight" => number(value => settings.copy(movesInFlight = value.toInt))
+            case _                 => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
     Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")
