@@ -50,7 +50,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(recognition)
-    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
+    .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
     .aggregate(scene, blocks)
     .settings(publish / skip := true)
@@ -171,10 +171,15 @@ lazy val environment = project
   .dependsOn(flight)
   .settings(libraryDependencies ++= munit)
 
+/** Learners of policies. */
+lazy val learn = project
+  .settings(artifact("learn", "SAC, DDPG and PPO for policies under a loop's timing"))
+  .dependsOn(environment).settings(Jvm.vectorModule, libraryDependencies ++= munit)
+
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, environment)
+  .dependsOn(flight % "compile->compile;test->test", view, learn)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
@@ -206,7 +211,7 @@ lazy val cli = project
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
       """case " $* " in""",
-      """  " search "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
+      """  " search "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
       """    addJava "--add-modules=jdk.incubator.vector"""",
       """    addJava "-XX:SharedArchiveFile=${app_home}/../skein-vector.jsa"""",
       """    exec 2> >(""",

@@ -25,6 +25,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     FlyCommand(),
     SpreadCommand(),
     SearchCommand(),
+    LearnCommand(),
     BudgetCommand(),
     ServeCommand,
     LinkCommand,

@@ -1,13 +1,9 @@
 package skein.cli
 
-import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
-import skein.flight.{NotFlown, VirtualFlights}
-import skein.loop.Outcome
-import skein.measure.FlightSummary
+import skein.flight.NotFlown
 import skein.report.{Report, ReportSections, Section}
 import skein.scenario.Scenarios
-import skein.settings.{FlightPlan, FlySettings}
 
 /** Options of `./skein spread`. */
 final case class SpreadOptions(
@@ -35,7 +31,7 @@ final class SpreadCommand(using Scenarios)
       plans =
         for plan <- settings.plans; number <- 0 until options.seeds
         yield plan.copy(seed = settings.seed + number)
-      (missing, flown) = fly(settings, plans).partitionMap(identity)
+      (missing, flown) = SpreadFlights.fly(settings, plans).partitionMap(identity)
       shown            = Shown(options.json.value)
       sections         = ReportSections.spread(flown)
       _                = shown.tables(sections, Section.text(sections))
@@ -46,16 +42,3 @@ final class SpreadCommand(using Scenarios)
       )
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
     yield ()
-
-  private def fly(settings: FlySettings, plans: Vector[FlightPlan]): Vector[Either[NotFlown, FlightSummary]] =
-    val landed     = AtomicInteger()
-    def progress() = s"${landed.get} of ${plans.size} flights have landed"
-    Edge.tellingIfCut(progress()):
-      VirtualFlights
-        .inParallel(settings, plans): flight =>
-          val summary = flight.landed.outcome match
-            case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
-            case _                      => Right(FlightSummary.of(flight.recorder.recording))
-          if landed.incrementAndGet() % (plans.size / 20).max(1) == 0 then Console.err.println(progress())
-          summary
-        .map(_.flatten)

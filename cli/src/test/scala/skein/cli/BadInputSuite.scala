@@ -28,8 +28,10 @@ class BadInputSuite extends munit.FunSuite:
     assert(said.toString.linesIterator.size <= 2)
 
   folder.test("a folder that cannot be made is told before the flight"): path =>
-    val file = Files.writeString(path.resolve("file"), "").toString
-    for command <- Seq(FlyCommand(), SpreadCommand(), SearchCommand(), BudgetCommand(), LatencyCommand) do
+    val file     = Files.writeString(path.resolve("file"), "").toString
+    val commands =
+      Seq(FlyCommand(), SpreadCommand(), SearchCommand(), LearnCommand(), BudgetCommand(), LatencyCommand)
+    for command <- commands do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 

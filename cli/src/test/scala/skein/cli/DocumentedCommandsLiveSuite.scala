@@ -28,6 +28,8 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
     "12s"
   ).resolve("stream-vpn.duckdb")
   private lazy val policy: Path = files(made("search")(forward*)).find(_.toString.endsWith("policy.conf")).get
+  private lazy val learned: Path =
+    files(made("learn", "--network", "8")(learn*)).find(_.toString.endsWith("policy.conf")).get
   private lazy val scenario: Path =
     files(made("search --scenario surround --vary ring-m=4..12 --objective off-ring".split(' ')*)(team*))
       .find(_.toString.endsWith("scenario.conf"))
@@ -47,6 +49,10 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
   private val team =
     Seq("--set", "vehicles=4", "--candidates", "4", "--episodes", "1", "--fresh", "2", "--duration", "12s")
 
+  private val learn =
+    ("--steps 1000 --environments 16 --lesson 5s --episodes 2 --fresh 4 --flights 1 --duration 12s " +
+      "--updates-per-step 0.02").split(' ').toSeq
+
   /** What makes a command short, and where its results go. */
   private def shortened(words: Seq[String], out: Path): Seq[String] =
     val more = words.head match
@@ -55,11 +61,12 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
       case "spread"                                 => Seq("--seeds", "2", "--duration", "4s")
       case "search" if words.contains("--scenario") => team
       case "search"                                 => forward
+      case "learn"                                  => learn
       case "budget"  => Seq("--means", "3", "--jitters", "2", "--episodes", "20", "--duration", "12s")
       case "latency" => Seq("--period", "5ms")
       case _         => Seq.empty
     words ++ more ++
-      Option.when(Set("fly", "search", "budget", "latency", "new")(words.head))(Seq(
+      Option.when(Set("fly", "search", "learn", "budget", "latency", "new")(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
@@ -124,6 +131,7 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         case "FILE" | "FILE…"           => recording.toString
         case "settings.json"            => settings.toString
         case "searches/…/policy.conf"   => policy.toString
+        case "learned/…/policy.conf"    => learned.toString
         case "searches/…/scenario.conf" => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb")(name) => folder.resolve(name).toString

@@ -20,7 +20,26 @@ final case class PlanarObservation(
     elapsedS: Double,
     ownAgeS: Double,
     opponentAgeS: Double
-)
+):
+  /** What learners see, in the frame whose x-axis is the own heading commanded last: the opponent's place ahead and to
+    * the right, m; its velocity minus the own one, m/s; cosine and sine of its heading from the own one; the time since
+    * the own last decision, the age of the own reading and of the opponent's, s.
+    */
+  def fromOwnHeading: Array[Double] =
+    val cos     = StrictMath.cos(ownHeadingRad)
+    val sin     = StrictMath.sin(ownHeadingRad)
+    val bearing = opponentHeadingRad - ownHeadingRad
+    val into    = Array.ofDim[Double](9)
+    into(0) = dxM * cos + dyM * sin
+    into(1) = dyM * cos - dxM * sin
+    into(2) = dvxMps * cos + dvyMps * sin
+    into(3) = dvyMps * cos - dvxMps * sin
+    into(4) = StrictMath.cos(bearing)
+    into(5) = StrictMath.sin(bearing)
+    into(6) = elapsedS
+    into(7) = ownAgeS
+    into(8) = opponentAgeS
+    into
 
 object PlanarObservation:
   def of(seen: Observation): PlanarObservation =

@@ -117,7 +117,21 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  private val NeuralPrefix = "neural:"
+  /** What `./skein learn` teaches, named `learned:64x64` by its hidden layers; the default's weights are all zero. */
+  def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
+    s"$LearnedPrefix${shape.hidden.mkString("x")}",
+    s"a neural network of all that a learner sees, with hidden layers of $shape",
+    Set(Role.Pursuer, Role.Evader),
+    SearchSpace(
+      shape.names.map(Axis(_, -3.0, 3.0)) ++
+        Vector(turnRate, Axis("turnRad", 0.0, math.Pi, 0.0))
+    ),
+    parameters =>
+      LearnedPolicy(shape, parameters.dropRight(2), parameters(parameters.size - 2), parameters.last)
+  )
+
+  private val NeuralPrefix  = "neural:"
+  private val LearnedPrefix = "learned:"
 
   /** All that have a fixed number of parameters, in the order in which they are listed to people. */
   val all: Vector[PolicyFamily] =
@@ -138,9 +152,13 @@ object PolicyFamily:
     */
   def parse(text: String): Either[String, PolicyFamily] =
     if text.startsWith(NeuralPrefix) then NeuralShape.parse(text.stripPrefix(NeuralPrefix)).map(neural)
+    else if text.startsWith(LearnedPrefix) then
+      NeuralShape
+        .parse(text.stripPrefix(LearnedPrefix))
+        .map(shape => learned(shape.copy(inputs = LearnedPolicy.Inputs)))
     else
       all
         .find(_.name == text)
         .toRight(
-          s"expected a family of policies (${all.map(_.name).mkString(", ")}, or ${NeuralPrefix}8x8), came '$text'"
+          s"expected a family of policies (${all.map(_.name).mkString(", ")}, ${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
         )

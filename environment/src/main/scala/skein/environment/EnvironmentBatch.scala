@@ -4,6 +4,7 @@ import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
 import skein.lanes.SteppedDuels.WORLDS
+import skein.settings.PolicyFile
 
 /** Many episodes of the duel, step by step: one side or both decide from outside, at the moments at which the loop lets
   * them, on readings as old as the link makes them. [[EnvironmentSettings]] says which, [[EnvironmentBuffers]] what is
@@ -84,15 +85,20 @@ object EnvironmentBatch:
   /** Fewer groups are flown by the caller's thread alone. */
   private val Together = 4
 
-  /** @return or what was expected and came */
+  /** @param opponent
+    *   of the side that does not learn; without one, as the settings name it
+    * @return
+    *   or what was expected and came
+    */
   def of(
       settings: EnvironmentSettings,
       count: Int,
       autoreset: Autoreset,
-      block: ByteBuffer
+      block: ByteBuffer,
+      opponent: Option[PolicyFile] = None
   ): Either[String, EnvironmentBatch] =
     for
-      config <- settings.resolved
+      config <- settings.resolvedAgainst(opponent)
       _      <- Either.cond(count >= 1 && count <= Most, (), s"num_envs: expected 1 to $Most, came $count")
       made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made

@@ -31,14 +31,14 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
     at += bytes
     slice
 
-  private val actions           = part(4 * agents * count).asFloatBuffer
+  val actions: FloatBuffer      = part(4 * agents * count).asFloatBuffer
   val observations: FloatBuffer = part(4 * agents * FIELDS * count).asFloatBuffer
   val finals: FloatBuffer       = part(4 * agents * FIELDS * count).asFloatBuffer
-  private val rewards           = part(4 * agents * count).asFloatBuffer
-  private val distances         = part(4 * count).asFloatBuffer
+  val rewards: FloatBuffer      = part(4 * agents * count).asFloatBuffer
+  val distances: FloatBuffer    = part(4 * count).asFloatBuffer
   private val times             = part(4 * count).asFloatBuffer
-  private val terminations      = part(count)
-  private val truncations       = part(count)
+  val terminations: ByteBuffer  = part(count)
+  val truncations: ByteBuffer   = part(count)
   private val dues              = part(agents * count)
 
   def action(agent: Int, number: Int): Float              = actions.get(agent * count + number)

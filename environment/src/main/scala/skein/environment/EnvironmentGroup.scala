@@ -3,7 +3,6 @@ package skein.environment
 import java.nio.FloatBuffer
 import skein.lanes.SteppedDuels
 import skein.policy.Role
-import skein.settings.OutsidePolicy
 import skein.signal.SplitMix64
 
 /** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their messages is the
@@ -116,7 +115,7 @@ private final class EnvironmentGroup(
 
   private def commanded(vehicle: Int, action: Float): Float =
     val share = math.max(-1f, math.min(1f, action))
-    if vehicle == 1 then share * OutsidePolicy.MostTurnRadPerS.toFloat else share * math.Pi.toFloat
+    if vehicle == 1 then share * settings.turnRateRadPerS.toFloat else share * math.Pi.toFloat
 
   /** Rewards, and who has ended. */
   private def judge(): Unit =

@@ -6,7 +6,7 @@ import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
-import skein.settings.{FlySettings, PolicyFile, TextFile, VehicleChoice}
+import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.Span
 
@@ -25,6 +25,8 @@ import skein.units.Span
   *   direction; both 0: as the paper's duel begins
   * @param movesInFlight
   *   of one vehicle
+  * @param turnRateRadPerS
+  *   the most that a pursuer who learns turns
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -37,12 +39,18 @@ final case class EnvironmentSettings(
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
-    movesInFlight: Int = LoopTiming.MostOutstanding
+    movesInFlight: Int = LoopTiming.MostOutstanding,
+    turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS
 ):
   import EnvironmentSettings.*
 
   /** @return or what was expected and came */
-  private[environment] def resolved: Either[String, Resolved] =
+  private[environment] def resolved: Either[String, Resolved] = resolvedAgainst(None)
+
+  /** @param told
+    *   the opponent; without one, as it is named
+    */
+  private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
     for
       roles <- Learners.get(learners).toRight(
         s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
@@ -55,6 +63,7 @@ final case class EnvironmentSettings(
       _       <- within("start_within_m", startWithinM._1, 0, MostM)
       _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
       _       <- within("moves_in_flight", movesInFlight, 1, 16)
+      _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, 10)
       vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("plant: " + _)
       delays  <- delaysOf(link).left.map("link: " + _)
       loopSettings = LoopSettings
@@ -67,7 +76,7 @@ final case class EnvironmentSettings(
         )
       paper = Duel.paperAt(altitudeM, episodeS + SpareS)
       model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
-      against <- opponentFile(roles)
+      against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
       (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
         if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
       _ <- Option(

@@ -9,7 +9,7 @@ import skein.policy.*
 import skein.units.{Clock, Instant, Span}
 
 /** A policy in a process of its own, asked over a Unix socket. It is given what a learner sees in `skein.environment`:
-  * [[OutsidePolicy.seen]], and answers with a number from −1 to 1: how to turn; what is beyond is taken for the bound. So
+  * [[PlanarObservation.fromOwnHeading]], and answers with a number from −1 to 1: how to turn; what is beyond is taken for the bound. So
   * what was taught there flies in every loop.
   *
   * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is none: a
@@ -31,7 +31,7 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
     *   if there is no answer
     */
   def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
-    val share = connection.ask(OutsidePolicy.seen(seen)).toDouble.max(-1).min(1)
+    val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)
     val turn  = if role == Role.Pursuer then share * mostTurnRadPerS * seen.elapsedS else share * math.Pi
     Decided(seen.ownHeadingRad + turn, ())
 
@@ -73,25 +73,6 @@ object OutsidePolicy:
     SearchSpace(Vector(Axis("turnRateRadPerS", 0.2, 3.0, MostTurnRadPerS))),
     parameters => OutsidePolicy(connection, role, parameters(0))
   )
-
-  /** In the frame whose x-axis is the own heading commanded last: the opponent's place ahead and to the right, m; its
-    * velocity minus the own one, m/s; cosine and sine of its heading from the own one; the time since the own last
-    * decision, the age of the own reading and of the opponent's, s.
-    */
-  def seen(of: PlanarObservation): Array[Float] =
-    val (cos, sin) = (StrictMath.cos(of.ownHeadingRad), StrictMath.sin(of.ownHeadingRad))
-    val bearing    = of.opponentHeadingRad - of.ownHeadingRad
-    Array(
-      of.dxM * cos + of.dyM * sin,
-      of.dyM * cos - of.dxM * sin,
-      of.dvxMps * cos + of.dvyMps * sin,
-      of.dvyMps * cos - of.dvxMps * sin,
-      StrictMath.cos(bearing),
-      StrictMath.sin(bearing),
-      of.elapsedS,
-      of.ownAgeS,
-      of.opponentAgeS
-    ).map(_.toFloat)
 
   /** Open until the process ends, or the other side does not keep to the protocol. */
   private final class Connection(path: String, answerWithin: Span):

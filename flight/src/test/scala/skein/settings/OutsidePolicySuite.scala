@@ -27,12 +27,12 @@ class OutsidePolicySuite extends munit.FunSuite:
     )
 
   test("what is seen stands in the frame of the own heading"):
-    val straight = OutsidePolicy.seen(seen.copy(ownHeadingRad = 0)).toVector
-    assertEquals(straight.take(4), Vector(3f, 4f, 1f, -2f))
-    assertEquals(straight.drop(6), Vector(0.1f, 0.02f, 0.03f))
-    val east = OutsidePolicy.seen(seen.copy(ownHeadingRad = math.Pi / 2, opponentHeadingRad = math.Pi))
-    for (came, expected) <- east.take(6).toSeq.zip(Seq(4f, -3f, -2f, -1f, 0f, 1f)) do
-      assertEqualsFloat(came, expected, 1e-6f)
+    val straight = seen.copy(ownHeadingRad = 0).fromOwnHeading.toVector
+    assertEquals(straight.take(4), Vector(3.0, 4.0, 1.0, -2.0))
+    assertEquals(straight.drop(6), Vector(0.1, 0.02, 0.03))
+    val east = seen.copy(ownHeadingRad = math.Pi / 2, opponentHeadingRad = math.Pi).fromOwnHeading
+    for (came, expected) <- east.take(6).toSeq.zip(Seq(4.0, -3.0, -2.0, -1.0, 0.0, 1.0)) do
+      assertEqualsDouble(came, expected, 1e-6)
 
   test("a policy that fails, or tells no number, is asked again"):
     assertEquals(

@@ -1,0 +1,127 @@
+package skein.bench
+
+import java.nio.file.{Files, Path}
+import mainargs.ParserForClass
+import skein.cli.{LearnCommand, LearnOptions, Main}
+import skein.optimise.Tally
+import skein.plot.*
+import skein.policy.{PolicyFamily, Role}
+import skein.scenario.Scenarios
+import skein.settings.PolicyFile
+import skein.training.*
+
+/** Is a policy better over a link that was taught under its timing, or does the paused simulator do? The same learner
+  * teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly over `vpn` under `stream` and
+  * `predictive` in virtual time, and where the simulator waits, beside the paper's policy and, of pursuers, the best of
+  * the family `lead-pursuit` (`./skein search --family lead-pursuit --link vpn`). Run:
+  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100"`; what stands in the folder already is
+  * gone on with. The picture stands there too.
+  */
+object LearnedUnderDelay:
+  private given Scenarios = Main.scenarios
+
+  private val flown = Vector("paused" -> "none", "stream" -> "vpn", "predictive" -> "vpn")
+
+  private final case class Row(policy: String, loop: String, link: String, distance: Tally)
+
+  def main(args: Array[String]): Unit =
+    val folder  = Path.of(args.headOption.getOrElse("learned/under-delay"))
+    val flights = args.lift(1).fold(100)(_.toInt)
+    val sides   = args.lift(2).fold(Seq("pursuer", "evader"))(Seq(_))
+    val panels  = sides.map: side =>
+      val rows = flownBy(side, folder, flights)
+      println(
+        s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | least of 95 % | flights |"
+      )
+      println("|---|---|---|---|---|---|")
+      for row <- rows do
+        val half = row.distance.halfWidth95
+        println(
+          f"| ${row.policy} | `${row.loop}` | ${row.link} | ${row.distance.mean}%.2f ± ${row.distance.sd}%.2f | ± $half%.3f | ${row.distance.count} |"
+        )
+      picture(side, rows)
+    Png.bytes(Drawing.stacked(panels*), 2) match
+      case Right(bytes) => println(s"wrote ${Files.write(folder.resolve("learned-under-delay.png"), bytes)}")
+      case Left(reason) => println(s"no picture: $reason")
+
+  private def flownBy(side: String, folder: Path, flights: Int): Vector[Row] =
+    val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
+      s"taught under $loop over $link" -> learned(folder.resolve(s"$side-$loop-$link"), side, loop, link)
+    val role     = PolicyFile.role(side).fold(sys.error, identity)
+    val paper    = if role == Role.Pursuer then PolicyFamily.paperPursuer else PolicyFamily.paperEvader
+    val searched = Option.when(role == Role.Pursuer)(
+      "the best of lead-pursuit" -> PolicyFile(role, PolicyFamily.leadPursuit, Vector(0.5453, 0.7326, 2.996))
+    )
+    val policies = ("the paper's" -> PolicyFile.ofDefaults(role, paper)) +: (searched.toVector ++ taught)
+    for
+      (loop, link)   <- flown
+      (name, policy) <- policies
+    yield
+      val file  = Files.writeString(folder.resolve("flown.conf"), policy.hocon(""))
+      val tally = LearnCommand
+        .flown(question(side, loop, link), file.toString, if loop == "paused" then 1 else flights)
+        .fold(sys.error, identity)
+      Row(name, loop, link, tally)
+
+  private def question(side: String, loop: String, link: String): LearnQuestion =
+    LearnCommand
+      .question(
+        ParserForClass[LearnOptions].constructOrThrow(Seq("--side", side, "--loop", loop, "--link", link))
+      )
+      .fold(sys.error, identity)
+
+  /** Learns, or goes on with what is there. */
+  private def learned(folder: Path, side: String, loop: String, link: String): PolicyFile =
+    Files.createDirectories(folder): Unit
+    val (asked, from) = LearnFile.read(folder) match
+      case Right(file) => (file.question, file.state)
+      case Left(_)     => (question(side, loop, link), LearnState())
+    val setup = asked.setup.fold(sys.error, identity)
+    val cpu   = ProcessHandle.current.info.totalCpuDuration
+    val state = LearnRun(setup, setup.batch(2), Some(folder), () => System.nanoTime())
+      .run(from, 2, () => false)(state =>
+        if state.rounds % 10 == 0 then
+          Console.err.println(
+            s"$side, $loop over $link: ${state.rounds} of ${setup.rounds} rounds, best ${state.best.fold(0.0)(_.mean)} m"
+          )
+      )
+      .fold(sys.error, identity)
+    Console.err.println(s"processor time before $cpu, now ${ProcessHandle.current.info.totalCpuDuration}")
+    setup.policy(state.best.get.weights)
+
+  private val colours = Vector(Colour(0x111111), Colour(0x009e73), Colour(0xd55e00), Colour(0x0072b2))
+
+  /** A row per loop and policy: the mean as a disc, a standard deviation to either side. */
+  private def picture(side: String, rows: Vector[Row]): Drawing =
+    val most   = rows.map(row => row.distance.mean + row.distance.sd).max
+    val height = 20.0 * rows.size
+    val panel  = Panel(
+      Axis.around("distance over the last 10 s, m", 0, most),
+      Axis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
+      left = 360,
+      top = 34,
+      width = 460,
+      height
+    )
+    val names = rows.map(_.policy).distinct
+    val marks = rows.zipWithIndex.flatMap: (row, index) =>
+      val y                = panel.top + 20 * (index + 0.5)
+      val colour           = colours(names.indexOf(row.policy))
+      val (at, sd)         = (row.distance.mean, row.distance.sd)
+      def x(value: Double) = panel.atX(value.max(0))
+      Vector(
+        Shape.Text(
+          Point(panel.left - 10, y + 4),
+          s"${row.loop} over ${row.link}: ${row.policy}",
+          Ink.labelSize,
+          Ink.labelColour,
+          Anchor.End
+        ),
+        Shape.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),
+        Shape.Disc(Point(x(at), y), 4, Some(Stroke(Colour(0xffffff), 0.8)), Some(colour))
+      )
+    Drawing(
+      panel.right + 40,
+      panel.bottom + 44,
+      (panel.title(s"The $side, flown in virtual time") +: panel.axes) ++ marks
+    )

@@ -1,0 +1,305 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import java.time.LocalDateTime
+import java.time.format.DateTimeFormatter
+import mainargs.{Flag, ParserForClass, arg}
+import skein.flight.NotFlown
+import skein.lanes.DuelBatch
+import skein.learn.LearnerSettings
+import skein.optimise.Tally
+import skein.policy.NeuralShape
+import skein.report.Section
+import skein.scenario.Scenarios
+import skein.search.SearchQuestion
+import skein.settings.PolicyFile
+import skein.training.*
+import skein.units.Span
+
+/** Options of `./skein learn`. */
+final case class LearnOptions(
+    @arg(doc = "sac, ddpg or ppo (default: sac)")
+    algorithm: Option[String],
+    @arg(doc = "whose task is learned: duel, the only one so far")
+    scenario: Option[String],
+    @arg(doc = "pursuer or evader: who learns (default: pursuer)")
+    side: Option[String],
+    @arg(doc = "the latency profile: none, direct, vpn, constant:200ms, … (default: vpn)")
+    link: Option[String],
+    @arg(doc = "between decisions for one vehicle (default: 100ms)")
+    period: Option[String],
+    forward: ForwardOptions,
+    @arg(doc = "decisions to learn from, of all environments together (default: 600000; ppo: 2000000)")
+    steps: Option[Long],
+    @arg(doc = "hidden layers' widths of all networks (default: 32x32)")
+    network: Option[String],
+    @arg(doc = "that fly side by side while it learns (default: 64)")
+    environments: Option[Int],
+    @arg(doc = "how long an episode lasts in which it learns (default: 20s)")
+    lesson: Option[String],
+    @arg(doc = "LEAST..MOST: how far from each other episodes of learning begin, in metres (default: 3..30)")
+    start: Option[String],
+    @arg(doc = "the most that a pursuer turns, rad/s (default: 3, as far as families of search go)")
+    turnRate: Option[Double],
+    @arg(doc = "of Adam (default: 0.001; ppo: 0.0003)")
+    learningRate: Option[Double],
+    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo: 0.99)")
+    discount: Option[Double],
+    @arg(doc = "transitions of an update (default: 256)")
+    batch: Option[Int],
+    @arg(doc = "of sac and ddpg for each decision of one environment (default: 0.125)")
+    updatesPerStep: Option[Double],
+    @arg(doc = "on which a policy is judged while it learns (default: 20)")
+    episodes: Option[Int],
+    @arg(doc = "fresh episodes on which the best policy is measured at the end (default: 1000)")
+    fresh: Option[Int],
+    @arg(doc = "in virtual time, flown with the policy at the end under the same loop and link (default: 20)")
+    flights: Option[Int],
+    @arg(doc = "folder for state, policy and learning curve; without it, learned/DATE-TIME")
+    out: Option[String],
+    @arg(doc = "a folder whose learning was stopped: goes on with it, and ends as if it had not been stopped")
+    resume: Option[String],
+    @arg(doc = Shown.Doc)
+    json: Flag
+)
+
+final class LearnCommand(using Scenarios)
+    extends OptionsCommand[LearnOptions](
+      "learn",
+      "teaches a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
+      ParserForClass[LearnOptions]
+    ):
+
+  protected def execute(options: LearnOptions): Either[String, Unit] =
+    val flights = options.flights.getOrElse(20)
+    for
+      threads <- options.forward.threadCount
+      _       <- Either.cond(
+        flights >= 0 && flights <= 10_000,
+        (),
+        s"--flights: expected 0 to 10000, came $flights"
+      )
+      begun <- options.resume.fold(begin(options))(resume(options, _))
+      (folder, question, state) = begun
+      setup <- question.setup
+      _     <- run(setup, folder, state, threads, flights, Shown(options.json.value))
+    yield ()
+
+  private type Begun = (Path, LearnQuestion, LearnState)
+
+  private def resume(options: LearnOptions, folder: String): Either[String, Begun] =
+    import options.*
+    val others = Seq(
+      algorithm,
+      scenario,
+      side,
+      link,
+      period,
+      steps,
+      network,
+      environments,
+      lesson,
+      start,
+      turnRate,
+      learningRate,
+      discount,
+      batch,
+      updatesPerStep,
+      episodes,
+      fresh,
+      out
+    )
+    for
+      _ <- Either.cond(
+        others.forall(_.isEmpty) && forward.isEmpty,
+        (),
+        "--resume: everything but --threads and --flights is taken from the folder; expected no other option"
+      )
+      file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
+    yield (Path.of(folder), file.question, file.state)
+
+  private def begin(options: LearnOptions): Either[String, Begun] =
+    val folder = Path.of(options.out.getOrElse(
+      s"learned/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
+    ))
+    for
+      question <- LearnCommand.question(options)
+      _        <- question.setup.flatMap(_.task)
+      _        <- Either.cond(
+        !Files.exists(folder.resolve(LearnFile.Name)),
+        (),
+        s"--out: $folder holds what was learned already; --resume $folder goes on with it"
+      )
+      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
+    yield (folder, question, LearnState())
+
+  private def run(
+      setup: LearnSetup,
+      folder: Path,
+      from: LearnState,
+      threads: Int,
+      flights: Int,
+      shown: Shown
+  ): Either[String, Unit] =
+    import setup.question
+    val batch = setup.batch(threads)
+    shown.say(
+      s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} against ${setup.opponent.label}
+         |loop ${question.conditions.loop} every ${PolicyFile.brief(
+          question.conditions.periodMs
+        )} ms over ${question.link}; ${setup.conditions.vehicle.description}
+         |${question.environments} environments, ${setup.rounds * setup.stepsOfRound} steps""".stripMargin
+    )
+    @volatile var stopped = false
+    Edge.untilInterrupted(() => stopped = true):
+      val startedAt = System.nanoTime()
+      val line      = ProgressLine(setup.rounds, Console.err, from.rounds)
+      val learned   = LearnRun(setup, batch, Some(folder), () => System.nanoTime())
+        .run(from, threads, () => stopped)(state => line.show(state.rounds, progress(setup, state)))
+      line.end()
+      learned.flatMap: state =>
+        val seconds = (System.nanoTime() - startedAt) * 1e-9
+        val steps   = (state.rounds - from.rounds) * setup.stepsOfRound
+        shown.say(f"$steps%,d steps in $seconds%.1f s, ${steps / seconds.max(1e-3)}%,.0f a second")
+        val goOn = s"stopped; ./skein learn --resume $folder goes on"
+        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
+        else
+          val isDone = state.rounds == setup.rounds
+          conclude(setup, batch, folder, state, if isDone then flights else 0, shown)
+            .map(_ => if !isDone then shown.say(goOn))
+
+  private def progress(setup: LearnSetup, state: LearnState): String =
+    val unit = setup.objective.unit
+    state.best.fold("not judged yet"): best =>
+      s"now ${PolicyFile.brief(state.scores.last.mean)} $unit, best ${PolicyFile.brief(best.mean)} $unit"
+
+  /** Measures the best policy and writes it and the curve. */
+  private def conclude(
+      setup: LearnSetup,
+      batch: DuelBatch,
+      folder: Path,
+      state: LearnState,
+      flights: Int,
+      shown: Shown
+  ): Either[String, Unit] =
+    val result = LearnResult.measured(setup, batch, state, setup.question.fresh)
+    for
+      file  <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
+      flown <- if flights == 0 then Right(None) else virtual(setup, file.head, flights, shown)
+      all = result.copy(flights = flown)
+      _   = shown.tables(Seq(all.section), Section.text(Seq(all.section)))
+      pictures <- OutFolder.write(
+        folder,
+        OutFolder.picture("learning-curve", all.curve, s"Learning curve of ${setup.question.algorithm}") :+
+          OutFolder.text("learning-curve.csv", all.csv)
+      )
+    yield shown.say(s"written: ${(file ++ pictures).mkString(", ")}")
+
+  /** Flies the policy in virtual time, against the paper's policy of the other side. */
+  private def virtual(
+      setup: LearnSetup,
+      policy: Path,
+      flights: Int,
+      shown: Shown
+  ): Either[String, Option[Tally]] =
+    val paper = SearchQuestion.paperOpponent(setup.role).text
+    if setup.question.opponent != paper then
+      shown.say(
+        "no flights: they are flown against the paper's policy, and this one was not taught against it"
+      )
+      Right(None)
+    else LearnCommand.flown(setup.question, policy.toString, flights).map(Some(_))
+
+object LearnCommand:
+
+  /** What the options ask.
+    *
+    * @return
+    *   or what was expected, what came, and in which option
+    */
+  def question(options: LearnOptions): Either[String, LearnQuestion] =
+    import options.forward
+    val algorithm = options.algorithm.getOrElse("sac")
+    val onPolicy  = algorithm == "ppo"
+    for
+      _ <- Either.cond(
+        options.scenario.forall(_ == "duel"),
+        (),
+        s"--scenario: expected duel, the only task to be learned so far, came '${options.scenario.getOrElse("")}'"
+      )
+      role       <- PolicyFile.role(options.side.getOrElse("pursuer")).left.map("--side: " + _)
+      period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
+      lesson     <- Span.parse(options.lesson.getOrElse("20s")).left.map("--lesson: " + _)
+      conditions <- forward.conditions(period)
+      opponent   <- forward.opponentOf(role)
+      shape      <- NeuralShape.parse(options.network.getOrElse("32x32")).left.map("--network: " + _)
+      start      <- range(options.start.getOrElse("3..30"))
+    yield LearnQuestion(
+      algorithm,
+      PolicyFile.name(role),
+      forward.objective.getOrElse("last10s"),
+      conditions,
+      options.link.getOrElse("vpn"),
+      opponent.text,
+      options.steps.getOrElse(if onPolicy then 2_000_000L else 600_000L),
+      options.environments.getOrElse(64),
+      lesson.toSeconds,
+      start._1,
+      start._2,
+      options.turnRate.getOrElse(3.0),
+      LearnerSettings(
+        hidden = shape.hidden,
+        discount = options.discount.getOrElse(if onPolicy then 0.99 else 0.98),
+        rate = options.learningRate.getOrElse(if onPolicy then 3e-4 else 1e-3),
+        batch = options.batch.getOrElse(256),
+        updatesPerStep = options.updatesPerStep.getOrElse(0.125)
+      ),
+      options.episodes.getOrElse(20),
+      options.fresh.getOrElse(1000),
+      forward.seed.getOrElse(1)
+    )
+
+  private def range(text: String): Either[String, (Double, Double)] =
+    text.split("\\.\\.", -1).map(_.toDoubleOption) match
+      case Array(Some(least), Some(most)) if least >= 0 && most >= least && most <= 1000 =>
+        Right((least, most))
+      case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
+
+  /** Mean distances of the last 10 s of flights in virtual time with a policy, against the paper's policy.
+    *
+    * @param policy
+    *   its file
+    */
+  private[skein] def flown(question: LearnQuestion, policy: String, flights: Int)(using
+      Scenarios
+  ): Either[String, Tally] =
+    val conditions = question.conditions
+    val options    = FlightOptions(
+      loop = Seq(conditions.loop),
+      link = Seq(question.link),
+      duration = Some(s"${conditions.durationS}s"),
+      period = Some(s"${conditions.periodMs}ms"),
+      seed = Some(question.seed),
+      scenario = Some("duel"),
+      set = Nil,
+      vehicles = None,
+      policy = Seq(policy),
+      pairs = None,
+      asPaper = Flag(false),
+      asPublished = Flag(false),
+      altitude = Some(conditions.altitudeM),
+      predictor = None,
+      movesInFlight = None,
+      deadline = None,
+      fallback = None,
+      config = None
+    )
+    for
+      settings <- options.settings
+      plans =
+        for plan <- settings.plans.filter(_.policy.isDefined); number <- 0 until flights
+        yield plan.copy(seed = settings.seed + number)
+      (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
+      _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
+      distances = landed.flatMap(_.distance).flatMap(_.lastTenSeconds).map(_.mean)
+    yield Tally.of(distances.size)(distances)

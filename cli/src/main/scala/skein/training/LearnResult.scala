@@ -1,0 +1,113 @@
+package skein.training
+
+import skein.lanes.DuelBatch
+import skein.optimise.Tally
+import skein.plot.Drawing
+import skein.report.{Section, TextTable}
+import skein.settings.PolicyFile
+
+/** What was learned, measured on episodes that learning never met.
+  *
+  * @param paper
+  *   the paper's policy of the same side on the same episodes
+  * @param flights
+  *   mean distances of the last 10 s of flights in virtual time, m, where such were flown
+  */
+final case class LearnResult(
+    setup: LearnSetup,
+    state: LearnState,
+    policy: PolicyFile,
+    fresh: Tally,
+    paper: Tally,
+    flights: Option[Tally]
+):
+  import setup.{objective, question}
+
+  /** As a table. */
+  def section: Section =
+    def row(policy: String, where: String, tally: Tally, unit: String) =
+      Vector(
+        policy,
+        where,
+        PolicyFile.brief(tally.mean),
+        PolicyFile.brief(tally.halfWidth95),
+        tally.count.toString,
+        unit
+      )
+    val episodes = s"fresh episodes, ${objective.formula}"
+    Section(
+      s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
+      s"The best of ${state.scores.size} policies, met after ${state.best.fold(0L)(_.steps)} steps.",
+      table = Some(TextTable(
+        Vector("<policy", "<where", "mean", "± 95 %", "of", "<unit"),
+        Vector(
+          row(setup.family.name, episodes, fresh, objective.unit),
+          row(setup.paper.name, episodes, paper, objective.unit)
+        ) ++ flights.map(row(setup.family.name, "flights in virtual time, last 10 s", _, "m"))
+      ))
+    )
+
+  def curve: Drawing =
+    LearningCurve(
+      s"${question.algorithm}, ${question.role}, ${question.conditions.loop} over ${question.link}",
+      objective.formula + (if objective.unit.isEmpty then "" else s", ${objective.unit}"),
+      Seq((question.algorithm, LearningCurve.learned, state.scores)),
+      Seq((setup.paper.name, LearningCurve.paper, paper.mean))
+    )
+
+  def csv: String =
+    state.scores.map(score => s"${score.steps},${score.mean},${score.sd}").mkString(
+      "steps,mean,sd\n",
+      "\n",
+      "\n"
+    )
+
+  /** As a policy file. */
+  def file: String = policy.hocon(
+    s"""objective {
+       |  formula = "${objective.text}"
+       |  # mean over fresh episodes; the true one lies within ± halfWidth95 with 95 % confidence
+       |  mean = ${fresh.mean}
+       |  halfWidth95 = ${fresh.halfWidth95}
+       |  sd = ${fresh.sd}
+       |  episodes = ${fresh.count}
+       |  unit = "${objective.unit}"
+       |  # ${setup.paper.name} with the paper's constants, on the same episodes
+       |  paperMean = ${paper.mean}
+       |  paperHalfWidth95 = ${paper.halfWidth95}
+       |}
+       |learned {
+       |  by = "./skein learn"
+       |  complete = ${state.rounds == setup.rounds}
+       |  algorithm = ${question.algorithm}
+       |  loop = ${question.conditions.loop}
+       |  periodMs = ${question.conditions.periodMs}
+       |  link = "${question.link}"
+       |  plant = "${question.conditions.plant}"
+       |  opponent = "${question.opponent}"
+       |  altitudeM = ${question.conditions.altitudeM}
+       |  steps = ${state.rounds * setup.stepsOfRound}
+       |  stepsOfBest = ${state.best.fold(0L)(_.steps)}
+       |  seed = ${question.seed}
+       |}
+       |""".stripMargin
+  )
+
+object LearnResult:
+  /** Fresh episodes count from here: above those of judging. */
+  val FreshFrom: Int = 1 << 25
+
+  /** @param state
+    *   with a best policy
+    */
+  def measured(setup: LearnSetup, batch: DuelBatch, state: LearnState, episodes: Int): LearnResult =
+    val policy = setup.policy(state.best.get.weights)
+    val range  = FreshFrom until FreshFrom + episodes
+    LearnResult(
+      setup,
+      state,
+      policy,
+      setup.evaluator(batch).tallies(Vector(policy.parameters), range).head,
+      setup.evaluator(batch, setup.paper).tallies(Vector(setup.paper.space.defaults), range).head,
+      None
+    )

@@ -1,0 +1,92 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import skein.settings.PolicyFile
+import skein.training.*
+
+class LearnCommandSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 2.minutes
+
+  private val short =
+    ("--steps 2000 --environments 16 --lesson 5s --network 8 --episodes 2 --fresh 4 --flights 1 " +
+      "--duration 12s --updates-per-step 0.02 --threads 1").split(' ').toSeq
+
+  private def run(words: Seq[String]): (Int, String, String) =
+    val (out, err) = (ByteArrayOutputStream(), ByteArrayOutputStream())
+    val status     = Console.withOut(out)(Console.withErr(err)(Main.run("learn" +: words)))
+    (status, out.toString(UTF_8), err.toString(UTF_8))
+
+  for (algorithm, side) <- Seq("sac" -> "pursuer", "ddpg" -> "evader", "ppo" -> "pursuer") do
+    test(s"$algorithm teaches the $side, and writes a policy that can be read back"):
+      val folder             = Files.createTempDirectory("learn").resolve("learned")
+      val (status, out, err) =
+        run(Seq("--algorithm", algorithm, "--side", side, "--json", "--out", folder.toString) ++ short)
+      assertEquals(status, 0, err)
+      val rows = ujson.read(out)("tables")(0)("rows").arr
+      assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", s"paper-$side", "learned:8"))
+      assertEquals(rows.map(_(4).num).toSeq, Seq(4.0, 4.0, 1.0))
+      val policy = PolicyFile.read(folder.resolve("policy.conf").toString).fold(fail(_), identity)
+      assertEquals(PolicyFile.name(policy.role), side)
+      assertEquals(policy.family.name, "learned:8")
+      assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
+
+  test("learning that is stopped and gone on with comes to the same policy, to the bit"):
+    val question = LearnCommand
+      .question(LearnOptionsOf(short))
+      .fold(fail(_), identity)
+    val setup = question.setup.fold(fail(_), identity)
+    def learn(folder: Path, from: LearnState, rounds: Int) =
+      // So much time passes that every round is saved.
+      var (done, now) = (from.rounds, 0L)
+      def later()     =
+        now += 60_000_000_000L
+        now
+      LearnRun(setup, setup.batch(1), Some(folder), () => later())
+        .run(from, 1, () => done >= rounds)(state => done = state.rounds)
+        .fold(fail(_), identity)
+    val whole  = learn(Files.createTempDirectory("whole"), LearnState(), setup.rounds)
+    val folder = Files.createTempDirectory("halves")
+    assert(setup.rounds >= 3, setup.rounds.toString)
+    learn(folder, LearnState(), 1): Unit
+    val file = LearnFile.read(folder).fold(fail(_), identity)
+    assertEquals(file.state.rounds, 1)
+    assertEquals(file.question, question)
+    assertEquals(learn(folder, file.state, setup.rounds), whole)
+
+  test("what cannot be learned is told in a line"):
+    def refused(expected: String, words: String*) =
+      val (status, _, err) =
+        run(words ++ Seq("--out", Files.createTempDirectory("no").resolve("no").toString))
+      assert(status != 0)
+      assert(clue(err).contains(expected))
+      assertEquals(err.linesIterator.size, 1)
+    refused("--algorithm: expected sac, ddpg, ppo, came 'td3'", "--algorithm", "td3")
+    refused("--scenario: expected duel", "--scenario", "surround")
+    refused("--side: expected pursuer or evader", "--side", "both")
+    refused("--network: expected", "--network", "0x3")
+    refused("discount: expected 0 up to less than 1", "--discount", "NaN")
+    refused("learning rate: expected", "--learning-rate", "-1")
+    refused("--start: expected LEAST..MOST", "--start", "30..3")
+    refused("--steps: expected 1", "--steps", "0")
+    refused("plant", "--plant", "ideal")
+    refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
+
+  test("a folder of something else, or with a damaged state, is not gone on with"):
+    val folder = Files.createTempDirectory("damaged")
+    assert(LearnFile.read(folder).left.exists(_.contains("expected the folder of ./skein learn")))
+    Files.writeString(folder.resolve(LearnFile.Name), "{}"): Unit
+    assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
+    val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
+    val setup    = question.setup.fold(fail(_), identity)
+    Files.write(folder.resolve("learner-1.bin"), Array.fill[Byte](64)(7)): Unit
+    val refused =
+      LearnRun(setup, setup.batch(1), Some(folder), () => 0).run(LearnState(rounds = 1), 1, () => false)(_ =>
+        ()
+      )
+    assert(clue(refused).left.exists(_.contains("learner-1.bin")))
+
+private def LearnOptionsOf(words: Seq[String]): LearnOptions =
+  mainargs.ParserForClass[LearnOptions].constructOrThrow(words)

@@ -1,0 +1,46 @@
+package skein.policy
+
+/** How many neurons each hidden layer has; one output. Parameters are laid out layer by layer, neuron by neuron: a weight
+  * per input, then the bias.
+  */
+final case class NeuralShape(hidden: Vector[Int], inputs: Int = NeuralShape.Inputs):
+  require(
+    hidden.forall(width =>
+      width >= 1 && width <= NeuralShape.MostWidth
+    ) && hidden.sizeIs <= NeuralShape.MostLayers,
+    s"expected at most ${NeuralShape.MostLayers} hidden layers of 1 to ${NeuralShape.MostWidth} neurons, came $this"
+  )
+
+  /** Of all layers, the inputs first. */
+  def widths: Vector[Int] = inputs +: hidden :+ 1
+
+  def widest: Int = widths.max
+
+  /** How many numbers decide a network. */
+  def parameters: Int = widths.zip(widths.drop(1)).map((inputs, neurons) => neurons * (inputs + 1)).sum
+
+  /** A name per parameter: `weight-LAYER-NEURON-INPUT` or `bias-LAYER-NEURON`, from 1. */
+  def names: Vector[String] =
+    for
+      layer  <- (1 until widths.size).toVector
+      neuron <- 1 to widths(layer)
+      name <- (1 to widths(layer - 1)).map(input => s"weight-$layer-$neuron-$input") :+ s"bias-$layer-$neuron"
+    yield name
+
+  override def toString: String = if hidden.isEmpty then "no hidden layer" else hidden.mkString("x")
+
+object NeuralShape:
+  /** Of a [[NeuralPolicy]]. */
+  val Inputs     = 4
+  val MostWidth  = 256
+  val MostLayers = 8
+
+  /** `8x8`: the hidden layers' widths. */
+  def parse(text: String): Either[String, NeuralShape] =
+    val widths = text.split("x", -1).toVector.map(_.toIntOption)
+    if widths.sizeIs <= MostLayers && widths.forall(_.exists(width => width >= 1 && width <= MostWidth)) then
+      Right(NeuralShape(widths.flatten))
+    else
+      Left(
+        s"expected up to $MostLayers widths of hidden layers from 1 to $MostWidth, for example 8x8, came '$text'"
+      )

@@ -1,0 +1,75 @@
+package skein.learn
+
+/** Deep deterministic policy gradient: one critic, a policy that follows its slope, slow copies of both; it tries out by
+  * normal noise. Source: Lillicrap, Hunt, Pritzel, Heess, Erez, Tassa, Silver, Wierstra, "Continuous control with deep
+  * reinforcement learning", arXiv:1509.02971; the noise has no memory, as in Fujimoto, van Hoof, Meger,
+  * arXiv:1802.09477.
+  */
+final class Ddpg(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: Workers)
+    extends OffPolicy(observations, actions, settings, seed):
+  import Ddpg.*
+
+  private val widths        = observations +: settings.hidden :+ actions
+  val actor: Network        = Network(widths).draw(initial, LastScale)
+  private[learn] val target = Network(widths)
+  target.take(actor)
+  private val optimiser      = Adam(actor.parameters.length, settings.rate)
+  private[learn] val critics = Critics(1, observations, actions, settings, initial)
+  private val pass           = Pass(widths, rows)
+  private val gradient       = Gradient(actor.parameters.length, rows)
+  private val chosen         = Array.ofDim[Float](rows * actions)
+  private val slopes         = Array.ofDim[Float](rows * actions)
+  private val wanted         = Array.ofDim[Float](rows)
+
+  protected def learned: Vector[Saved] = Vector(actor, target, optimiser, critics)
+
+  def isFinite: Boolean = actor.isFinite && critics.isFinite
+
+  protected def tried(outputs: Array[Float], at: Int, action: Int): Float =
+    (StrictMath.tanh(outputs(at + action)) + Deviation * Noise.normal(random)).max(-1.0).min(1.0).toFloat
+
+  private[learn] def update(): Unit =
+    critics.clear()
+    workers.share(rows): (part, from, until) =>
+      choose(target, batch.reached, from, until)
+      critics.valueReached(batch.reached, chosen, wanted, from, until)
+      var row = from
+      while row < until do
+        wanted(row) = (batch.rewards(row) + settings.discount * batch.goesOn(row) * wanted(row)).toFloat
+        row += 1
+      critics.criticise(batch, wanted, part, from, until)
+    critics.step()
+    gradient.clear()
+    workers.share(rows): (part, from, until) =>
+      choose(actor, batch.seen, from, until)
+      critics.slopes(batch.seen, chosen, slopes, from, until)
+      var at = from * actions
+      while at < until * actions do
+        pass.outputError(at) = -slopes(at) * (1 - chosen(at) * chosen(at)) / rows
+        at += 1
+      pass.backward(actor, from, until, gradient.of(part))
+    optimiser.step(actor.parameters, gradient.sum())
+    actor.changed()
+    target.follow(actor, Critics.Rate)
+    critics.follow()
+
+  private def choose(by: Network, seen: Array[Float], from: Int, until: Int): Unit =
+    System.arraycopy(
+      seen,
+      from * observations,
+      pass.input,
+      from * observations,
+      (until - from) * observations
+    )
+    pass.forward(by, from, until)
+    var at = from * actions
+    while at < until * actions do
+      chosen(at) = StrictMath.tanh(pass.output(at)).toFloat
+      at += 1
+
+private object Ddpg:
+  /** Of the noise. */
+  val Deviation = 0.2
+
+  /** It begins in the middle, where the slope of tanh is steep. */
+  val LastScale = 0.01

@@ -1,0 +1,95 @@
+package skein.learn
+
+import java.nio.ByteBuffer
+import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
+import skein.policy.{LearnedPolicy, NeuralShape}
+import skein.settings.PolicyFile
+import skein.signal.SplitMix64
+
+/** One side of the duel, under the loop's timing. What is seen is scaled as [[LearnedPolicy]] scales it, and rewards so
+  * that what a policy earns in all, discounted, is of about 1.
+  *
+  * @param seed
+  *   of where episodes begin and what befalls their messages
+  */
+final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffers, seed: Long) extends Task:
+  private val scales = LearnedPolicy.scales.map(_.toFloat).toArray
+
+  val count: Int        = batch.count
+  val observations: Int = LearnedPolicy.Inputs
+  val actions: Int      = 1
+
+  val seen, reached: Array[Float]       = Array.ofDim(count * observations)
+  val rewards: Array[Float]             = Array.ofDim(count)
+  val terminated, ended: Array[Boolean] = Array.ofDim(count)
+
+  def begin(round: Long): Unit =
+    val ofRound = SplitMix64.seedOf(seed, round)
+    batch.reset(Array.tabulate(count)(number => SplitMix64.seedOf(ofRound, number) & Long.MaxValue))
+    copy(buffers.observations, seen)
+
+  def step(actions: Array[Float]): Unit =
+    buffers.actions.put(0, actions, 0, count): Unit
+    batch.step()
+    copy(buffers.observations, seen)
+    System.arraycopy(seen, 0, reached, 0, seen.length)
+    for number <- 0 until count do
+      rewards(number) = buffers.rewards.get(number) * DuelTask.RewardScale
+      terminated(number) = buffers.terminations.get(number) != 0
+      ended(number) = terminated(number) || buffers.truncations.get(number) != 0
+      if ended(number) then copyRow(buffers.finals, reached, number)
+
+  private def copy(from: java.nio.FloatBuffer, into: Array[Float]): Unit =
+    for number <- 0 until count do copyRow(from, into, number)
+
+  private def copyRow(from: java.nio.FloatBuffer, into: Array[Float], number: Int): Unit =
+    var field = 0
+    while field < observations do
+      into(number * observations + field) = from.get(field * count + number) / scales(field)
+      field += 1
+
+object DuelTask:
+  private val RewardScale = 0.1f
+
+  /** @param opponent
+    *   of the other role; without one, as the settings name it
+    * @return
+    *   or what was expected and came
+    */
+  def of(
+      settings: EnvironmentSettings,
+      opponent: Option[PolicyFile],
+      count: Int,
+      seed: Long
+  ): Either[String, DuelTask] =
+    if settings.learners == "both" then Left("learners: expected pursuer or evader, came 'both'")
+    else if count < 1 || count > EnvironmentBatch.Most then
+      Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, came $count")
+    else
+      val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
+      EnvironmentBatch
+        .of(settings, count, Autoreset.SameStep, block, opponent)
+        .map(batch => DuelTask(batch, EnvironmentBuffers(block, 1, count), seed))
+
+  /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron by neuron.
+    */
+  def parameters(actor: Network): Vector[Double] =
+    require(
+      actor.inputs == LearnedPolicy.Inputs,
+      s"expected ${LearnedPolicy.Inputs} inputs, came ${actor.inputs}"
+    )
+    val widths = actor.widths.init :+ 1
+    for
+      layer  <- (0 until actor.layers).toVector
+      neuron <- 0 until widths(layer + 1)
+      outs    = actor.widths(layer + 1)
+      weights =
+        (0 until widths(layer)).map(input => actor.parameters(actor.weightsAt(layer) + input * outs + neuron))
+      weight <- weights :+ actor.parameters(actor.biasesAt(layer) + neuron)
+    yield weight.toDouble
+
+  /** What the hidden layers of an actor make a policy. */
+  def shape(hidden: Vector[Int]): NeuralShape = NeuralShape(hidden, LearnedPolicy.Inputs)
+
+  /** Of what is seen, how long ago things were: a learner that is shown no ages does not depend upon them. */
+  val times: Range = 6 until 9

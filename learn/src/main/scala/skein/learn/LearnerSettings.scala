@@ -1,0 +1,54 @@
+package skein.learn
+
+/** @param hidden
+  *   widths of the hidden layers of all networks
+  * @param discount
+  *   of a reward, for each step that it comes later
+  * @param rate
+  *   of Adam
+  * @param batch
+  *   transitions of an update
+  * @param replay
+  *   transitions that are remembered at most, by SAC and DDPG
+  * @param updatesPerStep
+  *   of SAC and DDPG, for each step of one environment
+  * @param randomSteps
+  *   of all environments together, before SAC and DDPG decide themselves
+  * @param horizon
+  *   steps of each environment between two of PPO's lessons
+  * @param epochs
+  *   in which PPO goes through what it collected
+  */
+final case class LearnerSettings(
+    hidden: Vector[Int] = Vector(64, 64),
+    discount: Double = 0.99,
+    rate: Double = 1e-3,
+    batch: Int = 256,
+    replay: Int = 300_000,
+    updatesPerStep: Double = 0.125,
+    randomSteps: Int = 4096,
+    horizon: Int = 100,
+    epochs: Int = 10
+):
+  import LearnerSettings.MostBatch
+
+  def mistake: Option[String] = Seq(
+    Option.when(!(discount >= 0 && discount < 1))(s"discount: expected 0 up to less than 1, came $discount"),
+    Option.when(!(rate > 0 && rate <= 1))(s"learning rate: expected more than 0 and up to 1, came $rate"),
+    Option.when(batch < 1 || batch > MostBatch)(s"batch: expected 1 to $MostBatch, came $batch"),
+    Option.when(replay < batch || replay > 10_000_000)(
+      s"replay: expected the batch, $batch, to 10000000, came $replay"
+    ),
+    Option.when(!(updatesPerStep > 0 && updatesPerStep <= 100))(
+      s"updates per step: expected more than 0 and up to 100, came $updatesPerStep"
+    ),
+    Option.when(randomSteps < 0)(s"random steps: expected 0 or more, came $randomSteps"),
+    Option.when(horizon < 1 || horizon > 100_000)(s"horizon: expected 1 to 100000, came $horizon"),
+    Option.when(epochs < 1 || epochs > 1000)(s"epochs: expected 1 to 1000, came $epochs"),
+    Option.when(hidden.size > 8 || hidden.exists(width => width < 1 || width > 256))(
+      s"network: expected at most 8 hidden layers of 1 to 256, came ${hidden.mkString("x")}"
+    )
+  ).flatten.headOption
+
+object LearnerSettings:
+  private val MostBatch = 65_536

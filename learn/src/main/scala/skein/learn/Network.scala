@@ -1,0 +1,216 @@
+package skein.learn
+
+import java.io.{DataInput, DataOutput}
+import skein.signal.SplitMix64
+
+/** A dense network: hidden layers of rectifiers (what is negative becomes 0), and linear outputs. Mutable.
+  *
+  * @param widths
+  *   inputs, hidden layers, outputs
+  */
+final class Network(val widths: Vector[Int]) extends Saved:
+  require(
+    widths.sizeIs >= 2 && widths.forall(width => width >= 1 && width <= Network.MostWidth),
+    s"expected inputs and outputs, each layer of 1 to ${Network.MostWidth}, came ${widths.mkString("x")}"
+  )
+
+  val inputs: Int  = widths.head
+  val outputs: Int = widths.last
+  val layers: Int  = widths.size - 1
+
+  private val starts =
+    Vector.tabulate(layers)(layer => (widths(layer) + 1) * widths(layer + 1)).scanLeft(0)(_ + _)
+
+  /** Layer by layer: the weights, those of an input together, then the biases. [[changed]] is to be told of a change. */
+  val parameters: Array[Float] = Array.ofDim(starts.last)
+
+  /** The weights of a layer but the first, those of an output together. */
+  private val turned = Vector.tabulate(layers)(layer => Array.ofDim[Float](widths(layer) * widths(layer + 1)))
+
+  /** Where the weight of the first input to the first neuron of a layer stands. */
+  def weightsAt(layer: Int): Int = starts(layer)
+
+  def biasesAt(layer: Int): Int = starts(layer) + widths(layer) * widths(layer + 1)
+
+  private[learn] def weightsByOutput(layer: Int): Array[Float] = turned(layer)
+
+  /** Parameters were changed. */
+  def changed(): Unit =
+    for layer <- 0 until layers do
+      val (into, ins, outs) = (turned(layer), widths(layer), widths(layer + 1))
+      var i                 = 0
+      while i < ins do
+        val from = weightsAt(layer) + i * outs
+        var j    = 0
+        while j < outs do
+          into(j * ins + i) = parameters(from + j)
+          j += 1
+        i += 1
+
+  /** Draws all parameters of a layer evenly from ± 1 / √inputs.
+    *
+    * @param lastScale
+    *   times so much for the last layer
+    */
+  def draw(random: SplitMix64, lastScale: Double = 1): Network =
+    for layer <- 0 until layers do
+      val bound = (if layer == layers - 1 then lastScale else 1) / math.sqrt(widths(layer))
+      for at <- weightsAt(layer) until starts(layer + 1) do
+        parameters(at) = ((2 * random.nextDouble() - 1) * bound).toFloat
+    changed()
+    this
+
+  /** An input that nothing depends upon yet. */
+  def ignore(input: Int): Unit =
+    java.util.Arrays.fill(parameters, input * widths(1), (input + 1) * widths(1), 0f)
+    changed()
+
+  def take(other: Network): Unit =
+    System.arraycopy(other.parameters, 0, parameters, 0, parameters.length)
+    changed()
+
+  /** Goes the share `rate` of the way to another. */
+  def follow(other: Network, rate: Float): Unit =
+    val (own, its) = (parameters, other.parameters)
+    var i          = 0
+    while i < own.length do
+      own(i) = own(i) + rate * (its(i) - own(i))
+      i += 1
+    changed()
+
+  def isFinite: Boolean = parameters.forall(_.isFinite)
+
+  def save(out: DataOutput): Unit = Saved.write(out, parameters)
+
+  def load(in: DataInput): Unit =
+    Saved.read(in, parameters)
+    changed()
+
+object Network:
+  val MostWidth = 1024
+
+/** What a network computes of some rows of inputs, and how errors go back through it. Different rows may be computed by
+  * different threads.
+  *
+  * @param widths
+  *   of the networks that use it
+  */
+final class Pass(widths: Vector[Int], val rows: Int):
+  private val activations = widths.map(width => Array.ofDim[Float](rows * width)).toArray
+  private val errors      = widths.map(width => Array.ofDim[Float](rows * width)).toArray
+  private val layers      = widths.size - 1
+
+  /** Row by row. */
+  def input: Array[Float]  = activations(0)
+  def output: Array[Float] = activations(layers)
+
+  /** Derivatives of what is made small by the outputs; to be set before going back. */
+  def outputError: Array[Float] = errors(layers)
+
+  /** The same by the inputs, after [[backwardToInput]]. */
+  def inputError: Array[Float] = errors(0)
+
+  /** @param until
+    *   rows; not included
+    */
+  def forward(network: Network, from: Int, until: Int): Unit =
+    var layer = 0
+    while layer < layers do
+      val (ins, outs) = (widths(layer), widths(layer + 1))
+      val out         = activations(layer + 1)
+      var row         = from
+      while row < until do
+        System.arraycopy(network.parameters, network.biasesAt(layer), out, row * outs, outs)
+        row += 1
+      val (x, weightsAt) = (activations(layer), network.weightsAt(layer))
+      DenseKernel.addProduct(
+        until - from,
+        ins,
+        outs,
+        x,
+        from * ins,
+        ins,
+        1,
+        network.parameters,
+        weightsAt,
+        out,
+        from * outs
+      )
+      if layer < layers - 1 then
+        var i   = from * outs
+        val end = until * outs
+        while i < end do
+          out(i) = Math.max(out(i), 0f)
+          i += 1
+      layer += 1
+
+  /** After [[forward]].
+    *
+    * @param gradient
+    *   as the network's parameters: the rows' derivatives are added
+    */
+  def backward(network: Network, from: Int, until: Int, gradient: Array[Float]): Unit =
+    back(network, from, until): layer =>
+      val (ins, outs) = (widths(layer), widths(layer + 1))
+      val error       = errors(layer + 1)
+      val at          = network.weightsAt(layer)
+      // Weights: inputs, turned, times errors.
+      DenseKernel.addProduct(
+        ins,
+        until - from,
+        outs,
+        activations(layer),
+        from * ins,
+        1,
+        ins,
+        error,
+        from * outs,
+        gradient,
+        at
+      )
+      val biases = network.biasesAt(layer)
+      var row    = from
+      while row < until do
+        var j = 0
+        while j < outs do
+          gradient(biases + j) += error(row * outs + j)
+          j += 1
+        row += 1
+
+  /** The same for the inputs alone. */
+  def backwardToInput(network: Network, from: Int, until: Int): Unit =
+    back(network, from, until)(_ => ())
+    toInputs(network, 0, from, until)
+
+  private def back(network: Network, from: Int, until: Int)(onLayer: Int => Unit): Unit =
+    var layer = layers - 1
+    while layer >= 0 do
+      onLayer(layer)
+      if layer > 0 then
+        toInputs(network, layer, from, until)
+        val (x, into) = (activations(layer), errors(layer))
+        var i         = from * widths(layer)
+        val end       = until * widths(layer)
+        while i < end do
+          if x(i) <= 0 then into(i) = 0
+          i += 1
+      layer -= 1
+
+  private def toInputs(network: Network, layer: Int, from: Int, until: Int): Unit =
+    val (ins, outs) = (widths(layer), widths(layer + 1))
+    val into        = errors(layer)
+    java.util.Arrays.fill(into, from * ins, until * ins, 0f)
+    val weights = network.weightsByOutput(layer)
+    DenseKernel.addProduct(
+      until - from,
+      outs,
+      ins,
+      errors(layer + 1),
+      from * outs,
+      outs,
+      1,
+      weights,
+      0,
+      into,
+      from * ins
+    )

@@ -1,0 +1,15 @@
+package skein.learn
+
+import skein.signal.{NormalQuantile, SplitMix64}
+
+private[learn] object Noise:
+  private val Step = 1.0 / (1L << 53)
+
+  /** Normal, of mean 0 and deviation 1. */
+  def normal(random: SplitMix64): Double = NormalQuantile(((random.nextLong() >>> 11) + 0.5) * Step)
+
+  def fill(into: Array[Float], random: SplitMix64): Unit =
+    var i = 0
+    while i < into.length do
+      into(i) = normal(random).toFloat
+      i += 1

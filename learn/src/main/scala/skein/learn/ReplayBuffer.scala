@@ -1,0 +1,66 @@
+package skein.learn
+
+import java.io.{DataInput, DataOutput, IOException}
+import skein.signal.SplitMix64
+
+/** The newest transitions, from which batches are drawn. */
+final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends Saved:
+  private val all  = Transitions(observations, actions, capacity)
+  private var next = 0
+  private var held = 0
+
+  def size: Int = held
+
+  /** A row of each array. */
+  def add(seen: Array[Float], chosen: Array[Float], task: Task): Unit =
+    var row = 0
+    while row < task.count do
+      System.arraycopy(seen, row * observations, all.seen, next * observations, observations)
+      System.arraycopy(chosen, row * actions, all.actions, next * actions, actions)
+      System.arraycopy(task.reached, row * observations, all.reached, next * observations, observations)
+      all.rewards(next) = task.rewards(row)
+      all.goesOn(next) = if task.terminated(row) then 0 else 1
+      next = if next + 1 == capacity then 0 else next + 1
+      held = (held + 1).min(capacity)
+      row += 1
+
+  /** Any of those held, as often as they are drawn. */
+  def draw(into: Transitions, random: SplitMix64): Unit =
+    var row = 0
+    while row < into.count do
+      val from = random.nextInt(held)
+      System.arraycopy(all.seen, from * observations, into.seen, row * observations, observations)
+      System.arraycopy(all.actions, from * actions, into.actions, row * actions, actions)
+      System.arraycopy(all.reached, from * observations, into.reached, row * observations, observations)
+      into.rewards(row) = all.rewards(from)
+      into.goesOn(row) = all.goesOn(from)
+      row += 1
+
+  def save(out: DataOutput): Unit =
+    out.writeInt(next)
+    out.writeInt(held)
+    Saved.write(out, all.seen, held * observations)
+    Saved.write(out, all.actions, held * actions)
+    Saved.write(out, all.reached, held * observations)
+    Saved.write(out, all.rewards, held)
+    Saved.write(out, all.goesOn, held)
+
+  def load(in: DataInput): Unit =
+    next = in.readInt()
+    held = in.readInt()
+    if next < 0 || next >= capacity || held < 0 || held > capacity then
+      throw IOException(s"expected a replay buffer of at most $capacity transitions, came $held")
+    for part <- Seq(all.seen, all.actions, all.reached, all.rewards, all.goesOn) do
+      Saved.readSome(in, part): Unit
+
+/** Rows of what was seen, done, earned and reached.
+  *
+  * @param goesOn
+  *   1, or 0 where nothing comes after
+  */
+final class Transitions(observations: Int, acted: Int, val count: Int):
+  val seen: Array[Float]    = Array.ofDim(count * observations)
+  val actions: Array[Float] = Array.ofDim(count * acted)
+  val reached: Array[Float] = Array.ofDim(count * observations)
+  val rewards: Array[Float] = Array.ofDim(count)
+  val goesOn: Array[Float]  = Array.ofDim(count)

@@ -1,0 +1,148 @@
+package skein.learn
+
+import java.io.{DataInput, DataOutput}
+
+/** Soft actor-critic: two critics, a policy that draws its actions and is paid for drawing widely, by a temperature that
+  * adapts. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine, "Soft actor-critic
+  * algorithms and applications", arXiv:1812.05905, with its wanted entropy of minus one a number of an action.
+  */
+final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: Workers)
+    extends OffPolicy(observations, actions, settings, seed):
+  import Sac.*
+
+  private val widths             = observations +: settings.hidden :+ 2 * actions
+  val actor: Network             = Network(widths).draw(initial)
+  private val optimiser          = Adam(actor.parameters.length, settings.rate)
+  private[learn] val critics     = Critics(2, observations, actions, settings, initial)
+  private[learn] val temperature = Temperature(settings.rate)
+  private val pass               = Pass(widths, rows)
+  private[learn] val gradient    = Gradient(actor.parameters.length, rows)
+  private[learn] val noise       = Array.ofDim[Float](rows * actions)
+  private[learn] val chosen      = Array.ofDim[Float](rows * actions)
+  private val slopes             = Array.ofDim[Float](rows * actions)
+  private[learn] val logs        = Array.ofDim[Float](rows)
+  private[learn] val wanted      = Array.ofDim[Float](rows)
+
+  protected def learned: Vector[Saved] = Vector(actor, optimiser, critics, temperature)
+
+  def isFinite: Boolean = actor.isFinite && critics.isFinite && temperature.log.isFinite
+
+  protected def tried(outputs: Array[Float], at: Int, action: Int): Float =
+    val deviation = StrictMath.exp(logDeviation(outputs(at + actions + action)))
+    StrictMath.tanh(outputs(at + action) + deviation * Noise.normal(random)).toFloat
+
+  private[learn] def update(): Unit =
+    Noise.fill(noise, random)
+    critics.clear()
+    workers.share(rows): (part, from, until) =>
+      want(from, until)
+      critics.criticise(batch, wanted, part, from, until)
+    critics.step()
+    Noise.fill(noise, random)
+    gradient.clear()
+    workers.share(rows)(improve)
+    optimiser.step(actor.parameters, gradient.sum())
+    actor.changed()
+    temperature.step(logs, actions)
+    critics.follow()
+
+  /** Draws actions where rows of what is seen lead, and how likely each was. */
+  private def draw(seen: Array[Float], from: Int, until: Int): Unit =
+    System.arraycopy(
+      seen,
+      from * observations,
+      pass.input,
+      from * observations,
+      (until - from) * observations
+    )
+    pass.forward(actor, from, until)
+    var row = from
+    while row < until do
+      var log    = 0.0
+      var action = 0
+      while action < actions do
+        val at       = row * actions + action
+        val logWidth = logDeviation(pass.output(row * 2 * actions + actions + action))
+        val drawn    = noise(at).toDouble
+        val raw      = pass.output(row * 2 * actions + action) + StrictMath.exp(logWidth) * drawn
+        chosen(at) = StrictMath.tanh(raw).toFloat
+        log += -0.5 * drawn * drawn - logWidth - HalfLog2Pi - logSquash(raw)
+        action += 1
+      logs(row) = log.toFloat
+      row += 1
+
+  /** What the critics should have said of a part of the batch. */
+  private[learn] def want(from: Int, until: Int): Unit =
+    draw(batch.reached, from, until)
+    critics.valueReached(batch.reached, chosen, wanted, from, until)
+    val alpha = temperature.value
+    var row   = from
+    while row < until do
+      wanted(row) = (batch.rewards(row) +
+        settings.discount * batch.goesOn(row) * (wanted(row) - alpha * logs(row))).toFloat
+      row += 1
+
+  /** The gradient of the temperature times the logarithm of the likelihood, minus the value. */
+  private[learn] def improve(part: Int, from: Int, until: Int): Unit =
+    draw(batch.seen, from, until)
+    critics.slopes(batch.seen, chosen, slopes, from, until)
+    val alpha = temperature.value
+    var row   = from
+    while row < until do
+      var action = 0
+      while action < actions do
+        val at    = row * actions + action
+        val mean  = row * 2 * actions + action
+        val share = chosen(at).toDouble
+        // By the number before tanh: its logarithm of squashing has the slope −2 tanh.
+        val byRaw   = alpha * 2 * share - slopes(at) * (1 - share * share)
+        val output  = pass.output(mean + actions)
+        val byWidth = byRaw * StrictMath.exp(logDeviation(output)) * noise(at) - alpha
+        pass.outputError(mean) = (byRaw / rows).toFloat
+        pass.outputError(mean + actions) = (byWidth * logDeviationSlope(output) / rows).toFloat
+        action += 1
+      row += 1
+    pass.backward(actor, from, until, gradient.of(part))
+
+private[learn] object Sac:
+  private val HalfLog2Pi = 0.5 * StrictMath.log(2 * math.Pi)
+  private val LeastLog   = -5.0
+  private val MostLog    = 2.0
+
+  /** Between e⁻⁵ and e², whatever the network says. */
+  def logDeviation(output: Double): Double =
+    LeastLog + 0.5 * (MostLog - LeastLog) * (StrictMath.tanh(output) + 1)
+
+  def logDeviationSlope(output: Double): Double =
+    val squashed = StrictMath.tanh(output)
+    0.5 * (MostLog - LeastLog) * (1 - squashed * squashed)
+
+  /** log(1 − tanh²), also where it is tiny. */
+  def logSquash(raw: Double): Double =
+    2 * (Log2 - raw - (if raw < -20 then -2 * raw else StrictMath.log1p(StrictMath.exp(-2 * raw))))
+
+  private val Log2 = StrictMath.log(2)
+
+/** How much drawing widely is worth: it rises while the policy draws less widely than wanted. */
+private[learn] final class Temperature(rate: Double) extends Saved:
+  private val logarithm = Array(StrictMath.log(0.1).toFloat)
+  private val optimiser = Adam(1, rate)
+
+  def log: Float    = logarithm(0)
+  def value: Double = StrictMath.exp(log)
+
+  /** @param logs
+    *   of the likelihoods of what was drawn
+    */
+  def step(logs: Array[Float], actions: Int): Unit =
+    var sum = 0.0
+    for log <- logs do sum += log - actions
+    optimiser.step(logarithm, Array((-sum / logs.length).toFloat))
+
+  def save(out: DataOutput): Unit =
+    out.writeFloat(log)
+    optimiser.save(out)
+
+  def load(in: DataInput): Unit =
+    logarithm(0) = in.readFloat()
+    optimiser.load(in)

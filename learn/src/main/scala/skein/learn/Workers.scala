@@ -1,0 +1,54 @@
+package skein.learn
+
+import java.util.concurrent.ForkJoinPool
+import java.util.stream.IntStream
+
+/** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts have the same
+  * bits on any number of threads.
+  */
+final class Workers(threads: Int) extends AutoCloseable:
+  private val pool = Option.when(threads > 1)(ForkJoinPool(threads))
+
+  /** Blocks until all parts are done.
+    *
+    * @param work
+    *   of a part's number, its first row and the one behind its last
+    */
+  def share(rows: Int)(work: (Int, Int, Int) => Unit): Unit =
+    val parts          = Workers.parts(rows)
+    def one(part: Int) = work(part, part * Workers.Rows, (part * Workers.Rows + Workers.Rows).min(rows))
+    pool match
+      case Some(pool) if parts > 1 =>
+        val all: Runnable = () => IntStream.range(0, parts).parallel().forEach(one)
+        pool.submit(all).get(): Unit
+      case _ => (0 until parts).foreach(one)
+
+  def close(): Unit = pool.foreach(_.shutdownNow())
+
+object Workers:
+  /** Of a part. */
+  private val Rows = 64
+
+  def parts(rows: Int): Int = (rows + Rows - 1) / Rows
+
+/** A network's gradient, summed part by part. */
+private[learn] final class Gradient(size: Int, rows: Int):
+  private val parts = Array.fill(Workers.parts(rows))(Array.ofDim[Float](size))
+
+  /** To which one part adds. */
+  def of(part: Int): Array[Float] = parts(part)
+
+  def clear(): Unit = parts.foreach(java.util.Arrays.fill(_, 0f))
+
+  /** Of all parts, in their order. */
+  def sum(): Array[Float] =
+    val total = parts(0)
+    var part  = 1
+    while part < parts.length do
+      val more = parts(part)
+      var i    = 0
+      while i < size do
+        total(i) = total(i) + more(i)
+        i += 1
+      part += 1
+    total

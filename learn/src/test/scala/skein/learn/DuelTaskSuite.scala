@@ -1,0 +1,68 @@
+package skein.learn
+
+import skein.environment.EnvironmentSettings
+import skein.forward.{DelayTable, Delays, Duel, LinkDelays, LoopTiming, Reduced, Rollout}
+import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.policy.*
+import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
+import skein.units.Span
+
+class DuelTaskSuite extends munit.FunSuite:
+  private val none = LinkDelays.of(LatencyProfile.Steady("none", LatencyDistribution.Constant(Span.Zero)))
+
+  private def drawn(hidden: Int*) = Network(LearnedPolicy.Inputs +: hidden.toVector :+ 2).draw(SplitMix64(3))
+
+  test("a policy made of an actor decides as the actor"):
+    val actor  = drawn(16, 8)
+    val policy = LearnedPolicy(DuelTask.shape(Vector(16, 8)), DuelTask.parameters(actor), 1, 0)
+    val seen   = PlanarObservation(3, 9, -4, 2, 0.7, -2, 0.1, 0.15, 0.2)
+    val pass   = Pass(actor.widths, 1)
+    for (number, at) <- seen.fromOwnHeading.zip(LearnedPolicy.scales).map(_ / _).zipWithIndex do
+      pass.input(at) = number.toFloat
+    pass.forward(actor, 0, 1)
+    assertEqualsDouble(policy.share(seen), math.tanh(pass.output(0)), 1e-6)
+    assertEqualsDouble(policy.decide(seen, 0).headingRad, 0.7 + 0.1 * math.tanh(pass.output(0)), 1e-6)
+
+  for side <- Seq("pursuer", "evader") do
+    test(s"the $side's episode is that of its policy in forward simulation"):
+      val actor      = drawn(8)
+      val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
+      val policy     = LearnedPolicy(DuelTask.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
+      // Without a network, delays are no matter of chance.
+      val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
+      val task     = DuelTask.of(settings, None, 1, 1).fold(fail(_), identity)
+      val pass     = Pass(actor.widths, 1)
+      task.begin(0)
+      var reward = 0.0
+      var isOver = false
+      while !isOver do
+        System.arraycopy(task.seen, 0, pass.input, 0, task.observations)
+        pass.forward(actor, 0, 1)
+        task.step(Array(math.tanh(pass.output(0)).toFloat))
+        reward += task.rewards(0)
+        isOver = task.ended(0)
+      val duel = Duel.paperAt(20, 20)
+      val both =
+        if side == "pursuer" then duel.copy(pursuer = duel.pursuer.copy(policy = policy))
+        else duel.copy(evader = duel.evader.copy(policy = policy))
+      val flown = Rollout(both, LoopTiming.Stream(), none, Reduced.AirSim).fly(1)
+      val mean  = math.abs(reward) * 100 / 200
+      assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
+
+  test("a learned policy flies by lanes as by the scalar reference"):
+    val policy = LearnedPolicy(DuelTask.shape(Vector(16, 16)), DuelTask.parameters(drawn(16, 16)), 1, 0)
+    val duel   = Duel.paperAt(20, 20)
+    val worlds = new DuelWorlds:
+      def size                        = 4
+      override def shareEpisodes      = true
+      def key(world: Int): Int        = world
+      def link(world: Int): Delays    = DelayTable.vpn
+      def pursuer(world: Int): Policy = policy
+      def evader(world: Int): Policy  = PaperEvader()
+    val batch = DuelBatch(duel, LoopTiming.Stream(), Reduced.AirSim, 1)
+    assert(batch.fliesByLanes(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
+    val flown   = batch.fly(worlds)
+    val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
+    val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, Reduced.AirSim)
+    for world <- 0 until 4 do
+      assertEqualsDouble(flown.meanDistanceM(world).toDouble, rollout.fly(world).meanDistanceM, 0.05)
