@@ -179,11 +179,13 @@ lazy val learn = project
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, learn)
+  .dependsOn(flight % "compile->compile;test->test", view, learn, recognition)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
     libraryDependencies ++= Seq(mainargs, logback, scalatags) ++ munit,
+    // No command runs models, whose library is larger than all the rest.
+    excludeDependencies += ExclusionRule(onnxruntime.organization, onnxruntime.name),
     Compile / mainClass  := Some("skein.cli.Main"),
     // What a project that ./skein new writes takes from this build.
     Compile / resourceGenerators += Def.task {

@@ -27,7 +27,7 @@ final case class FlightOptions(
     @arg(doc = "NAME=VALUE: a setting of the scenario, for example ring-m=10; may be given several times")
     set: Seq[String],
     @arg(doc =
-      "what stands in the built-in simulator's world: empty, forest, street, or a file; without it, what the scenario says"
+      "what stands in the built-in simulator's world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
     )
     scene: Option[String],
     @arg(doc = "the scenario's setting vehicles")

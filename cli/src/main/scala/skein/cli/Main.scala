@@ -1,6 +1,4 @@
 package skein.cli
 
-import skein.report.DuelReport
-
-/** `./skein`: the paper's duel, surround, formation, crossing and forest. */
-object Main extends SkeinApp(DuelReport.scenarios.kinds*)
+/** `./skein`: the paper's duel, surround, formation, crossing, forest and blind-pursuit. */
+object Main extends SkeinApp(OurScenarios.all.kinds*)

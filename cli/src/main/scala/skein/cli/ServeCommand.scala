@@ -23,7 +23,7 @@ final case class ServeOptions(
     workers: String = "vehicles+4",
     @arg(doc = "speed of the simulator's clock against the machine's")
     speed: Double = 1.0,
-    @arg(doc = "what stands in the world: empty, forest, street, or a file")
+    @arg(doc = "what stands in the world: empty, forest, pursuit, street, or a file")
     scene: String = "empty",
     view: ViewOptions
 )

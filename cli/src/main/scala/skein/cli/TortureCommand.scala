@@ -22,7 +22,7 @@ final case class TortureOptions(
     )
     scenario: Option[String],
     @arg(doc =
-      "what stands in the world: empty, forest, street, or a file; without it, what the scenario says"
+      "what stands in the world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
     )
     scene: Option[String],
     @arg(doc = Shown.Doc)
@@ -49,7 +49,12 @@ final class TortureCommand(using scenarios: Scenarios)
       threads = options.threads.getOrElse(Runtime.getRuntime.availableProcessors)
       _ <- Either.cond(options.seeds > 0 && threads > 0, (), "--seeds and --threads: expected 1 or more")
       shown = Shown(options.json.value)
-      task  <- scenarioOf(options.scenario)
+      task <- scenarioOf(options.scenario)
+      _    <- Either.cond(
+        task.forall(_.eyes.isEmpty),
+        (),
+        s"--scenario ${options.scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
+      )
       scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
       failed = fly(options, duration, threads, task, scene, shown)
       _      = if options.json.value then shown.tables(Seq(broken(failed)), "")

@@ -77,10 +77,20 @@ enum Shape:
       upwards: Boolean = false
   )
 
+  /** A picture of pixels, stretched to this size.
+    *
+    * @param at
+    *   its top left corner
+    * @param png
+    *   the file
+    */
+  case Raster(at: Point, width: Double, height: Double, png: Array[Byte])
+
   def moved(dx: Double, dy: Double): Shape = this match
-    case path: Path => path.copy(points = path.points.map(_.moved(dx, dy)))
-    case disc: Disc => disc.copy(centre = disc.centre.moved(dx, dy))
-    case text: Text => text.copy(at = text.at.moved(dx, dy))
+    case raster: Raster => raster.copy(at = raster.at.moved(dx, dy))
+    case path: Path     => path.copy(points = path.points.map(_.moved(dx, dy)))
+    case disc: Disc     => disc.copy(centre = disc.centre.moved(dx, dy))
+    case text: Text     => text.copy(at = text.at.moved(dx, dy))
 
 object Shape:
   def line(from: Point, to: Point, stroke: Stroke): Shape = Path(Vector(from, to), Some(stroke))

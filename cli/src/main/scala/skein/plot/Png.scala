@@ -1,11 +1,11 @@
 package skein.plot
 
-import java.awt.geom.{Ellipse2D, Path2D}
+import java.awt.geom.{AffineTransform, Ellipse2D, Path2D}
 import java.awt.image.BufferedImage
 import java.awt.{BasicStroke, Color, Font, Graphics2D, RenderingHints}
-import java.io.ByteArrayOutputStream
+import java.io.{ByteArrayInputStream, ByteArrayOutputStream}
 import javax.imageio.ImageIO
-import javax.imageio.stream.MemoryCacheImageOutputStream
+import javax.imageio.stream.{MemoryCacheImageInputStream, MemoryCacheImageOutputStream}
 
 /** Renders drawings as PNG on white. Needs a font on the machine, but no screen. */
 object Png:
@@ -54,6 +54,12 @@ object Png:
     case Shape.Disc(centre, radius, stroke, fill) =>
       val disc = Ellipse2D.Double(centre.x - radius, centre.y - radius, 2 * radius, 2 * radius)
       paint(disc, stroke, fill, graphics)
+    case Shape.Raster(at, width, height, png) =>
+      val place = AffineTransform.getTranslateInstance(at.x, at.y)
+      val image = ImageIO.read(MemoryCacheImageInputStream(ByteArrayInputStream(png)))
+      place.scale(width / image.getWidth, height / image.getHeight)
+      graphics.setRenderingHint(RenderingHints.KEY_INTERPOLATION, RenderingHints.VALUE_INTERPOLATION_BICUBIC)
+      val _ = graphics.drawImage(image, place, null)
     case text: Shape.Text => write(text, graphics)
 
   private def paint(

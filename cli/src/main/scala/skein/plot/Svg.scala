@@ -1,9 +1,9 @@
 package skein.plot
 
-import java.util.Locale
+import java.util.{Base64, Locale}
 import scalatags.Text.implicits.*
 import scalatags.Text.svgAttrs.*
-import scalatags.Text.svgTags.{circle, path, svg, text}
+import scalatags.Text.svgTags.{circle, image, path, svg, text}
 import scalatags.Text.{Attr, Modifier, TypedTag}
 
 /** Renders drawings as SVG with text as text. */
@@ -33,6 +33,14 @@ object Svg:
       path(d := steps.mkString("M", "L", if closed then "Z" else ""), paint(line, area))
     case Shape.Disc(centre, radius, line, area) =>
       circle(cx := number(centre.x), cy := number(centre.y), r := number(radius), paint(line, area))
+    case Shape.Raster(at, wide, high, png) =>
+      image(
+        x            := number(at.x),
+        y            := number(at.y),
+        width        := number(wide),
+        height       := number(high),
+        attr("href") := s"data:image/png;base64,${Base64.getEncoder.encodeToString(png)}"
+      )
     case Shape.Text(at, content, size, colour, anchor, bold, upwards) =>
       text(
         x          := number(at.x),

@@ -8,7 +8,9 @@ import skein.scenario.Scenarios
 object ReportFigures:
 
   def of(set: FlightSet)(using Scenarios): Vector[Figure] =
-    ScenarioReport.each(set)((report, flights) => report.figures(flights)) ++ Figure.ofDecisions(set) ++
+    ScenarioReport.each(set)((report, flights) => report.figures(flights)) ++ Figure.ofSights(
+      set
+    ) ++ Figure.ofDecisions(set) ++
       Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set)
 
   /** Of flights that were flown many times. */

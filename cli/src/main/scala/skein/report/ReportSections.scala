@@ -24,6 +24,7 @@ object ReportSections:
           named(TwinFigure.name, figures)
         ),
         Section(PlanTable.title, s"${PlanTable.note(set)}.", Some(PlanTable.of(set))),
+        Section("Seen", SummaryTables.seenNote, Some(SummaryTables.seen(set.flights))),
         Section("Observations per decision, ms", observationsNote, Some(SummaryTables.observations(set))),
         Section("What happened: drops, skips and time-outs", "", Some(SummaryTables.counts(set)))
       )

@@ -1,7 +1,7 @@
 package skein.report
 
 import java.util.Locale
-import skein.measure.{FlightSet, Observation, Published, Twin}
+import skein.measure.{Distribution, FlightSet, FlightSummary, Observation, Published, Twin}
 import skein.measure.Numbers.*
 import skein.record.EventKind
 
@@ -77,6 +77,34 @@ object SummaryTables:
           Vector(summary.readings, summary.decisions, summary.commands).map(_.toString) ++
           kinds.map(summary.count(_).toString)
     )
+
+  /** What cameras saw: how much, how long recognition took, how old it was when it was decided upon, and how far what was
+    * believed at the exposure was from the truth.
+    */
+  def seen(flights: Seq[FlightSummary]): TextTable =
+    def spread(values: Option[Distribution], digits: Int) =
+      values.fold(Vector("", ""))(all => Vector(fixed(all.median, digits), fixed(all.p99, digits)))
+    TextTable(
+      Vector("<loop", "<link", "<vehicle", "<looks for", "pictures", "found") ++
+        Vector("took ms p50", "p99", "age ms p50", "p99", "off m p50", "p99"),
+      for
+        flight <- flights.toVector
+        seen   <- flight.seeing
+      yield Vector(
+        flight.name,
+        flight.flight.link,
+        seen.eye.vehicle,
+        seen.eye.target,
+        seen.pictures.toString
+      ) ++
+        Vector(seen.sights.size.toString) ++ spread(seen.tookMs, 0) ++ spread(seen.agesMs, 0) ++
+        spread(seen.errorsM, 2)
+    )
+
+  /** How to read [[seen]]. */
+  val seenNote: String =
+    "Pictures that were looked at until the last detection, and detections that something was made of. Ages of detections are counted from the exposure to " +
+      "each decision made upon them; off: how far what was believed of the moment of the exposure lay from the truth."
 
   /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
     * role, and how far apart they converged.

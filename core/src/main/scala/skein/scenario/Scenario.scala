@@ -30,6 +30,9 @@ trait Scenario extends Product:
   /** What its vehicles carry to see by. */
   def equipment: Vector[Equipment] = Vector.empty
 
+  /** What their policies know by cameras. */
+  def eyes: Vector[Eye] = Vector.empty
+
   /** Whether it is over before its time; asked upon every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 

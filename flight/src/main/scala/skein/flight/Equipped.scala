@@ -11,9 +11,18 @@ private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sens
 
 private[skein] object Equipped:
 
-  /** With what it carries by a scenario. */
-  def by(scenario: Scenario, vehicle: VehiclePort, multirotor: Multirotor): VehiclePort =
+  /** With what it carries by a scenario.
+    *
+    * @param seen
+    *   what its eyes make of its cameras, by name
+    */
+  def by(
+      scenario: Scenario,
+      vehicle: VehiclePort,
+      multirotor: Multirotor,
+      seen: Map[String, Sensor] = Map.empty
+  ): VehiclePort =
     val lidars = scenario.equipment.collect:
       case lidar: Equipment.Lidar if lidar.vehicle == multirotor.name =>
         lidar.name -> LidarSensor(multirotor.eyes, lidar)
-    if lidars.isEmpty then vehicle else Equipped(vehicle, lidars.toMap)
+    if lidars.isEmpty && seen.isEmpty then vehicle else Equipped(vehicle, lidars.toMap ++ seen)

@@ -135,12 +135,17 @@ final class FlightRigs(
           // Altitudes count from where each vehicle starts, as in its own frame.
           Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
         )
+        seeing = vehicles.map(vehicle => vehicle.name -> look(plan, vehicle, watch)).toMap
         crafts = vehicles.map: vehicle =>
           val craft = AirSimVehicle(
             vehicle,
             lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
-          Equipped.by(settings.scenario, craft, vehicle)
+          val isPaused = plan.loop == LoopKind.Paused
+          val seen     = seeing(vehicle.name).map(one =>
+            one.eye.sensor -> (if isPaused then one.looking else one.sensor)
+          )
+          Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
         _ <- Team.missingSensor(fleet, crafts).fold(client.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
@@ -175,6 +180,10 @@ final class FlightRigs(
           () => vigil.onTime
         )
         finish.isOver.foreach(_ => flight.complete())
+        if plan.loop != LoopKind.Paused then
+          for one <- seeing.values.flatten do
+            opened.closing(one)(_.close()): Unit
+            one.run()
         vigil.over(flight)
         Right(FlightRig(
           plan,
@@ -208,6 +217,17 @@ final class FlightRigs(
           clock
         )
         .map(Some(_))
+
+  /** What the scenario's eyes make of a vehicle's cameras. */
+  private def look(plan: FlightPlan, vehicle: Multirotor, recorder: Recorder): Vector[Seeing] =
+    settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
+      Seeing(
+        eye,
+        vehicle.eyes,
+        plan.seed,
+        clock,
+        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail))
+      )
 
   private def watchContacts(
       opened: Opened,

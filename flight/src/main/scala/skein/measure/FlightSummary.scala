@@ -28,6 +28,8 @@ import skein.units.*
   *   absent where nothing was predicted
   * @param paused
   *   for how long its vehicles were told to hover: that lies within all times and distances of the flight
+  * @param seeing
+  *   of each eye that saw anything
   */
 final case class FlightSummary(
     flight: Flight,
@@ -45,7 +47,8 @@ final case class FlightSummary(
     policy: Option[String] = None,
     planning: Option[PlanningSummary] = None,
     predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None,
-    paused: Option[Span] = None
+    paused: Option[Span] = None,
+    seeing: Vector[SeeingSummary] = Vector.empty
 ):
   /** The loop, the policy where it is not the paper's, and whether the flight was cut short or paused. */
   def name: String =
@@ -115,7 +118,8 @@ object FlightSummary:
       recording.heading.parameters.find(_.name == "policy").map(_.value),
       PlanningSummary.of(recording),
       PredictionErrors.of(recording, scenario.forall(isOfDuels)),
-      paused(recording)
+      paused(recording),
+      scenario.toVector.flatMap(_.eyes).flatMap(SeeingSummary.of(recording, _, tracks))
     )
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])

@@ -64,7 +64,7 @@ class FlySettingsSuite extends munit.FunSuite:
       assert(clue(read(s"""skein.fly.scene = "$file" """)).isLeft)
     finally Files.delete(file)
     assert(
-      clue(read("skein.fly.scene = wood").left.getOrElse("")).contains("no empty, forest, street")
+      clue(read("skein.fly.scene = wood").left.getOrElse("")).contains("no empty, forest, pursuit, street")
     )
 
   test("a deadline is one where it is set"):

@@ -35,33 +35,48 @@ object Frames:
     *
     * @param inFlight
     *   frames asked for that have not come, at most
+    * @param isNewer
+    *   whether one frame is of a later moment than another: over a restart of the simulator
+    *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
     * @param ask
     *   must end by itself, within its own timeout
     * @param onSkip
     *   told of every frame that was due and is not emitted
     */
-  def at[E, A, M](ticks: Source[Int, M], inFlight: Int = 2)(
+  def at[E, A, M](
+      ticks: Source[Int, M],
+      inFlight: Int = 2,
+      isNewer: (Stamped[?], Stamped[?]) => Boolean = _.isNewerThan(_)
+  )(
       ask: () => Future[Either[E, Stamped[A]]]
   )(onSkip: Skipped[E, A] => Unit): Source[Stamped[A], M] =
     Sense
-      .at(ticks, inFlight, isNewer = (frame: Stamped[A], held: Stamped[A]) => frame.isNewerThan(held))(ask)(
+      .at(ticks, inFlight, isNewer = (frame: Stamped[A], held: Stamped[A]) => isNewer(frame, held))(ask)(
         {
           case Left(error)  => onSkip(Skipped.Failed(error))
           case Right(frame) => onSkip(Skipped.Overtaken(frame))
         },
         missed => onSkip(Skipped.Missed(missed))
       )
-      .via(newerOnly(frame => onSkip(Skipped.Repeated(frame)), frame => onSkip(Skipped.Overtaken(frame))))
+      .via(newerOnly(
+        isNewer,
+        frame => onSkip(Skipped.Repeated(frame)),
+        frame => onSkip(Skipped.Overtaken(frame))
+      ))
       .via(Newest(frame => onSkip(Skipped.Replaced(frame))))
 
-  private def newerOnly[A](onRepeated: Stamped[A] => Unit, onOlder: Stamped[A] => Unit) =
+  private def newerOnly[A](
+      isNewer: (Stamped[?], Stamped[?]) => Boolean,
+      onRepeated: Stamped[A] => Unit,
+      onOlder: Stamped[A] => Unit
+  ) =
     Flow[Stamped[A]]
       .statefulMap(() => Option.empty[Stamped[A]])(
         (last, frame) =>
           if last.exists(_.validAt == frame.validAt) then
             onRepeated(frame)
             (last, None)
-          else if last.forall(frame.isNewerThan) then (Some(frame), Some(frame))
+          else if last.forall(isNewer(frame, _)) then (Some(frame), Some(frame))
           else
             onOlder(frame)
             (last, None)

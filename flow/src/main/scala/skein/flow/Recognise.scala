@@ -45,6 +45,9 @@ enum Unrecognised[+A]:
   *
   * @param workers
   *   at work at the same time
+  * @param isNewer
+  *   whether one frame is of a later moment than another: over a restart of the simulator
+  *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
   * @param deadline
   *   of each frame, from when it is begun
   * @param recognise
@@ -53,7 +56,13 @@ enum Unrecognised[+A]:
   * @param onSkip
   *   told of every frame of which nothing is emitted
   */
-final class Recognise[A, B](workers: Int, deadline: Span, clock: Clock, newestFirst: Boolean = false)(
+final class Recognise[A, B](
+    workers: Int,
+    deadline: Span,
+    clock: Clock,
+    newestFirst: Boolean = false,
+    isNewer: (Stamped[?], Stamped[?]) => Boolean = _.isNewerThan(_)
+)(
     recognise: (worker: Int, frame: Stamped[A]) => Future[B]
 )(onSkip: Unrecognised[A] => Unit)
     extends GraphStage[FlowShape[Stamped[A], Recognised[B]]]:
@@ -84,7 +93,7 @@ final class Recognise[A, B](workers: Int, deadline: Span, clock: Clock, newestFi
 
       def onPush(): Unit =
         val frame = grab(in)
-        if lastSeen.exists(!frame.isNewerThan(_)) then onSkip(Unrecognised.Overtaken(frame))
+        if lastSeen.exists(!isNewer(frame, _)) then onSkip(Unrecognised.Overtaken(frame))
         else
           lastSeen = Some(frame)
           begin(frame)

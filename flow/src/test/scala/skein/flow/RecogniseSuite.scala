@@ -100,6 +100,52 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
     assertEquals(faulty.mostAtOnce, 2)
 
+  test(
+    "while nobody takes results, no more than twice as many frames as workers wait; each one taken lets one in"
+  ):
+    val begun = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock   = Clock.ofNanos(VirtualTime.clock(system))
+      var begun   = 0
+      val results = Source(1 to 20)
+        .map: i =>
+          val at = Instant.ofNanos(i)
+          Stamped(i, at, at, at)
+        .via(Recognise[Int, Int](2, Span.ofSeconds(1), clock): (_, frame) =>
+          begun += 1
+          Future.successful(frame.value)
+        (_ => ()))
+        .runWith(Sink.queue(1))
+      def later() = after(100.millis)(Future.successful(begun))
+      for
+        atFirst <- later()
+        _       <- results.pull()
+        then_   <- later()
+      yield
+        results.cancel()
+        (atFirst, then_)
+    // One is held for whoever takes it, four wait behind it.
+    assertEquals(begun.value, (5, 6))
+
+  test("frames are compared as one says: a later run of a simulator whose clock is behind is newer"):
+    val emitted = VirtualTime.run(seed = 1): system =>
+      given ActorSystem                  = system
+      val clock                          = Clock.ofNanos(VirtualTime.clock(system))
+      def frame(run: Int, validAt: Long) =
+        Stamped(run, Instant.ofNanos(validAt), Instant.Epoch, Instant.ofNanos(1000))
+      // All were asked for together, so that two alone do not tell.
+      Source(Vector(frame(0, 500), frame(1, 10), frame(0, 600)))
+        .via(Recognise[Int, Int](
+          1,
+          Span.ofSeconds(1),
+          clock,
+          isNewer = (one, other) => one.value.asInstanceOf[Int] > other.value.asInstanceOf[Int]
+        )((_, frame) => Future.successful(frame.value))(_ => ()))
+        .map(_.found.validAt.toNanos)
+        .runWith(Sink.seq)
+    assertEquals(emitted.value, Seq(500L, 10L))
+
   test("no workers and no time are refused"):
     for (workers, deadlineMs) <- Seq((0, 40.0), (1, 0.0)) do
       intercept[IllegalArgumentException](

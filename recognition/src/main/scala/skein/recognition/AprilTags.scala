@@ -5,6 +5,7 @@ import boofcv.alg.distort.pinhole.LensDistortionPinhole
 import boofcv.factory.fiducial.{ConfigHammingMarker, FactoryFiducial, HammingDictionary}
 import boofcv.struct.calib.CameraPinhole
 import boofcv.struct.image.GrayU8
+import java.nio.ByteBuffer
 import georegression.struct.se.Se3_F64
 import skein.airsim.{Image, Pixels}
 import skein.fusion.{Measurement, Sighting}
@@ -29,10 +30,19 @@ final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
   *
   * @param positionFrd
   *   of its middle in the camera's frame (front, right, down), m
+  * @param facingFrd
+  *   which way it faces: of unit length, away from what it is on
   * @param deviationPx
   *   how exactly its edges were found, standard deviation
   */
-final case class Tag(id: Long, positionFrd: Vector3, camera: Pinhole, size: Metres, deviationPx: Double):
+final case class Tag(
+    id: Long,
+    positionFrd: Vector3,
+    facingFrd: Vector3,
+    camera: Pinhole,
+    size: Metres,
+    deviationPx: Double
+):
 
   /** Azimuth and elevation vary as the edges do, the range by as much of itself as the edges vary of the tag's apparent
     * width.
@@ -76,20 +86,38 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
 
   /** All tags in a picture; or why it is none of this camera's. */
   def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
-    case Pixels.Bgr(bytes) if image.width == camera.width && image.height == camera.height =>
-      AprilTags.grayOf(bytes.buffer, gray.data)
+    case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
+    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+
+  /** @param bgr
+    *   blue, green, red of each pixel, in rows from the top
+    */
+  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Vector[Tag]] =
+    if width == camera.width && height == camera.height && bgr.remaining == width * height * 3 then
+      AprilTags.grayOf(bgr, gray.data)
       detector.detect(gray)
       Right(Vector.tabulate(detector.totalFound)(tag))
-    case other =>
+    else
       Left(
-        s"expected raw pixels, ${camera.width} × ${camera.height}, came ${image.width} × ${image.height}, ${other.productPrefix}"
+        s"expected ${camera.width} × ${camera.height} pixels of three bytes, came $width × $height in ${bgr.remaining} bytes"
       )
 
   private def tag(index: Int): Tag =
     detector.getFiducialToCamera(index, inCamera): Unit
     // BoofCV's camera: right, down, ahead.
-    val at = inCamera.T
-    Tag(detector.getId(index), Vector3(at.z, at.x, at.y), camera, size, deviationPx)
+    val (at, turned) = (inCamera.T, inCamera.R)
+    val facing       = Vector3(turned.get(2, 2), turned.get(0, 2), turned.get(1, 2))
+    val position     = Vector3(at.z, at.x, at.y)
+    // What is seen faces the camera.
+    val seen = facing.x * position.x + facing.y * position.y + facing.z * position.z < 0
+    Tag(
+      detector.getId(index),
+      position,
+      if seen then facing else facing * -1,
+      camera,
+      size,
+      deviationPx
+    )
 
 object AprilTags:
   /** The family 36h11: 587 tags, of 6 × 6 bits within a border of one. */
@@ -99,7 +127,7 @@ object AprilTags:
   val DeviationPx: Double = 0.25
 
   /** Luma of BT.601 in 8 bits. */
-  private def grayOf(bgr: java.nio.ByteBuffer, gray: Array[Byte]): Unit =
+  private def grayOf(bgr: ByteBuffer, gray: Array[Byte]): Unit =
     var pixel = 0
     var at    = 0
     while pixel < gray.length do

@@ -16,7 +16,7 @@ final case class SceneError(place: String, problem: String):
 /** Scenes as files, in HOCON or JSON: `docs/guides/cameras.md` has the keys. */
 object SceneFile:
   /** Scenes that ship, by name. */
-  val Names: Vector[String] = Vector("empty", "forest", "street")
+  val Names: Vector[String] = Vector("empty", "forest", "pursuit", "street")
 
   /** Objects at most. */
   val MostObjects = 2000

@@ -5,7 +5,7 @@ import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Airframe
 
 /** What a vehicle looks like: its box, two beams across, four rotors, and tags on its sides where the scene wants them. */
-private[simulator] object VehicleBody:
+private[skein] object VehicleBody:
   import SceneObject.Part
 
   def parts(airframe: Airframe, number: Int, tagM: Double): Vector[Part] =

@@ -1,0 +1,9 @@
+package skein.cli
+
+import skein.recognition.BlindPursuit
+import skein.report.DuelReport
+import skein.scenario.{ScenarioKind, Scenarios}
+
+/** What `./skein` flies: the scenarios of the core, the duel with its report, and those whose policies recognise. */
+object OurScenarios:
+  val all: Scenarios = Scenarios(DuelReport.scenarios.kinds :+ ScenarioKind(BlindPursuit()))

@@ -1,0 +1,83 @@
+package skein.figures
+
+import skein.measure.{FlightSet, FlightSummary, Numbers, SeeingSummary, Sight}
+import skein.plot.*
+import skein.scenario.Equipment
+import skein.scene.{Moment, Placement, SceneObject}
+import skein.scene.render.{Kind, Picture, Png as PictureFile, Renderer, View}
+import skein.settings.NamedScene
+import skein.simulator.VehicleBody
+import skein.vehicle.Quadrotor
+
+/** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the camera was at the
+  * exposure and where the vehicle was that it looked at, with a box around the place at which it was recognised.
+  */
+object SightFigure:
+  private val shownPx = 330.0
+  private val red     = Colour(0xd62728)
+
+  def apply(set: FlightSet): Option[Drawing] =
+    val rows = set.flights.flatMap(flight => flight.seeing.flatMap(row(flight, _)))
+    Option.when(rows.nonEmpty)(Drawing.stacked(rows*))
+
+  /** A row of a flight's moments; none where the scenario does not say what its camera is. */
+  private def row(flight: FlightSummary, seen: SeeingSummary): Option[Drawing] =
+    for
+      scenario <- flight.scenario
+      camera   <- scenario.equipment.collectFirst:
+        case camera: Equipment.Camera
+            if camera.vehicle == seen.eye.vehicle && camera.name == seen.eye.camera =>
+          camera
+      scene <- NamedScene.shipped(scenario.scene)
+    yield
+      val number = scenario.agents.indexWhere(_.name == seen.eye.target)
+      val height = shownPx * camera.height / camera.width
+      val title  = Shape.Text(
+        at = Point(0, 16),
+        s"${flight.name}, ${Looks.link(flight.flight.link)}",
+        12,
+        Ink.labelColour,
+        bold = true
+      )
+      val cells = seen.decisive.map: (name, sight) =>
+        val thing = SceneObject(
+          seen.eye.target,
+          VehicleBody.parts(Quadrotor.AirSim.airframe, number, scene.scene.vehicleTagM),
+          Placement(sight.trueNed, sight.trueOrientation)
+        )
+        val view =
+          View(Placement(sight.cameraNed, sight.orientation), camera.width, camera.height, camera.fovDeg)
+        val file =
+          Renderer.draw(Moment(scene.scene, Vector(thing)), view, Set(Kind.Scene), _ => 0)(Kind.Scene) match
+            case Picture.Bytes(bgr) => PictureFile.encode(bgr, camera.width, camera.height)
+            case other              => throw IllegalStateException(s"expected colours, came $other")
+        val scale = shownPx / camera.width
+        val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(sight.azimuthRad)) * scale
+        val y     =
+          (camera.height / 2.0 -
+            view.focalPx * StrictMath.tan(sight.elevationRad) / StrictMath.cos(sight.azimuthRad)) * scale
+        val half = (view.focalPx * scene.scene.vehicleTagM / sight.rangeM * scale * 0.7).max(4)
+        Drawing(
+          shownPx + 14,
+          height + 44,
+          Vector(
+            Shape.Raster(Point(0, 0), shownPx, height, file),
+            Shape.outline(
+              (x - half).max(0),
+              (y - half).max(0),
+              (x + half).min(shownPx),
+              (y + half).min(height),
+              Stroke(red, 1.6)
+            )
+          ) ++ told(name, sight).zipWithIndex.map((line, index) =>
+            Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Ink.labelColour)
+          )
+        )
+      Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))
+
+  private def told(name: String, sight: Sight): Vector[String] =
+    val used = sight.firstUsedMs.fold("never used")(ms => s"used ${Numbers.fixed(ms, 0)} ms old")
+    Vector(
+      s"$name: ${Numbers.fixed(sight.sinceStartS.max(0), 1)} s, ${Numbers.fixed(sight.rangeM, 1)} m away",
+      s"recognised in ${Numbers.fixed(sight.tookMs, 0)} ms, $used; believed ${Numbers.fixed(sight.errorM, 2)} m off"
+    )

@@ -1,0 +1,65 @@
+package skein.policy
+
+import skein.units.*
+
+/** Pursues as another policy does, turns its camera to where the opponent is, and, with a sensor, knows of it by that
+  * alone: what [[skein.scenario.Eye]] believes. Where the own place is predicted, the belief is carried to the same moment,
+  * evenly; else it is used as it was exposed. Before anything was seen, the opponent is taken to be where it started.
+  *
+  * @param steers
+  *   by what is believed in the place of readings
+  * @param sensor
+  *   absent for one that is told where its opponent is
+  */
+final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentStartNed: Vector3)
+    extends AgentPolicy:
+  type Memory = Unit
+  def start: Unit = ()
+
+  override def sensors: Set[String] = sensor.toSet
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val own           = seen.own.kinematics
+    val (place, goes) = opponent(seen)
+    val towards       = place - own.positionNed
+    val closing       = goes - own.velocityNed
+    val heading       = steers.heading(
+      towards.x,
+      towards.y,
+      closing.x,
+      closing.y,
+      seen.headings(seen.self).value,
+      StrictMath.atan2(goes.y, goes.x),
+      seen.elapsed.toSeconds
+    )
+    val speed = seen.cruise.value
+    val yaw   = Yaw.Towards(Radians(StrictMath.atan2(towards.y, towards.x)))
+    (
+      Action.VelocityAt(
+        speed * StrictMath.cos(heading),
+        speed * StrictMath.sin(heading),
+        seen.altitude,
+        yaw
+      ),
+      ()
+    )
+
+  /** Where it is taken to be, and how it moves. */
+  private def opponent(seen: Observation): (Vector3, Vector3) = sensor match
+    case None =>
+      val told = seen.vehicles(seen.opponent).kinematics
+      (told.positionNed, told.velocityNed)
+    case Some(name) =>
+      seen.sensed
+        .get(name)
+        .fold((opponentStartNed, Vector3.Zero)): believed =>
+          val value = believed.values
+          val moved = Vector3(value(3), value(4), value(5))
+          val ahead =
+            if seen.own.isPredicted then (believed.age + seen.actsIn).min(CameraPursuer.Farthest)
+            else Span.Zero
+          (Vector3(value(0), value(1), value(2)) + moved * ahead.toSeconds, moved)
+
+object CameraPursuer:
+  /** What was lost from sight longer ago is looked for where it was then expected. */
+  private val Farthest = Span.ofSeconds(1.5)

@@ -1,0 +1,188 @@
+package skein.flight
+
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.KillSwitches
+import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.{Eyes, Image, Pixels, Shot}
+import skein.flow.*
+import skein.fusion.{Belief, Fusion, Sighting}
+import skein.port.{Sensor, VehicleError}
+import skein.record.EventKind
+import skein.scenario.Eye
+import skein.signal.{ClockAlignment, LatencySampler, SplitMix64, Stamped}
+import skein.units.*
+
+/** What an [[Eye]] makes of its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest belief`, beside the
+  * loop, which waits for none of it. Pictures come on connections of their own. Every picture of which nothing comes is an
+  * event.
+  *
+  * @param eyes
+  *   of the vehicle
+  * @param seed
+  *   of how long recognition takes
+  */
+private[skein] final class Seeing(
+    val eye: Eye,
+    eyes: Eyes,
+    seed: Long,
+    clock: Clock,
+    note: (EventKind, String) => Unit
+)(using system: ActorSystem):
+  import Seeing.*
+  import system.dispatcher
+
+  private val threads: ExecutionContext = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
+  private val recognisers               = Vector.fill(eye.workers)(eye.recogniser())
+  private val duration                  = LatencySampler(eye.takes, seed, SplitMix64.seedOf(seed, 3))
+  private val began                     = clock.now()
+  private val shot                      = Shot(eye.camera)
+  private val clocks                    = AtomicReference(Option.empty[ClockAlignment])
+  private val newest                    = AtomicReference(Option.empty[Stamped[IArray[Double]]])
+  private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
+
+  // Of one thread at a time: that of the stream, or of whoever asks while the simulator stands still.
+  private var pictures, found = 0
+  private var newestSeen      = Option.empty[Seen]
+  private var fusion          = Fusion(eye.fusion)
+
+  /** Looks on until it is closed. */
+  def run(): Unit =
+    val ticks    = Source.fromGraph(Metronome(clock.now(), eye.every, clock)).via(stop.flow)
+    val (_, end) = Frames
+      .at(ticks, inFlight = 2, isNewer)(() => image())(skipped)
+      .via(Recognise(eye.workers, eye.deadline, clock, newestFirst = true, isNewer)(recognised)(unrecognised))
+      .mapConcat(counted)
+      .map: seen =>
+        newestSeen = Some(seen)
+        // What was measured before a restart of the simulator says nothing of what is since.
+        (clocks.get.fold(0)(_.restarts), seen.measured)
+      .via(Fuse(eye.fusion)((_, _) =>
+        note(EventKind.Dropped, s"${eye.sensor}: older than all that is known")
+      ))
+      .toMat(Sink.foreach((_, belief) => newest.set(newestSeen.map(_.told(belief)))))(Keep.both)
+      .run()
+    end.failed.foreach(error => note(EventKind.Aborted, s"${eye.sensor}: $error"))
+
+  def close(): Future[Done] =
+    stop.shutdown()
+    Future.successful(Done)
+
+  /** What is believed now. */
+  val sensor: Sensor = new Sensor:
+    def columns: Vector[String]                                       = Eye.Columns
+    def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
+      Future.successful(newest.get.toRight(VehicleError.Refused("nothing was seen yet")))
+
+  /** For while the simulator stands still: takes a picture and answers when it has been looked at. */
+  val looking: Sensor = new Sensor:
+    def columns: Vector[String]                                       = Eye.Columns
+    def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
+      image()
+        .flatMap:
+          case Left(error)  => Future.successful(skipped(Frames.Skipped.Failed(error)))
+          case Right(frame) =>
+            val startedAt = clock.now()
+            recognised(0, frame).map: sighting =>
+              val took = clock.now().since(startedAt)
+              for
+                seen   <- counted(Recognised(frame.map(_ => sighting), startedAt, took))
+                joined <- fusion.including(seen.measured)
+                belief <- joined.belief
+              do
+                fusion = joined
+                newest.set(Some(seen.told(belief)))
+        .recover(error => note(EventKind.Refused, s"${eye.sensor}: $error"))
+        .flatMap(_ => sensor.read())
+
+  private def image() = eyes
+    .image(shot)
+    .map(_.map: frame =>
+      val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
+      frame)
+
+  private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
+
+  private def recognised(worker: Int, frame: Stamped[Image]): Future[(Image, Option[Sighting])] =
+    val startedAt = clock.now()
+    val lasts     = duration.oneWay(startedAt.since(began)) * 2
+    val image     = frame.value
+    Future(look(worker, image))(using threads)
+      .flatMap:
+        case Left(reason)    => Future.failed(IllegalArgumentException(reason))
+        case Right(sighting) =>
+          // In virtual time work takes no time, so that this is all of it.
+          val rest = lasts - clock.now().since(startedAt)
+          if rest <= Span.Zero then Future.successful((image, sighting))
+          else after(rest.toDuration, system.scheduler)(Future.successful((image, sighting)))
+
+  private def look(worker: Int, image: Image): Either[String, Option[Sighting]] = image.pixels match
+    case Pixels.Bgr(bytes) => recognisers(worker).find(image.width, image.height, bytes.buffer)
+    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+
+  private def counted(recognised: Recognised[(Image, Option[Sighting])]): Option[Seen] =
+    pictures += 1
+    val (image, sighting) = recognised.found.value
+    sighting.map: sighting =>
+      found += 1
+      Seen(recognised.found.map(_ => image), sighting, recognised.took, pictures, found)
+
+  private def skipped(what: Frames.Skipped[Any, Any]): Unit = what match
+    case Frames.Skipped.Missed(frames) =>
+      note(EventKind.Skipped, s"${eye.sensor}: $frames pictures not taken")
+    case Frames.Skipped.Failed(error) => note(EventKind.TimedOut, s"${eye.sensor}: $error")
+    case Frames.Skipped.Overtaken(_)  => note(EventKind.Dropped, s"${eye.sensor}: a picture overtaken")
+    case Frames.Skipped.Repeated(_)   => note(EventKind.Dropped, s"${eye.sensor}: the same picture again")
+    case Frames.Skipped.Replaced(_)   =>
+      note(EventKind.Dropped, s"${eye.sensor}: a picture replaced by a newer one")
+
+  private def unrecognised(what: Unrecognised[Any]): Unit = what match
+    case Unrecognised.Late(_) => note(EventKind.DeadlineMissed, s"${eye.sensor}: recognition was late")
+    case Unrecognised.Failed(_, cause) => note(EventKind.Refused, s"${eye.sensor}: $cause")
+    case Unrecognised.Overtaken(_)     => note(EventKind.Dropped, s"${eye.sensor}: recognition overtaken")
+
+private[skein] object Seeing:
+
+  /** A detection. */
+  private final case class Seen(
+      image: Stamped[Image],
+      sighting: Sighting,
+      took: Span,
+      pictures: Int,
+      found: Int
+  ):
+    def measured = sighting.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
+
+    /** As [[Eye.Columns]]. */
+    def told(belief: Belief): Stamped[IArray[Double]] =
+      import image.value.{orientation as turned, positionNed as camera}
+      image
+        .copy(validAt = belief.at)
+        .map: _ =>
+          IArray(
+            belief.positionNed.x,
+            belief.positionNed.y,
+            belief.positionNed.z,
+            belief.velocityNed.x,
+            belief.velocityNed.y,
+            belief.velocityNed.z,
+            math.sqrt(belief.position.xx.max(belief.position.yy).max(belief.position.zz)),
+            sighting.azimuth.value,
+            sighting.elevation.value,
+            sighting.range.value,
+            took.toMillis,
+            camera.x,
+            camera.y,
+            camera.z,
+            turned.w,
+            turned.x,
+            turned.y,
+            turned.z,
+            pictures.toDouble,
+            found.toDouble
+          )

@@ -1,0 +1,125 @@
+package skein.measure
+
+import skein.record.Recording
+import skein.scenario.{Eye, Track}
+import skein.units.*
+
+/** One detection, and what was believed upon it.
+  *
+  * @param at
+  *   the exposure, on the simulator's clock
+  * @param sinceStartS
+  *   of the flight's readings
+  * @param cameraNed
+  *   m
+  * @param orientation
+  *   of the camera
+  * @param azimuthRad
+  *   to the right of straight ahead, where it was seen; then above straight ahead, and how far
+  * @param trueNed
+  *   where it was, by its own readings, and how it was turned
+  * @param firstUsedMs
+  *   how old it was when it was first decided upon, if it was
+  */
+final case class Sight(
+    at: Instant,
+    sinceStartS: Double,
+    cameraNed: Vector3,
+    orientation: Quaternion,
+    azimuthRad: Double,
+    elevationRad: Double,
+    rangeM: Double,
+    tookMs: Double,
+    believedNed: Vector3,
+    trueNed: Vector3,
+    trueOrientation: Quaternion,
+    firstUsedMs: Option[Double]
+):
+  /** In the plane. */
+  def errorM: Double = believedNed.horizontalDistance(trueNed)
+
+/** What a vehicle saw by one of its scenario's eyes.
+  *
+  * @param pictures
+  *   that were looked at until the last detection
+  * @param agesMs
+  *   of what decisions were made upon, since the exposure
+  */
+final case class SeeingSummary(
+    eye: Eye,
+    sights: Vector[Sight],
+    pictures: Int,
+    agesMs: Option[Distribution]
+):
+  def tookMs: Option[Distribution]  = Distribution.of(sights.map(_.tookMs))
+  def errorsM: Option[Distribution] = Distribution.of(sights.map(_.errorM))
+
+  /** Moments worth a look, each with its name: the first detection, the closest, the last before the eye had lost what it
+    * looks for the longest, and the next one.
+    */
+  def decisive: Vector[(String, Sight)] =
+    val gap = sights.zip(sights.drop(1)).maxByOption((before, next) => next.at.since(before.at))
+    Vector(
+      sights.headOption.map("first seen" -> _),
+      sights.minByOption(_.rangeM).map("closest" -> _),
+      gap.map((before, _) => "before it was lost longest" -> before),
+      gap.map((_, next) => "seen again" -> next)
+    ).flatten
+
+object SeeingSummary:
+
+  def of(recording: Recording, eye: Eye, tracks: Vector[Track]): Option[SeeingSummary] =
+    val told = recording.measurements
+      .filter(row => row.vehicle == eye.vehicle && row.sensor == eye.sensor && row.quantities == Eye.Columns)
+    val target  = tracks.find(_.vehicle == eye.target)
+    val turned  = recording.readings.filter(_.vehicle == eye.target).sortBy(_.state.validAt)
+    val byTime  = turned.map(_.state.validAt)
+    val ages    = agesMs(recording, eye)
+    val ordered = told.distinctBy(_.validAt).sortBy(_.validAt)
+    for
+      track <- target if ordered.nonEmpty
+    yield
+      val sights = ordered.map: row =>
+        val v       = row.numbers
+        val nearest = turned((byTime.search(row.validAt).insertionPoint - 1).max(0))
+        Sight(
+          row.validAt,
+          row.validAt.since(track.from).toSeconds,
+          Vector3(v(11), v(12), v(13)),
+          Quaternion(v(14), v(15), v(16), v(17)),
+          v(7),
+          v(8),
+          v(9),
+          v(10),
+          Vector3(v(0), v(1), v(2)),
+          track.at(row.validAt),
+          nearest.state.value.orientation,
+          ages.get(row.validAt).map(_.min)
+        )
+      SeeingSummary(
+        eye,
+        sights.toVector,
+        ordered.last.numbers(18).toInt,
+        Distribution.of(ages.values.flatten.toVector)
+      )
+
+  /** Of decisions, by the exposure that they rest on. */
+  private def agesMs(recording: Recording, eye: Eye): Map[Instant, Vector[Double]] =
+    val validAt = recording.measurements
+      .filter(row => row.vehicle == eye.vehicle && row.sensor == eye.sensor)
+      .map(row => row.sequence -> row.validAt)
+      .toMap
+    val decided = recording.decisions
+      .filter(_.vehicle == eye.vehicle)
+      .map(decision => decision.sequence -> decision)
+      .toMap
+    recording.sensings
+      .filter(sensing => sensing.vehicle == eye.vehicle && sensing.sensor == eye.sensor)
+      .toVector
+      .flatMap: sensing =>
+        for
+          decision <- decided.get(sensing.decision)
+          exposed  <- validAt.get(sensing.measurement)
+          clocks   <- decision.trueAge
+        yield exposed -> decision.decidedAt.since(exposed + clocks.clockOffset).toMillis
+      .groupMap(_._1)(_._2)

@@ -1,0 +1,87 @@
+package skein.recognition
+
+import java.nio.file.{Files, Path}
+import scala.util.Try
+import skein.policy.*
+import skein.scenario.*
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** The paper's duel, but that the pursuer knows of the evader by its camera alone, which finds the AprilTags on the
+  * evader's sides.
+  *
+  * @param blind
+  *   false: the pursuer is told where the evader is, and flies by the same policy otherwise
+  * @param takes
+  *   how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of times that were measured
+  * @param everyMs
+  *   between two pictures
+  */
+final case class BlindPursuit(
+    blind: Boolean = true,
+    takes: String = "uniform:15ms..120ms",
+    everyMs: Int = 100,
+    widthPx: Int = 800,
+    heightPx: Int = 600,
+    fovDeg: Double = 100,
+    altitudeM: Double = PaperDuel.AltitudeM
+) extends Scenario:
+
+  override def mistakes: Seq[String] =
+    Scenario.outside("everyMs", everyMs, 20, 1000).toSeq ++
+      Scenario.outside("widthPx", widthPx, 64, 4096) ++ Scenario.outside("heightPx", heightPx, 64, 4096) ++
+      Scenario.notPositive(this) ++ Option.when(fovDeg >= 180)(s"fovDeg: expected below 180, came $fovDeg") ++
+      recognition.left.toOption.map(mistake => s"takes: $mistake")
+
+  def agents: Vector[Agent] =
+    val Vector(evader, pursuer) = PaperDuel(altitudeM = altitudeM).agents: @unchecked
+    val sensor                  = Option.when(blind)(BlindPursuit.Sensor)
+    Vector(
+      evader,
+      pursuer.copy(policy = CameraPursuer(PaperPursuer(), sensor, evader.startPositionNed))
+    )
+
+  override def scene: String = "pursuit"
+
+  override def equipment: Vector[Equipment] =
+    Vector(Equipment.Camera("Pursuer", BlindPursuit.Camera, widthPx, heightPx, fovDeg))
+
+  override def eyes: Vector[Eye] =
+    val camera = Pinhole(widthPx, heightPx, Radians(StrictMath.toRadians(fovDeg)))
+    for takes <- recognition.toOption.toVector if blind
+    yield Eye(
+      "Pursuer",
+      BlindPursuit.Sensor,
+      BlindPursuit.Camera,
+      target = "Evader",
+      Span.ofMillis(everyMs),
+      // The evader is the first vehicle, and so bears the first tag.
+      () => VehicleTags(camera, id = 0, BlindPursuit.TagSide),
+      takes
+    )
+
+  override def series: Vector[Series] = Vector(distance)
+
+  override def measures: Vector[Measure] = Vector(
+    distance.mean("last 10 s", Window.Last(10)),
+    distance.least("closest"),
+    distance.leastAt("at")
+  )
+
+  override def note: String = "Horizontal distance between pursuer and evader" +
+    (if blind then ", of whom the pursuer knows by its camera alone." else ", of whom the pursuer is told.")
+
+  private def distance = Series("distance", "m")(tracks => tracks.distanceM(1, 0, _))
+
+  private def recognition: Either[String, LatencyProfile] =
+    LatencyProfile
+      .parse(takes, path => Try(Files.readString(Path.of(path))).toEither.left.map(_.toString))
+      .left
+      .map(_.message)
+
+object BlindPursuit:
+  /** Of the tags that vehicles bear in the scene `pursuit`. */
+  val TagSide: Metres = Metres(1)
+
+  private val Sensor = "evader"
+  private val Camera = "front_center"

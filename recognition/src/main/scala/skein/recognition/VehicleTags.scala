@@ -1,0 +1,28 @@
+package skein.recognition
+
+import java.nio.ByteBuffer
+import skein.fusion.Sighting
+import skein.scenario.Recogniser
+import skein.units.*
+
+/** Finds a vehicle by the AprilTags on its four sides, as the built-in simulator's vehicles bear them: the vehicle's middle
+  * lies [[behindM]] behind each. Where two sides are seen, it is the mean of both.
+  *
+  * @param id
+  *   of its tags
+  */
+final class VehicleTags(camera: Pinhole, id: Long, size: Metres) extends Recogniser:
+  private val tags    = AprilTags(camera, size)
+  private val behindM = size.value * VehicleTags.BehindSides
+
+  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[Sighting]] =
+    tags.find(width, height, bgr).map: found =>
+      val own = found.filter(_.id == id)
+      Option.when(own.nonEmpty):
+        val middles = own.map(tag => tag.positionFrd - tag.facingFrd * behindM)
+        val middle  = middles.reduce(_ + _) * (1.0 / middles.size)
+        Sighting.of(middle, own.minBy(_.positionFrd.norm).sighting.deviation)
+
+object VehicleTags:
+  /** From a side's tag to the vehicle's middle, in sides of a tag: plates of 10 cells close to a cube, tags have 8. */
+  private val BehindSides = 5.0 / 8
