@@ -16,9 +16,10 @@ private object Modules:
       Vector(
         "skein.loop.*Suite",
         "skein.loop.planning.*",
-        "skein.flight.ReplaySimulation",
-        "skein.loop.SensorSimulation",
-        "skein.loop.PredictiveLoopSimulation"
+        "skein.loop.*Simulation",
+        "skein.flight.FailureTellingSimulation",
+        "skein.flight.OutsidePolicySimulation",
+        "skein.flight.ReplaySimulation"
       )
     ),
     Module(

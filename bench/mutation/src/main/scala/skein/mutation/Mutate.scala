@@ -11,8 +11,11 @@ import scala.util.{Random, Using}
 
 /** What became of a mutant. */
 enum Fate:
-  case Survived, TimedOut
+  case Survived
   case Killed(by: String)
+
+  /** Twice: that counts as noticed. */
+  case TimedOut, ProcessEnded
 
   /** It does not compile. */
   case Invalid(why: String)
@@ -33,11 +36,15 @@ enum Fate:
     Files.exists(at.resolve("build.sbt"))
   ).get
   println(s"seed $seed")
-  val until  = System.nanoTime() + minutes.toLong * 60_000_000_000L
+  val until = System.nanoTime() + minutes.toLong * 60_000_000_000L
+  val work  =
+    if arguments.contains("--named") then Named.all(root)
+    else
+      for name <- only yield
+        val module = Modules.all.find(_.name == name).getOrElse(sys.error(s"no module $name"))
+        (module, Modules.mutants(root, module))
   val scores =
-    for name <- only yield
-      val module  = Modules.all.find(_.name == name).getOrElse(sys.error(s"no module $name"))
-      val all     = Modules.mutants(root, module)
+    for (module, all) <- work yield
       val chosen  = Random(seed).shuffle(all).filter(mutant => lines.forall(_(mutant.toString)))
       val session = Session(module)
       val judged  =
@@ -49,11 +56,11 @@ enum Fate:
             .takeWhile(_ => System.nanoTime() < until)
             .take(sample)
             .map: (mutant, fate) =>
-              println(s"$name\t$fate\t$mutant")
+              println(s"${module.name}\t$fate\t$mutant")
               (mutant, fate)
             .toVector
         finally session.close()
-      Score(name, all.size, judged)
+      Score(module.name, all.size, judged)
   scores.foreach(score => println(score.line))
 
 /** @param found
@@ -68,6 +75,7 @@ object Score:
   /** The share noticed, with Wilson's interval of 95 %. */
   private def of(judged: Vector[(Mutant, Fate)]): String =
     val survived = judged.count(_._2 == Fate.Survived)
+    val endless  = judged.count(_._2 == Fate.TimedOut)
     val (n, z)   = (judged.size.max(1).toDouble, 1.96)
     val share    = 1 - survived / n
     val middle   = (share + z * z / (2 * n)) / (1 + z * z / n)
@@ -75,7 +83,8 @@ object Score:
     def percent(value: Double) = (100 * value).round
     if judged.isEmpty then "none tried"
     else
-      s"${percent(share)} % (${percent(middle - half)} … ${percent(middle + half)}) of ${judged.size}, $survived not noticed"
+      s"${percent(share)} % (${percent(middle - half)} … ${percent(middle + half)}) of ${judged.size}, $survived not noticed" +
+        (if endless > 0 then s", $endless by not ending" else "")
 
 /** Runs mutants of one module, one after the other, in a [[Worker]] that is started again where one does not end. */
 private final class Session(module: Module):
@@ -88,21 +97,35 @@ private final class Session(module: Module):
   private var worker = start()
   private var limit  = 10.minutes
 
-  /** What cannot pass unchanged notices nothing. Sets the time that a mutant has. */
+  /** What cannot pass unchanged notices nothing. */
   def checkUnchanged(): Unit =
     if suites.isEmpty then sys.error(s"${module.name}: no suites of ${module.suites.mkString(", ")}")
-    val from = System.nanoTime()
-    ask("-") match
+    unchanged() match
       case Fate.Survived => ()
       case other         => sys.error(s"${module.name}: unchanged sources do not pass: $other")
+
+  /** Sets the time that a mutant has. */
+  private def unchanged(): Fate =
+    limit = 10.minutes
+    val from = System.nanoTime()
+    val fate = ask("-")
     val took = (System.nanoTime() - from).nanos
     limit = took * 4 + 60.seconds
     println(s"${module.name}: ${suites.size} suites take ${took.toMillis / 1000.0} s unchanged")
+    fate
 
+  /** What does not end is tried again, in a time measured anew: the machine may have been busy. */
   def fate(mutant: Mutant): Fate =
     val file = changed.resolve(mutant.file.getFileName)
     Files.writeString(file, mutant.applied(Files.readString(mutant.file)))
-    ask(file.toString)
+    ask(file.toString) match
+      case Fate.TimedOut | Fate.ProcessEnded =>
+        unchanged() match
+          case Fate.Survived => ask(file.toString)
+          case other         =>
+            println(s"${module.name}\tnot judged, as unchanged sources do not pass now: $other\t$mutant")
+            Fate.Invalid("the machine is too busy")
+      case told => told
 
   def close(): Unit =
     worker.destroyForcibly()
@@ -120,16 +143,18 @@ private final class Session(module: Module):
       Option(Await.result(answer, limit)) match
         case Some(s"invalid $why")  => Fate.Invalid(why)
         case Some("survived")       => Fate.Survived
+        case Some("late")           => stopped()
         case Some(s"killed $suite") => Fate.Killed(suite)
         case Some(other)            => sys.error(s"the worker answered: $other")
         case None                   =>
           worker = start()
-          Fate.Killed("the process ended")
-    catch
-      case _: TimeoutException =>
-        worker.destroyForcibly().waitFor(10, TimeUnit.SECONDS)
-        worker = start()
-        Fate.TimedOut
+          Fate.ProcessEnded
+    catch case _: TimeoutException => stopped()
+
+  private def stopped(): Fate =
+    worker.destroyForcibly().waitFor(10, TimeUnit.SECONDS)
+    worker = start()
+    Fate.TimedOut
 
   private def start(): Process =
     val java    = Path.of(System.getProperty("java.home"), "bin", "java").toString
@@ -137,7 +162,6 @@ private final class Session(module: Module):
       .filterNot(_.startsWith("-Xm"))
     val command = Vector(java) ++ options ++ Vector(
       "-Xmx1200m",
-      "-XX:TieredStopAtLevel=1",
       s"-Dmutation.folders=${own.mkString(File.pathSeparator)}",
       "-cp",
       jars.mkString(File.pathSeparator),
