@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks)
+    .aggregate(scene, blocks, autopilot)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -118,7 +118,7 @@ lazy val scene = project
 /** The built-in simulator, which speaks AirSim's wire. */
 lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
-  .dependsOn(scene, airsim % "compile->compile;test->test", vtime % Test)
+  .dependsOn(scene, autopilot, airsim % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
@@ -129,6 +129,12 @@ lazy val mcap = project
 /** The field's protocol of vehicles. Depends on nothing of ours. */
 lazy val mavlink = project
   .settings(artifact("mavlink", "MAVLink 2: frames, signatures, the common messages"))
+  .settings(libraryDependencies ++= munit)
+
+/** An autopilot's decisions behind MAVLink, as values. No Pekko, no I/O, no clock. */
+lazy val autopilot = project
+  .settings(artifact("autopilot", "What an autopilot like PX4 decides and says, as pure functions"))
+  .dependsOn(core, mavlink)
   .settings(libraryDependencies ++= munit)
 
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */

@@ -214,7 +214,7 @@ final class FlightRigs(
     val prepared    = if simulator.isDefined then preparation.climb(fleet) else preparation.place(fleet)
     prepared
       .flatMap(result => client.close().map(_ => result))
-      .map(_.fold(error => throw CannotFly(error.message), identity))
+      .map(_.fold(reason => throw CannotFly(reason), identity))
 
   /** The emulated link, if the flight is to have one. */
   private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =

@@ -15,7 +15,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
   import system.dispatcher
 
   /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
-  def place(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def place(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
     everyVehicle(fleet): (vehicle, agent) =>
       for
         _ <- call(vehicle.enableApiControl())
@@ -29,7 +29,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
     * straight to a layer of their own, above all starts, and cross over in it when all have come to theirs; when all have
     * crossed over, they go down. So no way crosses another at one altitude.
     */
-  def climb(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def climb(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
     for
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
@@ -38,7 +38,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
           Starting(
             vehicle,
             agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
-            Approach(vehicle, clock)
+            Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock)
           )
         )
       )
@@ -69,25 +69,25 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
     go(one, one.startNed.copy(z = layerDownM), Approach.Passing)
 
   private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits): Future[Unit] =
-    one.approach.to(goalNed, limits).map(_.fold(error => throw NotReady(error), _ => ()))
+    one.approach.to(goalNed, limits).map(_.fold(reason => throw NotReady(reason), _ => ()))
 
   private def everyVehicle[A](fleet: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>
       Multirotor
         .named(client, agent.name)
         .flatMap:
-          case Left(error)    => Future.failed(NotReady(error))
+          case Left(error)    => Future.failed(NotReady(error.message))
           case Right(vehicle) => use(vehicle, agent)
 
-  private def prepared[A](preparing: => Future[A]): Future[Either[AirSimError, A]] =
-    preparing.map(Right(_)).recover { case NotReady(error) => Left(error) }
+  private def prepared[A](preparing: => Future[A]): Future[Either[String, A]] =
+    preparing.map(Right(_)).recover { case NotReady(reason) => Left(reason) }
 
   private def call[A](answer: Future[Either[RpcError, A]]): Future[A] = answer.map:
     case Right(value) => value
-    case Left(error)  => throw NotReady(AirSimError.Call(error))
+    case Left(error)  => throw NotReady(AirSimError.Call(error).message)
 
   /** Carries an expected error out of a chain of calls. */
-  private case class NotReady(error: AirSimError) extends RuntimeException(error.message)
+  private case class NotReady(reason: String) extends RuntimeException(reason)
 
 object Preparation:
   /** A vehicle on its way to its start, world NED. */
