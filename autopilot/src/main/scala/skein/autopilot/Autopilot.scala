@@ -44,7 +44,7 @@ final case class Autopilot(
     groundedAt: Span = Span.Zero,
     hasFlown: Boolean = false,
     cruise: Option[Double] = None
-):
+) extends Status:
   import Autopilot.*
   import Numbers.{Command, Result, Severity}
 

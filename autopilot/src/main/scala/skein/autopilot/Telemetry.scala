@@ -29,7 +29,7 @@ object Telemetry:
   val Shortest: Span = Span.ofMillis(5)
 
   /** Absent where it is none of its messages. */
-  def of(id: Int, autopilot: Autopilot, motion: Motion): Option[Message] =
+  def of(id: Int, autopilot: Status, motion: Motion): Option[Message] =
     val state  = motion.state
     val bootMs = motion.sinceBoot.toNanos / 1_000_000
     val bootUs = motion.sinceBoot.toNanos / 1000
@@ -151,7 +151,7 @@ object Telemetry:
         ))
       case _ => None
 
-  def heartbeat(autopilot: Autopilot): Message =
+  def heartbeat(autopilot: Status): Message =
     import Numbers.ModeFlag.*
     val guided = if autopilot.mode == FlightMode.Offboard then Guided else Automatic
     val armed  = if autopilot.isArmed then Armed else 0
@@ -164,7 +164,7 @@ object Telemetry:
       mavlinkVersion = 3
     )
 
-  def home(autopilot: Autopilot): Message =
+  def home(autopilot: Status): Message =
     val at = autopilot.home
     HomePosition(
       degrees(at.latitudeDeg),
@@ -180,7 +180,7 @@ object Telemetry:
     )
 
   /** With the number of a PX4 whose interface this follows, and Skein's own vehicle number. */
-  def version(autopilot: Autopilot): Message =
+  def version(autopilot: Status): Message =
     // Float and integer missions, commands as integers, setpoints of attitude and in the local frame and of the globe,
     // termination, MAVLink 2.
     val can = 1L | 4 | 8 | 64 | 128 | 256 | 2048 | 8192
