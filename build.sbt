@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks, autopilot)
+    .aggregate(scene, blocks, autopilot, offboard)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -137,6 +137,12 @@ lazy val autopilot = project
   .dependsOn(core, mavlink)
   .settings(libraryDependencies ++= munit)
 
+/** Vehicles that speak MAVLink, flown by our loops. */
+lazy val offboard = project
+  .settings(artifact("offboard", "Vehicles that speak MAVLink, as ports"))
+  .dependsOn(core, mavlink, link)
+  .settings(libraryDependencies ++= pekkoStream ++ munit)
+
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
 lazy val recognition = project
   .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
@@ -164,7 +170,7 @@ lazy val view = project
 /** The loops; flights put together, live and in virtual time, and through faults. */
 lazy val flight = project
   .settings(artifact("flight", "Control loops, and flights put together"))
-  .dependsOn(forward, flow, simulator, record % "compile->compile;test->test", vtime)
+  .dependsOn(forward, flow, simulator, offboard, record % "compile->compile;test->test", vtime)
   .settings(underAgent)
   .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
 

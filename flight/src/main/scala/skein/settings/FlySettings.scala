@@ -27,6 +27,8 @@ import skein.vehicle.ReducedModel
   *   of every decision; without one, policies are waited for
   * @param fallback
   *   what is done where the deadline is missed
+  * @param wire
+  *   what the vehicles are spoken to by
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -40,7 +42,8 @@ final case class FlySettings(
     deadline: Option[Span] = None,
     fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,
-    planning: PlanSettings = PlanSettings()
+    planning: PlanSettings = PlanSettings(),
+    wire: Wire = Wire.AirSim
 ):
 
   /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
@@ -167,6 +170,9 @@ object FlySettings:
       settings.fleet.agents.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
         s"${settings.scenario.name}: expected starts above 0 and up to $MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
+      Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
+        "wire: mavlink flies no loop paused, since its vehicles' time does not pass in steps; name other loops"
+      ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
@@ -203,6 +209,8 @@ object FlySettings:
   private given ConfigReader[Span] = parsed("duration", Span.parse)
 
   private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
+
+  private given ConfigReader[Wire] = parsed("wire", Wire.parse)
 
   private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 
