@@ -52,7 +52,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks)
+    .aggregate(scene, blocks, autopilot, offboard)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -121,7 +121,7 @@ lazy val scene = project
 /** The built-in simulator, which speaks AirSim's wire. */
 lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
-  .dependsOn(scene, airsim % "compile->compile;test->test", vtime % Test)
+  .dependsOn(scene, autopilot, airsim % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
@@ -133,6 +133,18 @@ lazy val mcap = project
 lazy val mavlink = project
   .settings(artifact("mavlink", "MAVLink 2: frames, signatures, the common messages"))
   .settings(libraryDependencies ++= munit)
+
+/** An autopilot's decisions behind MAVLink, as values. No Pekko, no I/O, no clock. */
+lazy val autopilot = project
+  .settings(artifact("autopilot", "What an autopilot like PX4 decides and says, as pure functions"))
+  .dependsOn(core, mavlink)
+  .settings(libraryDependencies ++= munit)
+
+/** Vehicles that speak MAVLink, flown by our loops. */
+lazy val offboard = project
+  .settings(artifact("offboard", "Vehicles that speak MAVLink, as ports"))
+  .dependsOn(core, mavlink, link)
+  .settings(libraryDependencies ++= pekkoStream ++ munit)
 
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
 lazy val recognition = project
@@ -161,7 +173,7 @@ lazy val view = project
 /** The loops; flights put together, live and in virtual time, and through faults. */
 lazy val flight = project
   .settings(artifact("flight", "Control loops, and flights put together"))
-  .dependsOn(forward, flow, simulator, record % "compile->compile;test->test", vtime)
+  .dependsOn(forward, flow, simulator, offboard, record % "compile->compile;test->test", vtime)
   .settings(underAgent)
   .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
 

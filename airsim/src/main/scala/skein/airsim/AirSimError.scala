@@ -1,7 +1,6 @@
 package skein.airsim
 
 import skein.rpc.RpcError
-import skein.units.Decimals.fixed
 
 /** Why a vehicle of a simulator is not at hand. Expected, so a value. */
 enum AirSimError:
@@ -15,13 +14,8 @@ enum AirSimError:
   /** What it sent as its settings cannot be read. */
   case Settings(error: SettingsError)
 
-  /** It did not come to rest where it was sent: so far from there, m, and so fast, m/s. */
-  case NotAtStart(name: String, offM: Double, speedMps: Double)
-
   def message: String = this match
     case Call(error)                    => error.message
     case UnknownVehicle(name, existing) =>
       s"the simulator has no vehicle '$name'; it has ${existing.map(n => s"'$n'").mkString(", ")}"
-    case Settings(error)                  => s"the simulator's settings: ${error.message}"
-    case NotAtStart(name, offM, speedMps) =>
-      s"'$name' did not come to rest at its start: ${offM.fixed(1)} m off, at ${speedMps.fixed(2)} m/s; is something in its way?"
+    case Settings(error) => s"the simulator's settings: ${error.message}"

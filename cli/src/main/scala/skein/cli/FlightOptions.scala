@@ -6,7 +6,7 @@ import scala.jdk.CollectionConverters.*
 import skein.loop.{LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
-import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings}
+import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings, Wire}
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
@@ -64,6 +64,10 @@ final case class FlightOptions(
       "where the deadline is missed: hold, repeat (the last decision), or a policy such as pure-pursuit"
     )
     fallback: Option[String],
+    @arg(doc =
+      "speaks MAVLink to the vehicles, as to PX4, system 1 being the scenario's first; every loop but paused"
+    )
+    mavlink: Flag,
     @arg(doc = "a HOCON file with settings of skein.fly")
     config: Option[String]
 ):
@@ -81,10 +85,19 @@ final case class FlightOptions(
         (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
       settings
 
+  private def chosenLoops: Seq[String] =
+    if loop.nonEmpty then loop
+    else if mavlink.value then
+      (if asPaper.value then FlightOptions.paperLoops else FlightOptions.loopsOverMavlink)
+        .filterNot(_ == LoopKind.Paused.label)
+    else if asPaper.value then FlightOptions.paperLoops
+    else Nil
+
   private def flags: Config =
     def strings(values: Seq[String]) = Option.when(values.nonEmpty)(values.asJava)
     FlightOptions.configured(Seq(
-      "loops"           -> strings(if asPaper.value && loop.isEmpty then FlightOptions.paperLoops else loop),
+      "loops"           -> strings(chosenLoops),
+      "wire"            -> Option.when(mavlink.value)(Wire.Mavlink.label),
       "links"           -> strings(link),
       "duration"        -> duration,
       "period"          -> period,
@@ -123,6 +136,8 @@ object FlightOptions:
 
   private val paperLoops =
     Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)
+
+  private val loopsOverMavlink = paperLoops :+ LoopKind.Predictive.label
 
   private val slow =
     "plan: this JVM runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"

@@ -1,13 +1,13 @@
 package skein.cli
 
-import mainargs.{ParserForClass, arg}
+import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.link.{TcpTransport, TransportError}
 import skein.settings.{NamedScene, TextFile}
-import skein.simulator.{Overload, SimulatorServer, SimulatorSettings}
+import skein.simulator.{MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 import skein.view.Shows
 
@@ -25,6 +25,11 @@ final case class ServeOptions(
     speed: Double = 1.0,
     @arg(doc = "what stands in the world: empty, forest, pursuit, street, or a file")
     scene: String = "empty",
+    @arg(doc =
+      "speaks MAVLink, too, as PX4's simulation does: UDP to 14550 for a ground station and to 14540, 14541, … for " +
+        "programs, a vehicle each; all vehicles also at UDP 18570"
+    )
+    mavlink: Flag,
     view: ViewOptions
 )
 
@@ -49,10 +54,11 @@ object ServeCommand
       )
       world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
       scene <- NamedScene.read(options.scene).left.map("--scene: " + _)
-      shows = Shows()
+      mavlink = Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host))
+      shows   = Shows()
       _ <- options.view.serving(shows)(
         serve(
-          SimulatorSettings(world, address, overload, options.speed, scene = scene.scene),
+          SimulatorSettings(world, address, overload, options.speed, scene = scene.scene, mavlink = mavlink),
           Option.when(options.view.view.value)(shows)
         )
       )
@@ -79,7 +85,11 @@ object ServeCommand
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
       val vehicles = settings.world.vehicles.map(_.name).mkString(", ")
-      Console.out.println(s"serving $vehicles at ${server.address}; Ctrl-C ends it")
+      val mavlink  = settings.mavlink.fold(""): open =>
+        s", and by MAVLink from UDP ports ${open.udp.map(port =>
+            s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"
+          ).mkString(", ")}"
+      Console.out.println(s"serving $vehicles at ${server.address}$mavlink; Ctrl-C ends it")
       val ended = Promise[Either[String, Unit]]()
       server.failed.foreach(failure =>
         ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))

@@ -16,7 +16,31 @@ object Vector3:
   val Zero: Vector3 = Vector3(0, 0, 0)
 
 /** A rotation from body FRD to world NED as a unit quaternion. */
-final case class Quaternion(w: Double, x: Double, y: Double, z: Double)
+final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
+  /** Rad, to the right. */
+  def rollRad: Double = StrictMath.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+
+  /** Rad, upwards. */
+  def pitchRad: Double = StrictMath.asin((2 * (w * y - x * z)).max(-1.0).min(1.0))
+
+  /** Rad from north towards east, −π to π. */
+  def yawRad: Double = StrictMath.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+  /** A vector of the body, in the world. */
+  def toWorld(frd: Vector3): Vector3 =
+    val (tx, ty, tz) = (
+      2 * (y * frd.z - z * frd.y),
+      2 * (z * frd.x - x * frd.z),
+      2 * (x * frd.y - y * frd.x)
+    )
+    Vector3(
+      frd.x + w * tx + y * tz - z * ty,
+      frd.y + w * ty + z * tx - x * tz,
+      frd.z + w * tz + x * ty - y * tx
+    )
+
+  /** A vector of the world, in the body. */
+  def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
 
 object Quaternion:
   val Identity: Quaternion = Quaternion(1, 0, 0, 0)

@@ -3,21 +3,23 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.Future
-import skein.airsim.*
-import skein.rpc.RpcError
+import skein.policy.{Action, Yaw}
+import skein.port.{VehicleError, VehiclePort}
 import skein.signal.Kinematics
 import skein.units.*
+import skein.units.Decimals.fixed
+import skein.vehicle.GoTo
 
 /** Brings one vehicle to a place by velocity commands, turns it to the north on the way, and lets it hover there.
   *
   * Not by position commands: AirSim's hold of a position works only while the vehicle looks north, and at more than 90°
   * of yaw it drives the vehicle away. Each command replaces the one before; at most two are under way.
   */
-private[flight] final class Approach(vehicle: Multirotor, clock: Clock)(using system: ActorSystem):
+private[flight] final class Approach(name: String, vehicle: VehiclePort, clock: Clock)(using
+    system: ActorSystem
+):
   import Approach.*
   import system.dispatcher
-
-  private val moves = MoveQueue(vehicle, _ => ())
 
   /** Until the vehicle hovers within `limits` of the goal.
     *
@@ -26,7 +28,7 @@ private[flight] final class Approach(vehicle: Multirotor, clock: Clock)(using sy
     * @return
     *   how it was seen last; `Left` where a call failed, or the vehicle was not there in twice the time that it needs
     */
-  def to(goalNed: Vector3, limits: Limits): Future[Either[AirSimError, Kinematics]] =
+  def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
     look: start =>
       val way   = (goalNed - start.positionNed).norm
       val until = clock.now() + Span.ofSeconds(2 * way / Cruise.value) + Patience
@@ -37,21 +39,23 @@ private[flight] final class Approach(vehicle: Multirotor, clock: Clock)(using sy
       limits: Limits,
       until: Instant,
       before: Option[Move]
-  ): Future[Either[AirSimError, Kinematics]] =
+  ): Future[Either[String, Kinematics]] =
     look: state =>
       if limits.hold(state, goalNed) then settle(goalNed, limits, until, before)
       else if clock.now() > until then
         val off = (state.positionNed - goalNed).norm
-        park(before).map(_ => Left(AirSimError.NotAtStart(vehicle.name, off, state.velocityNed.norm)))
-      else
-        val velocity = velocityNed(state, goalNed)
-        val move     = moves.send(withdrawn =>
-          vehicle.moveByVelocity(velocity, Lasts, Yaw.Towards(Radians(0)), Some(withdrawn))
+        park(before).map(_ =>
+          Left(
+            s"'$name' did not come to rest at its start: ${off.fixed(1)} m off, at ${state.velocityNed.norm.fixed(2)} m/s; is something in its way?"
+          )
         )
+      else
+        val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goalNed, Cruise)
+        val move     = vehicle.act(Action.Velocity(velocity, Yaw.Towards(Radians(0))), Lasts)
         for
           ended <- replaced(before)
           next  <- ended match
-            case Some(error) => Future.successful(Left(AirSimError.Call(error)))
+            case Some(error) => Future.successful(Left(error.message))
             case None        =>
               after(Every.toDuration)(steer(goalNed, limits, until, Some(move)))
         yield next
@@ -62,43 +66,40 @@ private[flight] final class Approach(vehicle: Multirotor, clock: Clock)(using sy
       limits: Limits,
       until: Instant,
       before: Option[Move]
-  ): Future[Either[AirSimError, Kinematics]] =
-    def watch(looks: Int, good: Int): Future[Either[AirSimError, Kinematics]] = look: state =>
+  ): Future[Either[String, Kinematics]] =
+    def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
       val stays = if limits.hold(state, goalNed) then good + 1 else 0
       if stays == GoodLooks then Future.successful(Right(state))
       else if looks == 1 then steer(goalNed, limits, until, None)
       else after(Every.toDuration)(watch(looks - 1, stays))
     park(before).flatMap:
-      case Some(error) => Future.successful(Left(AirSimError.Call(error)))
+      case Some(error) => Future.successful(Left(error.message))
       case None        => watch(Looks, 0)
 
-  private def park(before: Option[Move]): Future[Option[RpcError]] =
-    val hover = moves.send(_ => vehicle.hover())
+  private def park(before: Option[Move]): Future[Option[VehicleError]] =
+    val hover = vehicle.hover()
     for
       moved <- replaced(before)
       hangs <- hover
     yield moved.orElse(hangs.left.toOption)
 
-  private def replaced(move: Option[Move]): Future[Option[RpcError]] =
+  private def replaced(move: Option[Move]): Future[Option[VehicleError]] =
     move.fold(Future.successful(None))(_.map(_.left.toOption))
 
-  private def look(
-      next: Kinematics => Future[Either[AirSimError, Kinematics]]
-  ): Future[Either[AirSimError, Kinematics]] =
-    vehicle
-      .kinematics()
-      .flatMap:
-        case Left(error)  => Future.successful(Left(AirSimError.Call(error)))
-        case Right(state) => next(state.value)
+  private def look(next: Kinematics => Future[Either[String, Kinematics]])
+      : Future[Either[String, Kinematics]] =
+    vehicle.read().flatMap:
+      case Left(error)  => Future.successful(Left(error.message))
+      case Right(state) => next(state.value)
 
 private[flight] object Approach:
-  private type Move = Future[Either[RpcError, Boolean]]
+  private type Move = Future[Either[VehicleError, Boolean]]
 
   /** How near to its goal a vehicle has to be, how slow, and how well it looks north. */
   final case class Limits(off: Metres, speed: MetresPerSecond, yaw: Radians):
     def hold(state: Kinematics, goalNed: Vector3): Boolean =
       (state.positionNed - goalNed).norm <= off.value &&
-        state.velocityNed.norm <= speed.value && math.abs(yawRad(state.orientation)) <= yaw.value
+        state.velocityNed.norm <= speed.value && math.abs(state.orientation.yawRad) <= yaw.value
 
   /** On the way. */
   val Passing: Limits = Limits(Metres(1), MetresPerSecond(0.5), Radians(math.toRadians(10)))
@@ -119,18 +120,3 @@ private[flight] object Approach:
   /** How often a vehicle that hovers is looked at, and how often in a row it has to be where it should. */
   private val Looks     = 40
   private val GoodLooks = 10
-
-  // A vehicle that follows its command with a lag of 0.9 s, as AirSim's does by `moveByVelocity`, comes to its goal by these
-  // without passing it: 1.5² = 4 · 0.6 · 0.9, nearly.
-  private val PerMetre = 0.6
-  private val Damping  = 0.5
-
-  /** The velocity to command, NED. */
-  def velocityNed(state: Kinematics, goalNed: Vector3): Vector3 =
-    val wanted = (goalNed - state.positionNed) * PerMetre
-    val most   = Cruise.value * (1 + Damping)
-    val within = if wanted.norm > most then wanted * (most / wanted.norm) else wanted
-    within - state.velocityNed * Damping
-
-  private def yawRad(q: Quaternion): Double =
-    StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))

@@ -2,6 +2,8 @@ package skein.flight
 
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Success
 import skein.airsim.*
@@ -10,11 +12,12 @@ import skein.link.*
 import skein.loop.*
 import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
+import skein.port.{SteppedTime, VehiclePort}
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
-import skein.settings.{FlightPlan, FlySettings, PolicyFile, RecordedPlan}
+import skein.settings.{FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
-import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -104,7 +107,7 @@ final class FlightRigs(
       settings.period,
       settings.duration,
       clockKind,
-      simulator.fold("built-in")(_.toString),
+      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else ""),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightRigs.version,
@@ -124,32 +127,14 @@ final class FlightRigs(
     val starting =
       for
         server <- serve()
-        address = server.fold(simulator.get)(opened.closing(_)(_.close()).address)
-        ready <- prepare(address)
-        proxy <- between(plan, address)
-        watch  = Watch(recorder)
-        client = opened.closing(
-          fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), watch)
-        )(_.close())
-        vehicles = ready.zipWithIndex.map((vehicle, index) =>
-          // Altitudes count from where each vehicle starts, as in its own frame.
-          Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
-        )
-        seeing = vehicles.map(vehicle => vehicle.name -> look(plan, vehicle, watch)).toMap
-        crafts = vehicles.map: vehicle =>
-          val craft = AirSimVehicle(
-            vehicle,
-            lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
-          )
-          val isPaused = plan.loop == LoopKind.Paused
-          val seen     = seeing(vehicle.name).map(one =>
-            one.eye.sensor -> (if isPaused then one.looking else one.sensor)
-          )
-          Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
-        _ <- Team.missingSensor(fleet, crafts).fold(client.ping())(missing =>
+        _     = server.foreach(opened.closing(_)(_.close()))
+        watch = Watch(recorder)
+        reached <- settings.wire match
+          case Wire.AirSim  => overAirSim(plan, server.fold(simulator.get)(_.address), opened, watch)
+          case Wire.Mavlink => overMavlink(plan, server, opened)
+        _ <- Team.missingSensor(fleet, reached.crafts).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
-        _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, watch)
       yield
         val loopSettings = settings.loopSettings.copy(seed = plan.seed)
         val planners     =
@@ -159,21 +144,21 @@ final class FlightRigs(
               threads.close()
               Future.successful(Done)
         val finish    = Finish(settings.scenario, plan.loop == LoopKind.Paused, watch)
-        val team      = Team(plan.fleet(settings), crafts, clock, finish, loopSettings, planners)
+        val team      = Team(plan.fleet(settings), reached.crafts, clock, finish, loopSettings, planners)
         val startedAt = clock.now()
         val vigil     = Vigil(
           watch,
           clock,
           startedAt,
           Vigil.within(settings.period, FlightRigs.askTimeout),
-          address.toString,
-          () => FlightRigs.startedAgain(vehicles, address),
+          reached.where,
+          reached.isOther,
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(
           plan.loop,
           team,
-          Some(AirSimTime(client)),
+          reached.time,
           settings.duration,
           clock,
           finish,
@@ -181,7 +166,7 @@ final class FlightRigs(
         )
         finish.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
-          for one <- seeing.values.flatten do
+          for one <- reached.seeing do
             opened.closing(one)(_.close()): Unit
             one.run()
         vigil.over(flight)
@@ -200,6 +185,79 @@ final class FlightRigs(
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
       .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
 
+  private def overAirSim(plan: FlightPlan, address: Address, opened: Opened, watch: Watch): Future[Reached] =
+    for
+      ready <- prepare(address)
+      proxy <- between(plan, address)
+      client = opened.closing(
+        fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), watch)
+      )(_.close())
+      vehicles = ready.zipWithIndex.map((vehicle, index) =>
+        // Altitudes count from where each vehicle starts, as in its own frame.
+        Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
+      )
+      seeing = vehicles.map(look(plan, _, watch))
+      crafts = vehicles.zip(seeing).map: (vehicle, eyes) =>
+        val craft = AirSimVehicle(
+          vehicle,
+          lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+        )
+        val isPaused = plan.loop == LoopKind.Paused
+        val seen = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
+        Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
+      _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, watch)
+    yield Reached(
+      crafts,
+      Some(AirSimTime(client)),
+      address.toString,
+      () => client.ping(),
+      () => FlightRigs.startedAgain(vehicles, address),
+      seeing.flatten
+    )
+
+  /** By a connection of bytes to a simulator of its own, by datagrams to any other. */
+  private def overMavlink(
+      plan: FlightPlan,
+      server: Option[SimulatorServer],
+      opened: Opened
+  ): Future[Reached] =
+    val at                                      = server.flatMap(_.mavlinkAddress).orElse(simulator).get
+    val by                                      = if server.isDefined then transport else UdpTransport()
+    def plain()                                 = by.connect(at)
+    def linked: Flow[ByteString, ByteString, ?] =
+      if plan.link == LatencyProfile.none then plain()
+      else
+        EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+          .connection(TransportError.Lost(at, "the link broke"))
+          .join(plain())
+    val origin                                 = server.map(_ => WorldSettings.DefaultOrigin)
+    val mavlink                                = MavlinkFleet(fleet, clock, origin, plain)
+    def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
+    for
+      _ <-
+        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightRigs.noSteps)) else Future.unit
+      _                <- mavlink.prepare().map(right)
+      (link, vehicles) <- mavlink.open(linked).map(right)
+    yield
+      val _ = opened.closing(link)(_.close())
+      Reached(vehicles, None, at.toString, () => Future.unit, () => Future.successful(Right(None)))
+
+  /** @param where
+    *   the vehicles are, for a person
+    * @param isOther
+    *   see [[Vigil]]
+    * @param seeing
+    *   what recognises in their cameras' images
+    */
+  private final case class Reached(
+      crafts: Vector[VehiclePort],
+      time: Option[SteppedTime],
+      where: String,
+      ping: () => Future[Any],
+      isOther: () => Future[Either[String, Option[String]]],
+      seeing: Vector[Seeing] = Vector.empty
+  )
+
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)
     else
@@ -211,7 +269,9 @@ final class FlightRigs(
           SimulatorSettings(
             WorldSettings(vehicles, text = WorldSettings.render(vehicles, settings.scenario.equipment)),
             FlightRigs.anyPort,
-            scene = settings.world.scene
+            scene = settings.world.scene,
+            mavlink =
+              Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen = Some(FlightRigs.anyPort)))
           ),
           transport,
           clock
@@ -252,7 +312,7 @@ final class FlightRigs(
     val prepared    = if simulator.isDefined then preparation.climb(fleet) else preparation.place(fleet)
     prepared
       .flatMap(result => client.close().map(_ => result))
-      .map(_.fold(error => throw CannotFly(error.message), identity))
+      .map(_.fold(reason => throw CannotFly(reason), identity))
 
   /** The emulated link, if the flight is to have one. */
   private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
@@ -309,6 +369,9 @@ object FlightRigs:
               s"the simulator at $simulator no longer gives $name to this flight: it was started again, or another took api control away"
             ))
           case None => answers.collectFirst { case Left(error) => error.message }.toLeft(None)
+
+  private val noSteps =
+    "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"
 
   private val anyPort = Address("127.0.0.1", 0)
 

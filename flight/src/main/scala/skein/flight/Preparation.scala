@@ -11,11 +11,12 @@ import skein.units.*
   * the place where each vehicle's own frame has its origin.
   */
 final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorSystem):
+  import Climb.NotReady
   import Preparation.*
   import system.dispatcher
 
   /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
-  def place(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def place(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
     everyVehicle(fleet): (vehicle, agent) =>
       for
         _ <- call(vehicle.enableApiControl())
@@ -23,34 +24,24 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
         _ <- call(vehicle.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
       yield vehicle
 
-  /** Flies there, all vehicles at once, and waits until all are at rest and look north. For any simulator, in whatever
-    * state it is found: what a vehicle has is not taken again, since a vehicle that flies in AirSim falls if api control is
-    * taken anew. Those on the ground take off; those in the air, wherever the flight before has left them, first climb
-    * straight to a layer of their own, above all starts, and cross over in it when all have come to theirs; when all have
-    * crossed over, they go down. So no way crosses another at one altitude.
+  /** Flies there by [[Climb]]. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
+    * since a vehicle that flies in AirSim falls if api control is taken anew. Those on the ground take off.
     */
-  def climb(fleet: Fleet): Future[Either[AirSimError, Vector[Multirotor]]] = prepared:
+  def climb(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
     for
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
-      vehicles <- everyVehicle(fleet)((vehicle, agent) =>
-        Future.successful(
-          Starting(
-            vehicle,
-            agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
-            Approach(vehicle, clock)
-          )
+      vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
+      _        <- Climb.fly(vehicles.map((vehicle, agent) =>
+        Climb.Starting(
+          agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
+          Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock),
+          () => leaveGround(vehicle)
         )
-      )
-      highest = vehicles.map(_.startNed.z).min
-      layers  = vehicles.indices.map(index => highest - (index + 1) * LayerM)
-      _ <- Future.traverse(vehicles.zip(layers))(offTheGround)
-      _ <- Future.traverse(vehicles.zip(layers))(across)
-      _ <- Future.traverse(vehicles)(one => go(one, one.startNed, Approach.AtRest))
-    yield vehicles.map(_.vehicle)
+      ))
+    yield vehicles.map(_._1)
 
-  private def offTheGround(one: Starting, layerDownM: Double): Future[Unit] =
-    val vehicle = one.vehicle
+  private def leaveGround(vehicle: Multirotor): Future[Vector3] =
     for
       status     <- call(vehicle.status()).map(_.value)
       controlled <- call(vehicle.isApiControlEnabled())
@@ -61,40 +52,23 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
       // AirSim stops short of the take-off height and answers false; the position is what counts.
       _     <- if stands then call(vehicle.takeoff()) else Future.unit
       above <- call(vehicle.kinematics()).map(_.value.positionNed)
-      _     <- go(one, above.copy(z = layerDownM), Approach.Passing)
-    yield ()
-
-  /** For those that are in their layer. */
-  private def across(one: Starting, layerDownM: Double): Future[Unit] =
-    go(one, one.startNed.copy(z = layerDownM), Approach.Passing)
-
-  private def go(one: Starting, goalNed: Vector3, limits: Approach.Limits): Future[Unit] =
-    one.approach.to(goalNed, limits).map(_.fold(error => throw NotReady(error), _ => ()))
+    yield above
 
   private def everyVehicle[A](fleet: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>
       Multirotor
         .named(client, agent.name)
         .flatMap:
-          case Left(error)    => Future.failed(NotReady(error))
+          case Left(error)    => Future.failed(NotReady(error.message))
           case Right(vehicle) => use(vehicle, agent)
 
-  private def prepared[A](preparing: => Future[A]): Future[Either[AirSimError, A]] =
-    preparing.map(Right(_)).recover { case NotReady(error) => Left(error) }
+  private def prepared[A](preparing: => Future[A]): Future[Either[String, A]] =
+    preparing.map(Right(_)).recover { case NotReady(reason) => Left(reason) }
 
   private def call[A](answer: Future[Either[RpcError, A]]): Future[A] = answer.map:
     case Right(value) => value
-    case Left(error)  => throw NotReady(AirSimError.Call(error))
-
-  /** Carries an expected error out of a chain of calls. */
-  private case class NotReady(error: AirSimError) extends RuntimeException(error.message)
+    case Left(error)  => throw NotReady(AirSimError.Call(error).message)
 
 object Preparation:
-  /** A vehicle on its way to its start, world NED. */
-  private final case class Starting(vehicle: Multirotor, startNed: Vector3, approach: Approach)
-
-  /** From one vehicle's layer to the next, m: more than a vehicle passes its goal by. */
-  private val LayerM = 5.0
-
   /** What AirSim still takes for no speed, m/s. */
   private val StillMps = 0.05

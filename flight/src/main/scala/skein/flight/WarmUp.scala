@@ -7,7 +7,7 @@ import skein.link.Transport
 import skein.loop.Outcome
 import skein.loop.planning.BackgroundThread
 import skein.record.MemoryRecorder
-import skein.settings.{FlySettings, OutsidePolicy}
+import skein.settings.{FlySettings, OutsidePolicy, Wire}
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -73,6 +73,8 @@ object WarmUp:
   ): Future[Either[String, Int]] =
     import system.dispatcher
     val alone = settings.copy(
+      // Vehicles by MAVLink climb to their starts first, which would take a minute.
+      wire = Wire.AirSim,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)

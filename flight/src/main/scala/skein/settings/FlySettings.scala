@@ -29,6 +29,8 @@ import skein.vehicle.ReducedModel
   *   what is done where the deadline is missed
   * @param scene
   *   what stands in the built-in simulator's world; without one, what the scenario says
+  * @param wire
+  *   what the vehicles are spoken to by
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -43,7 +45,8 @@ final case class FlySettings(
     fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,
     planning: PlanSettings = PlanSettings(),
-    scene: Option[NamedScene] = None
+    scene: Option[NamedScene] = None,
+    wire: Wire = Wire.AirSim
 ):
 
   /** What stands in the world. */
@@ -173,6 +176,9 @@ object FlySettings:
       settings.fleet.agents.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
         s"${settings.scenario.name}: expected starts above 0 and up to $MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
+      Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
+        "wire: mavlink flies no loop paused, since its vehicles' time does not pass in steps; name other loops"
+      ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
@@ -211,6 +217,7 @@ object FlySettings:
   private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
+  private given ConfigReader[Wire] = parsed("wire", Wire.parse)
 
   private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 

@@ -47,7 +47,7 @@ final class Operator(
       _ = server = Some(started)
       _ = ran :+= Run(clock.now(), Span.Zero - clockJump)
       prepared <- asking(client => Preparation(client, clock).place(scenario))
-    yield prepared.fold(error => throw IllegalStateException(error.message), identity)
+    yield prepared.fold(reason => throw IllegalStateException(reason), identity)
 
   def restart(restart: Restart): Future[Done] =
     for

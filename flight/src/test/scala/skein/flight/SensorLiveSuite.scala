@@ -50,7 +50,7 @@ class SensorLiveSuite extends munit.FunSuite:
       client =
         AirSimClient(RpcClient(TcpTransport(), server.address, Clock.system, FlightRigs.rpcSettings(kind)))
       ready <-
-        Preparation(client, Clock.system).place(fleet).map(_.fold(error => fail(error.message), identity))
+        Preparation(client, Clock.system).place(fleet).map(_.fold(fail(_), identity))
       ports = ready.map(AirSimVehicle(_, _ => ()))
       landed <- flight.start(ports, recorder, Some(AirSimTime(client))).landed
       _ = assertEquals(landed.outcome, Outcome.Completed)

@@ -25,7 +25,7 @@ private[simulator] object Detections:
         ) && (thing.place.position - view.place.position).norm <= radiusM
       yield
         val (least, most) = thing.bounds
-        val place         = Globe.locate(thing.place.position, origin)
+        val place         = origin.locate(thing.place.position)
         DetectionInfo(
           thing.name,
           GeoPoint(place),

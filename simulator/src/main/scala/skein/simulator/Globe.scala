@@ -1,42 +1,11 @@
 package skein.simulator
 
-import skein.units.{GeoLocation, Metres, Vector3}
+import skein.units.{GeoLocation, Vector3}
 
 /** The Earth as AirSim has it: a sphere with a standard atmosphere and a magnetic dipole (`EarthUtils`). */
 private[simulator] object Globe:
-  /** m */
-  val RadiusM = 6378137.0
-
   /** Pa */
   val SeaLevelPressure = 101325.0
-
-  /** The geographic place of a point given in NED, m, around `origin`. */
-  def locate(pointNed: Vector3, origin: GeoLocation): GeoLocation =
-    val altitude = Metres(origin.altitude.value - pointNed.z)
-    val north    = pointNed.x / RadiusM
-    val east     = pointNed.y / RadiusM
-    val angle    = StrictMath.hypot(north, east)
-    if angle < 1e-12 then origin.copy(altitude = altitude)
-    else
-      val latitude = math.toRadians(origin.latitudeDeg)
-      val sine     = StrictMath.sin(angle) / angle
-      val there    = StrictMath.asin(
-        StrictMath.cos(angle) * StrictMath.sin(latitude) + north * sine * StrictMath.cos(latitude)
-      )
-      val around = StrictMath.atan2(
-        east * sine,
-        StrictMath.cos(latitude) * StrictMath.cos(angle) - north * StrictMath.sin(latitude) * sine
-      )
-      GeoLocation(math.toDegrees(there), origin.longitudeDeg + math.toDegrees(around), altitude)
-
-  /** The point in NED, m, around `origin` of a nearby place (`GeodeticToNedFast`). */
-  def toNed(place: GeoLocation, origin: GeoLocation): Vector3 = Vector3(
-    math.toRadians(place.latitudeDeg - origin.latitudeDeg) * RadiusM,
-    math.toRadians(place.longitudeDeg - origin.longitudeDeg) * RadiusM * StrictMath.cos(
-      math.toRadians(place.latitudeDeg)
-    ),
-    origin.altitude.value - place.altitude.value
-  )
 
   /** Standard temperature below 11 km, K. */
   def temperatureK(altitudeM: Double): Double = 288.15 - 6.5 * geopotentialKm(altitudeM)
@@ -64,7 +33,10 @@ private[simulator] object Globe:
         pole
       ) + StrictMath.sin(latitude) * StrictMath.sin(pole) * StrictMath.cos(fromPole)
     val colatitude = StrictMath.acos(cosColat)
-    val strength   = 0.312 * StrictMath.pow(RadiusM / (RadiusM + place.altitude.value), 3) *
+    val strength   = 0.312 * StrictMath.pow(
+      GeoLocation.EarthRadiusM / (GeoLocation.EarthRadiusM + place.altitude.value),
+      3
+    ) *
       math.sqrt(1 + 3 * cosColat * cosColat)
     val ratio       = StrictMath.cos(pole) / StrictMath.sin(colatitude)
     val declination =
@@ -80,5 +52,5 @@ private[simulator] object Globe:
 
   private def geopotentialKm(altitudeM: Double): Double =
     val kilometres = altitudeM / 1000
-    val radius     = RadiusM / 1000
+    val radius     = GeoLocation.EarthRadiusM / 1000
     radius * kilometres / (radius + kilometres)

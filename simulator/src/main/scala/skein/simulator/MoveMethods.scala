@@ -48,7 +48,7 @@ private[simulator] object MoveMethods:
           ) =>
         val travel = Travel(drivetrain, yaw, lookahead, adaptive)
         fly(simulation, name): vehicle =>
-          val there = Globe.toNed(GeoLocation(latitude, longitude, Metres(altitude)), vehicle.home)
+          val there = GeoLocation(latitude, longitude, Metres(altitude)).nedFrom(vehicle.home)
           PathMove.order(Seq(there), speed, timeout, travel)(vehicle)
     ,
     many[(Seq[Vector3r], Float, Float, Int, YawMode, Float, Float, String)]("moveOnPath"):

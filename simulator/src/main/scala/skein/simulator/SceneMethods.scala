@@ -89,7 +89,7 @@ private[simulator] object SceneMethods:
     none("simGetWorldExtents"): simulation =>
       def corner(sign: Int, down: Double) =
         val there =
-          Globe.locate(Vector3(sign * ExtentM, sign * ExtentM, down), simulation.settings.world.origin)
+          simulation.settings.world.origin.locate(Vector3(sign * ExtentM, sign * ExtentM, down))
         GeoPoint(there.latitudeDeg, there.longitudeDeg, there.altitude.value.toFloat)
       answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
     ,
@@ -137,7 +137,5 @@ private[simulator] object SceneMethods:
       state.angular_acceleration.toVector.norm <= 1e6
 
   private def place(simulation: Simulated, point: GeoPoint): Vector3 =
-    Globe.toNed(
-      GeoLocation(point.latitude, point.longitude, Metres(point.altitude)),
-      simulation.settings.world.origin
-    )
+    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
+      .nedFrom(simulation.settings.world.origin)

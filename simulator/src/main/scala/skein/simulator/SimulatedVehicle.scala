@@ -20,7 +20,7 @@ final private[simulator] class SimulatedVehicle(
     worldOrigin: GeoLocation
 ):
   /** The start on the globe. */
-  val home: GeoLocation = Globe.locate(settings.startNed, worldOrigin)
+  val home: GeoLocation = worldOrigin.locate(settings.startNed)
 
   val state: QuadrotorState = quadrotor.landed(Vector3.Zero, settings.yaw.value)
 
@@ -231,7 +231,7 @@ final private[simulator] class SimulatedVehicle(
   /** Velocity at `at`, carried on likewise. */
   def velocityAt(at: Instant): Vector3 = state.velocityNed + state.accelerationNed * sinceSample(at)
 
-  def locationAt(at: Instant): GeoLocation = Globe.locate(positionAt(at), home)
+  def locationAt(at: Instant): GeoLocation = home.locate(positionAt(at))
 
   /** Time since its start or its last reset. */
   def upFor(at: Instant): Span = at.since(resetAt)

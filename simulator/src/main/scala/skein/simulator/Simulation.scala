@@ -99,6 +99,10 @@ final class Simulation(
 
   def isPaused: Boolean = paused && continuing.isEmpty
 
+  /** When, told as time, its clock will show this; None while it stands still. */
+  private[simulator] def comesTo(simulated: Instant): Option[Instant] =
+    Option.unless(paused || continuing.nonEmpty)(wallTime(simulated))
+
   /** Simulated time that was skipped because it was too much to compute at once: the simulator's clock is that much
     * behind.
     */

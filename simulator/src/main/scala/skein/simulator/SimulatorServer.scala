@@ -5,6 +5,8 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.scaladsl.{Behaviors, TimerScheduler}
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import org.apache.pekko.stream.BoundedSourceQueue
+import org.apache.pekko.util.ByteString
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
@@ -31,11 +33,15 @@ final class SimulatorServer private (
     simulator: ActorRef[SimulatorServer.Message],
     lines: CallLines[?],
     behindNanos: AtomicLong,
-    broken: Future[Throwable]
+    broken: Future[Throwable],
+    mavlink: Option[MavlinkServer]
 ):
 
   /** Where it listens, with the actual port. */
   def address: Address = server.address
+
+  /** Where it listens for MAVLink by its transport, with the actual port. */
+  def mavlinkAddress: Option[Address] = mavlink.flatMap(_.address)
 
   def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
 
@@ -56,7 +62,9 @@ final class SimulatorServer private (
   /** Stops listening and closes all connections; moves under way are not answered. */
   def close(): Future[Done] =
     simulator ! SimulatorServer.Message.Stop
-    server.close()
+    given ExecutionContext = ExecutionContext.parasitic
+    val mavlinkClosed      = mavlink.fold(Future.successful(Done))(_.close())
+    server.close().flatMap(_ => mavlinkClosed)
 
 object SimulatorServer:
 
@@ -81,6 +89,7 @@ object SimulatorServer:
     val simulator          = system.spawnAnonymous(
       Behaviors.withTimers(Running(
         Simulation(settings, clock.now(), VoxelGrid.save),
+        settings.mavlink.isDefined,
         clock,
         lines,
         work,
@@ -100,7 +109,24 @@ object SimulatorServer:
     for server <- bound; failure <- broken.future do
       system.log.error(failure, "the simulator has failed; it closes its port")
       server.close()
-    bound.map(SimulatorServer(_, simulator, lines, behind, broken.future))
+    val peers = new MavlinkPeers:
+      def joined(channel: Long, systems: Vector[Int], out: BoundedSourceQueue[ByteString]): Unit =
+        simulator ! Message.Joined(channel, systems, out)
+      def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit =
+        simulator ! Message.Heard(channel, bytes, done)
+      def left(channel: Long): Unit = simulator ! Message.Left(channel)
+    for
+      rpc     <- bound
+      mavlink <- settings.mavlink match
+        case None       => Future.successful(None)
+        case Some(open) =>
+          MavlinkServer
+            .start(open, transport, peers)
+            .map(Some(_))
+            .recoverWith: error =>
+              simulator ! Message.Stop
+              rpc.close().transformWith(_ => Future.failed(error))
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, mavlink)
 
   private[simulator] enum Message:
     /** Calls wait. */
@@ -108,6 +134,11 @@ object SimulatorServer:
     case Wake
     case Look(answer: Promise[Truth])
     case Stop
+
+    /** Peers of MAVLink. */
+    case Joined(channel: Long, systems: Vector[Int], out: BoundedSourceQueue[ByteString])
+    case Heard(channel: Long, bytes: Array[Byte], done: Promise[Done])
+    case Left(channel: Long)
 
   final private case class Call(request: RpcRequest, answer: Promise[Either[String, Msg | Encoded]])
 
@@ -119,6 +150,7 @@ object SimulatorServer:
     */
   final private class Running(
       simulation: Simulation,
+      speaksMavlink: Boolean,
       clock: Clock,
       lines: CallLines[Call],
       work: AtomicBoolean,
@@ -128,6 +160,8 @@ object SimulatorServer:
     private val waiting   = mutable.LongMap.empty[Promise[Either[String, Msg | Encoded]]]
     private var nextToken = 0L
     private var wakeAt    = Option.empty[Instant]
+    private val mavlink   = Option.when(speaksMavlink)(MavlinkVehicles(simulation))
+    private val outs      = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
       given ExecutionContext = context.executionContext
@@ -136,9 +170,12 @@ object SimulatorServer:
         takeCalls()
         for answer <- simulation.takeAnswers() do
           waiting.remove(answer.token).foreach(complete(_, answer.result))
+        for vehicles <- mavlink; (channel, datagrams) <- vehicles.take(); out <- outs.get(channel) do
+          datagrams.foreach(bytes => out.offer(ByteString.fromArrayUnsafe(bytes)): Unit)
         behind.set(simulation.behind.toNanos)
-        val now = clock.now()
-        for at <- simulation.nextWake(now) if wakeAt.forall(at < _) do
+        val now  = clock.now()
+        val told = mavlink.flatMap(_.nextDue).flatMap(simulation.comesTo)
+        for at <- (simulation.nextWake(now) ++ told.map(_.max(now))).minOption if wakeAt.forall(at < _) do
           wakeAt = Some(at)
           // A timer is late by up to its scheduler's tick.
           if at <= now then context.self ! Message.Wake
@@ -169,7 +206,22 @@ object SimulatorServer:
             simulation.advance(clock.now())
             answer.success(truth): Unit
             goOn()
-        case Message.Stop => Behaviors.stopped
+        case Message.Stop                          => Behaviors.stopped
+        case Message.Joined(channel, systems, out) =>
+          outs.update(channel, out)
+          orEnd:
+            mavlink.foreach(_.join(channel, systems))
+            goOn()
+        case Message.Heard(channel, bytes, done) =>
+          orEnd:
+            simulation.advance(clock.now())
+            mavlink.foreach(_.receive(channel, bytes))
+            val _ = done.trySuccess(Done)
+            goOn()
+        case Message.Left(channel) =>
+          val _ = outs.remove(channel)
+          mavlink.foreach(_.leave(channel))
+          Behaviors.same
 
     private def truth =
       val world = simulation.world

@@ -28,6 +28,8 @@ enum Overload:
   *   cancelled. AirSim loses a cancel that comes while a move is about to begin
   * @param scene
   *   what stands in the world
+  * @param mavlink
+  *   where its vehicles are reached by MAVLink, too
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -36,7 +38,8 @@ final case class SimulatorSettings(
     speed: Double = 1.0,
     limits: ServerLimits = SimulatorSettings.Limits,
     losesCancel: () => Boolean = () => false,
-    scene: Scene = Scene.Empty
+    scene: Scene = Scene.Empty,
+    mavlink: Option[MavlinkSettings] = None
 ):
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 

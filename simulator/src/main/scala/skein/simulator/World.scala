@@ -33,6 +33,9 @@ final class World(
 
   private var wind = settings.windNed
 
+  private val pilots  = ArrayBuffer.empty[(vehicle: Int, pilot: Pilot)]
+  private var pilotAt = Instant.Epoch
+
   private val scans = Scans(
     for
       (vehicle, index) <- settings.vehicles.zipWithIndex
@@ -60,13 +63,18 @@ final class World(
   /** Length of one step of physics. */
   def step: Span = stepLength
 
+  /** Lets a pilot fly a vehicle; all pilots are asked at the same times. */
+  private[simulator] def attach(vehicle: Int, pilot: Pilot): Unit =
+    pilots += ((vehicle, pilot))
+    pilotAt = clock
+
   /** Advances physics and moves up to this time, in order. Cost: 0.13 µs a vehicle and step. */
   def advanceTo(to: Instant): Unit =
     var due = nextTurn
     while due.exists(_._1 <= to) do
       due.foreach: (at, vehicle) =>
         stepTo(at)
-        takeTurn(vehicle)
+        if vehicle == AllPilots then askPilots() else takeTurn(vehicle)
       due = nextTurn
     stepTo(to)
 
@@ -145,7 +153,12 @@ final class World(
     var next = Option.empty[(Instant, Int)]
     for vehicle <- moves.indices; move <- moves(vehicle) do
       if next.forall(move.dueAt < _._1) then next = Some((move.dueAt, vehicle))
-    next
+    if pilots.nonEmpty && next.forall(pilotAt < _._1) then Some((pilotAt, AllPilots)) else next
+
+  private def askPilots(): Unit =
+    for (vehicle, pilot) <- pilots; setpoint <- pilot.turn(vehicles(vehicle), clock) do
+      vehicles(vehicle).command(setpoint, clock)
+    pilotAt = clock + Move.Period
 
   private def stepTo(to: Instant): Unit =
     while nextStep <= to do
@@ -176,5 +189,8 @@ final class World(
 object World:
   /** A move that has ended, and how: what its call answers. */
   final case class Ended(vehicle: Int, token: Long, result: Boolean)
+
+  /** In the place of a vehicle's number. */
+  private val AllPilots = -1
 
   private case class Running(token: Long, move: Move, startedAt: Instant, dueAt: Instant)

@@ -1,12 +1,10 @@
 package skein.simulator
 
-import java.io.File
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.io.Source
-import scala.sys.process.{Process, ProcessLogger}
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.units.*
@@ -69,48 +67,11 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
     finally
       val _ = Await.result(server.close(), 10.seconds)
 
-/** The official client in a virtual environment of its own, kept in the user's cache under the versions' names. */
-private object OfficialPythonClient:
-  private val client    = Seq("msgpack-rpc-python==0.4.1", "tornado==4.5.3")
-  private val airsim    = "airsim==1.8.1"
-  private val resources = Path.of(getClass.getResource("/airsim-python/fly_square.py").toURI).getParent
-
-  /** The environment's Python, or why there is none. */
-  def install(): Either[String, Path] =
-    val cache =
-      Option(System.getenv("XDG_CACHE_HOME")).fold(Path.of(sys.props("user.home"), ".cache"))(Path.of(_))
-    val home =
-      cache.resolve("skein").resolve((airsim +: client).mkString("python-", "-", "").replace("==", "-"))
-    val bin = home.resolve("bin").resolve("python")
-    if imports(bin) then Right(bin)
-    else
-      for
-        _ <- ran("python3", "-m", "venv", "--clear", home.toString)
-        _ <- pip(bin, "setuptools", "wheel", "msgpack", "numpy")
-        _ <- pip(bin, ("--no-deps" +: client)*)
-        // Its set-up imports the client itself, so it needs the other packages in sight.
-        _ <- pip(bin, "--no-deps", "--no-build-isolation", airsim)
-        _ <- Either.cond(imports(bin), (), "it is installed but cannot be imported")
-      yield bin
-
-  def run(python: Path, script: String, arguments: String*): (Int, String) =
-    val output  = StringBuilder()
-    val command = Seq(python.toString, "-u", resources.resolve(script).toString) ++ arguments
-    val status  = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
-    (status, output.toString)
-
-  private def imports(python: Path): Boolean =
-    Files.exists(python) && ran(python.toString, "-c", "import airsim").isRight
-
-  private def pip(python: Path, packages: String*): Either[String, Unit] =
-    ran(Seq(python.toString, "-m", "pip", "install", "--quiet", "--disable-pip-version-check") ++ packages*)
-
-  private def ran(command: String*): Either[String, Unit] =
-    val output = StringBuilder()
-    try
-      val status = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
-      Either.cond(status == 0, (), s"${command.mkString(" ")}: ${output.toString.takeRight(500)}")
-    catch case e: java.io.IOException => Left(e.getMessage)
-
-  private def process(command: Seq[String]) =
-    Process(command, Option.empty[File], "PYTHONPATH" -> resources.toString)
+private val OfficialPythonClient = PythonEnvironment(
+  imports = "airsim",
+  scripts = "/airsim-python/fly_square.py",
+  Seq("setuptools", "wheel", "msgpack", "numpy"),
+  Seq("--no-deps", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
+  // Its set-up imports the client itself, so it needs the other packages in sight.
+  Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
+)

@@ -12,7 +12,7 @@ class SceneMethodsSuite extends munit.FunSuite:
 
   /** A place in the default world, whose origin is AirSim's home, as latitude, longitude and altitude. */
   private def point(ned: Vector3): Msg =
-    val place = Globe.locate(ned, skein.airsim.WorldSettings.DefaultOrigin)
+    val place = skein.airsim.WorldSettings.DefaultOrigin.locate(ned)
     writeMsg(GeoPoint(place.latitudeDeg, place.longitudeDeg, place.altitude.value.toFloat))
 
   test("a vehicle is added, stands at its start in its own frame, and flies beside the others"):

@@ -1,0 +1,447 @@
+package skein.autopilot
+
+import skein.mavlink.*
+import skein.units.*
+import skein.vehicle.{GoTo, Setpoint}
+
+/** The decisions of an autopilot that behaves to the outside as PX4 does, as values: what it is told and what its vehicle
+  * does goes in, what it answers and what its vehicle is to do comes out. It knows no socket and no clock.
+  *
+  * As PX4's, offboard begins only where setpoints come already, and ends [[Parameters.OffboardLoss]] after the last one:
+  * the vehicle then holds its position, as PX4 does without a remote control where it is told so (`COM_OBL_RC_ACT`).
+  *
+  * @param system
+  *   1 to 255
+  * @param home
+  *   where it started: the origin of its own frame
+  * @param anchor
+  *   the place that its mode flies to, own frame
+  * @param enteredAt
+  *   when it took its mode
+  * @param heardAt
+  *   when the last setpoint came
+  * @param stillSince
+  *   since when it stands still while it lands
+  * @param groundedAt
+  *   since when it is armed and on the ground
+  * @param hasFlown
+  *   whether it has flown since it was armed
+  */
+final case class Autopilot(
+    system: Int,
+    home: GeoLocation,
+    mode: FlightMode = FlightMode.Hold,
+    isArmed: Boolean = false,
+    parameters: Parameters = Parameters(),
+    mission: Mission = Mission(),
+    upload: Option[Upload] = None,
+    anchor: Vector3 = Vector3.Zero,
+    turn: Target.Turn = Target.Turn.None,
+    enteredAt: Span = Span.Zero,
+    target: Option[Target] = None,
+    heardAt: Option[Span] = None,
+    stillSince: Option[Span] = None,
+    groundedAt: Span = Span.Zero,
+    hasFlown: Boolean = false,
+    cruise: Option[Double] = None
+) extends Status:
+  import Autopilot.*
+  import Numbers.{Command, Result, Severity}
+
+  /** What comes of a message that is meant for this vehicle, or for all.
+    *
+    * @param from
+    *   system and component of the sender
+    */
+  def heard(message: Message, from: (system: Int, component: Int), motion: Motion): Heard =
+    message match
+      case one: CommandLong =>
+        val numbers =
+          Vector(one.param1, one.param2, one.param3, one.param4, one.param5, one.param6, one.param7)
+        acknowledged(Order(one.command, numbers.map(_.toDouble), None), from, motion)
+      case one: CommandInt =>
+        val numbers = Vector(one.param1, one.param2, one.param3, one.param4).map(_.toDouble) ++
+          Vector(one.x * 1e-7, one.y * 1e-7, one.z.toDouble)
+        acknowledged(Order(one.command, numbers, Some(one.frame)), from, motion)
+      case Timesync(0, theirs, _, _)       => Heard(this, Vector(Timesync(motion.sinceBoot.toNanos, theirs)))
+      case ParamRequestList(_, _)          => Heard(this, parameters.all)
+      case ParamRequestRead(_, _, name, n) => Heard(this, parameters.one(name, n).toVector)
+      case ParamSet(_, _, name, value, _)  =>
+        parameters.set(name, value) match
+          case Left(why)           => refused(why)
+          case Right((next, told)) => Heard(copy(parameters = next), news = Vector(told))
+      case MissionRequestList(_, _, kind) =>
+        val count = if kind == Mission.Kind then mission.items.size else 0
+        Heard(this, Vector(MissionCount(from.system, from.component, count, kind)))
+      case MissionRequestInt(_, _, seq, Mission.Kind) =>
+        Heard(
+          this,
+          Vector(mission.items.lift(seq) match
+            case Some(item) =>
+              item.copy(targetSystem = from.system, targetComponent = from.component, seq = seq)
+            case None => MissionAck(from.system, from.component, Mission.Ack.OutOfOrder))
+        )
+      case MissionCount(_, _, count, kind) => receive(count, kind, from, motion)
+      case item: MissionItemInt            => receive(item, from, motion)
+      case MissionClearAll(_, _, kind)     =>
+        val cleared = if kind == Mission.Kind then copy(mission = Mission(), upload = None) else this
+        Heard(cleared, Vector(MissionAck(from.system, from.component, Mission.Ack.Accepted, kind)))
+      case MissionSetCurrent(_, _, seq) =>
+        if mission.items.isDefinedAt(seq) then
+          val next = copy(mission = mission.from(seq))
+          Heard(next, news = Vector(next.mission.told))
+        else refused(s"no mission item $seq")
+      case setpoint =>
+        Target.of(setpoint, home) match
+          case None                => Heard(this)
+          case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
+          case Some(Left(why))     => refused(why)
+
+  /** What the vehicle is to do now, to be asked every 20 ms and after what was heard. None where it was never armed. */
+  def steer(motion: Motion): (heard: Heard, setpoint: Option[Setpoint]) =
+    val (asked, texts) = uploading(motion)
+    val (after, told)  = asked.onItsOwn(motion)
+    (Heard(after, news = texts ++ told), after.goal(motion))
+
+  /** In its own clock's time, whether setpoints come. */
+  def isCommanded(motion: Motion): Boolean =
+    heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
+
+  private def refused(why: String): Heard = Heard(this, Vector(text(Severity.Critical, why)))
+
+  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: Motion): Heard =
+    def ack(result: Int) =
+      CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
+    obey(order, motion) match
+      case Left(Refusal(result, why)) =>
+        Heard(this, Vector(ack(result)), Vector(text(Severity.Critical, why)))
+      case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
+
+  private def obey(order: Order, motion: Motion): Either[Refusal, Heard] = order.command match
+    case Command.Arm if order.isOne(0)       => arm(motion)
+    case Command.Arm                         => disarm(motion, order.numbers(1) == Numbers.Force)
+    case Command.Terminate if order.isOne(0) => disarm(motion, isForced = true)
+    case Command.Takeoff                     =>
+      val above = order.numbers(6)
+      val down  =
+        if above.isFinite && above > home.altitude.value + 0.1 then home.altitude.value - above
+        else motion.state.positionNed.z - parameters(Parameters.TakeoffAltitude)
+      enter(FlightMode.Takeoff, motion).map(heard =>
+        heard.copy(next = heard.next.copy(anchor = motion.state.positionNed.copy(z = down)))
+      )
+    case Command.Land            => enter(FlightMode.Land, motion)
+    case Command.ReturnToLaunch  => enter(FlightMode.Return, motion)
+    case Command.LoiterUnlimited => enter(FlightMode.Hold, motion)
+    case Command.SetMode         =>
+      val (main, sub) = (order.whole(1), order.whole(2))
+      FlightMode
+        .of(main, sub)
+        .toRight(Refusal(Result.Denied, s"mode $main/$sub unsupported"))
+        .flatMap(enter(_, motion))
+    case Command.StartMission =>
+      val first = order.whole(0)
+      for
+        entered <- copy(mission = mission.from(first.max(0))).enter(FlightMode.Mission, motion)
+      yield entered
+    case Command.ChangeSpeed =>
+      val speed = order.numbers(1)
+      if speed > 0 && speed <= Parameters.Cruise.most then Right(Heard(copy(cruise = Some(speed))))
+      else Left(Refusal(Result.Denied, s"speed: expected up to ${Parameters.Cruise.most} m/s"))
+    case Command.Reposition          => reposition(order, motion)
+    case Command.GetHome             => Right(Heard(this, Vector(Telemetry.home(this))))
+    case Command.RequestCapabilities => Right(Heard(this, Vector(Telemetry.version(this))))
+    case Command.RequestMessage      =>
+      Telemetry
+        .of(order.whole(0), this, motion)
+        .map(message => Heard(this, Vector(message)))
+        .toRight(Refusal(Result.Unsupported, s"message ${order.whole(0)} unsupported"))
+    case Command.SetMessageInterval =>
+      val id = order.whole(0)
+      if Telemetry.intervals.contains(id) then Right(Heard(this, interval = Some((id, order.numbers(1)))))
+      else Left(Refusal(Result.Unsupported, s"message $id unsupported"))
+    case other => Left(Refusal(Result.Unsupported, s"command $other unsupported"))
+
+  private def arm(motion: Motion): Either[Refusal, Heard] =
+    if isArmed then Right(Heard(this))
+    else if mode == FlightMode.Land || mode == FlightMode.Return then
+      Left(Refusal(Result.Rejected, s"Arming denied: switch out of ${mode.title} mode first"))
+    else
+      Right(Heard(
+        copy(
+          isArmed = true,
+          hasFlown = false,
+          groundedAt = motion.sinceBoot,
+          anchor = motion.state.positionNed,
+          cruise = None
+        ),
+        news = Vector(text(Severity.Info, "Armed by external command"))
+      ))
+
+  private def disarm(motion: Motion, isForced: Boolean): Either[Refusal, Heard] =
+    if isArmed && motion.isFlying && !isForced then
+      Left(Refusal(Result.Rejected, "Disarming denied: not landed"))
+    else
+      Right(disarmed(if isForced && motion.isFlying then "Kill: motors are off"
+      else "Disarmed by external command"))
+
+  private def disarmed(why: String): Heard = Heard(
+    copy(isArmed = false, mode = FlightMode.Hold, stillSince = None, target = None, cruise = None),
+    news = if isArmed then Vector(text(Severity.Info, why)) else Vector.empty
+  )
+
+  private def reposition(order: Order, motion: Motion): Either[Refusal, Heard] =
+    val here = motion.state.positionNed
+    // A command without a frame has PX4's: above the sea.
+    Target.heightOf(order.frame.getOrElse(Numbers.Frame.Global), order.numbers(6), home) match
+      case None           => Left(Refusal(Result.Denied, s"frame ${order.frame.getOrElse(0)} unsupported"))
+      case Some(altitude) =>
+        val place = GeoLocation(order.numbers(4), order.numbers(5), altitude).nedFrom(home)
+        val goal  = Vector3(
+          if place.x.isFinite then place.x else here.x,
+          if place.y.isFinite then place.y else here.y,
+          if place.z.isFinite then place.z else here.z
+        )
+        val yaw = order.numbers(3)
+        enter(FlightMode.Hold, motion).map(heard =>
+          heard.copy(next =
+            heard.next.copy(
+              anchor = goal,
+              turn = if yaw.isFinite then Target.Turn.Towards(yaw) else Target.Turn.None
+            )
+          )
+        )
+
+  /** Takes a mode, or says why not. */
+  private def enter(wanted: FlightMode, motion: Motion): Either[Refusal, Heard] =
+    def rejected(why: String) = Left(Refusal(Result.Rejected, s"Switching to ${wanted.title} denied: $why"))
+    wanted match
+      case FlightMode.Offboard if !isCommanded(motion) => rejected("no offboard setpoints")
+      case FlightMode.Mission if mission.items.isEmpty => rejected("no valid mission available")
+      case FlightMode.Mission if !mission.items.isDefinedAt(mission.current) && !mission.isOver =>
+        rejected(s"no mission item ${mission.current}")
+      case FlightMode.Takeoff | FlightMode.Mission if !isArmed => rejected("vehicle is disarmed")
+      case _                                                   =>
+        val again = if wanted == FlightMode.Mission && mission.isOver then mission.from(0) else mission
+        Right(Heard(
+          copy(
+            mode = wanted,
+            enteredAt = motion.sinceBoot,
+            // What it held, it goes on holding.
+            anchor = if mode == FlightMode.Hold && wanted == mode then anchor else motion.state.positionNed,
+            turn = Target.Turn.None,
+            stillSince = None,
+            mission = again
+          )
+        ))
+
+  private def receive(
+      count: Int,
+      kind: Int,
+      from: (system: Int, component: Int),
+      motion: Motion
+  ): Heard =
+    def ack(result: Int) = Vector(MissionAck(from.system, from.component, result, kind))
+    if kind != Mission.Kind then Heard(this, ack(Mission.Ack.Unsupported))
+    else if count > Mission.Most then
+      Heard(
+        this,
+        ack(Mission.Ack.NoSpace),
+        Vector(text(Severity.Critical, s"mission: at most ${Mission.Most} items"))
+      )
+    else if count == 0 then Heard(copy(mission = Mission(), upload = None), ack(Mission.Ack.Accepted))
+    else
+      val begun = Upload(from.system, from.component, count, Vector.empty, motion.sinceBoot, tries = 1)
+      Heard(copy(upload = Some(begun)), Vector(begun.question))
+
+  private def receive(item: MissionItemInt, from: (system: Int, component: Int), motion: Motion): Heard =
+    upload match
+      case Some(going) if going.system == from.system && item.missionType == Mission.Kind =>
+        if item.seq != going.items.size then Heard(this, Vector(going.question))
+        else
+          Mission.mistake(item) match
+            case Some((kind, why)) =>
+              Heard(copy(upload = None), Vector(going.ack(kind)), Vector(text(Severity.Critical, why)))
+            case None =>
+              val more = going.copy(items = going.items :+ item, askedAt = motion.sinceBoot, tries = 1)
+              if more.items.size < more.count then Heard(copy(upload = Some(more)), Vector(more.question))
+              else
+                Heard(
+                  copy(upload = None, mission = Mission(more.items)),
+                  Vector(more.ack(Mission.Ack.Accepted))
+                )
+      case _ => Heard(this, Vector(MissionAck(from.system, from.component, Mission.Ack.OutOfOrder)))
+
+  private def uploading(motion: Motion): (Autopilot, Vector[Message]) = upload match
+    case Some(going) if (motion.sinceBoot - going.askedAt) >= Upload.AskAgain =>
+      if going.tries >= Upload.MostTries then
+        (
+          copy(upload = None),
+          Vector(going.ack(Mission.Ack.Cancelled), text(Severity.Warning, "mission: upload given up"))
+        )
+      else
+        val again = going.copy(askedAt = motion.sinceBoot, tries = going.tries + 1)
+        (copy(upload = Some(again)), Vector(again.question))
+    case _ => (this, Vector.empty)
+
+  /** What it does without being told. */
+  private def onItsOwn(motion: Motion): (Autopilot, Vector[Message]) =
+    val now = motion.sinceBoot
+    if !isArmed then (this, Vector.empty)
+    else
+      val noted =
+        if motion.isFlying then copy(hasFlown = true, groundedAt = now)
+        else this
+      val onGround = (now - noted.groundedAt).toSeconds
+      val limit = parameters(if noted.hasFlown then Parameters.DisarmLanded else Parameters.DisarmPreflight)
+      if !motion.isFlying && limit >= 0 && onGround > limit && !noted.isRising then
+        val off = noted.disarmed("Disarmed by auto preflight or landing detection")
+        (off.next, off.news)
+      else noted.proceed(motion)
+
+  /** On the ground only for as long as the rotors take. */
+  private def isRising: Boolean = mode == FlightMode.Takeoff || mode == FlightMode.Mission
+
+  private def proceed(motion: Motion): (Autopilot, Vector[Message]) =
+    val state = motion.state
+    val here  = state.positionNed
+    mode match
+      case FlightMode.Offboard if !isCommanded(motion) =>
+        (holding(motion), Vector(text(Severity.Critical, "Offboard control lost: switching to Hold")))
+      case FlightMode.Takeoff if math.abs(here.z - anchor.z) < NearM =>
+        (copy(mode = FlightMode.Hold, enteredAt = motion.sinceBoot), Vector.empty)
+      case FlightMode.Return
+          if (here - Vector3(0, 0, here.z)).norm < NearM && math.abs(state.velocityNed.z) < 1 =>
+        (copy(mode = FlightMode.Land, anchor = Vector3.Zero.copy(z = here.z)), Vector.empty)
+      case FlightMode.Land =>
+        val isStill = math.abs(state.velocityNed.z) < StillMps
+        (copy(stillSince = if isStill then stillSince.orElse(Some(motion.sinceBoot)) else None), Vector.empty)
+      case FlightMode.Mission => followed(motion)
+      case _                  => (this, Vector.empty)
+
+  private def holding(motion: Motion): Autopilot = copy(
+    mode = FlightMode.Hold,
+    enteredAt = motion.sinceBoot,
+    anchor = motion.state.positionNed,
+    turn = Target.Turn.None
+  )
+
+  private def followed(motion: Motion): (Autopilot, Vector[Message]) = mission.item match
+    case None =>
+      (holding(motion), Vector(text(Severity.Info, "Mission finished, loitering")))
+    case Some(item) =>
+      import Command.*
+      val now                      = motion.sinceBoot
+      val here                     = motion.state.positionNed
+      def reached(next: Autopilot) =
+        val last = next.mission
+        (next, Vector(MissionItemReached(mission.current), last.told))
+      def after(seconds: Double) =
+        val since = mission.reachedAt.getOrElse(now)
+        if (now - since).toSeconds >= seconds then reached(copy(mission = mission.next))
+        else (copy(mission = mission.copy(reachedAt = Some(since))), Vector.empty)
+      item.command match
+        case ChangeSpeed =>
+          reached(copy(mission = mission.next, cruise = Some(item.param2.toDouble).filter(_ > 0)))
+        case Delay          => after(item.param1)
+        case ReturnToLaunch =>
+          reached(copy(mission = mission.next, mode = FlightMode.Return, enteredAt = now))
+        case command =>
+          val place = Mission.place(item, home, mission.reachedAt.fold(anchor)(_ => anchor))
+          val goal  = if command == Land then place.copy(z = here.z) else place
+          val near  = math.max(
+            if item.param2 > 0 && command == Waypoint then item.param2.toDouble
+            else parameters(Parameters.AcceptanceRadius),
+            NearM
+          )
+          if (here - goal).norm > (if command == Takeoff then NearM else near) && mission.reachedAt.isEmpty
+          then
+            (this, Vector.empty)
+          else
+            command match
+              case Land =>
+                reached(copy(mission = mission.next, mode = FlightMode.Land, anchor = goal, enteredAt = now))
+              case LoiterUnlimited => after(Double.PositiveInfinity)
+              case LoiterTime      => after(item.param1)
+              case Waypoint        => after(if item.param1.isFinite then item.param1.toDouble.max(0) else 0)
+              case _               =>
+                val next = copy(mission = mission.next, anchor = here)
+                reached(next)
+
+  private def goal(motion: Motion): Option[Setpoint] =
+    val here  = motion.state.positionNed
+    val speed = MetresPerSecond(cruise.getOrElse(parameters(Parameters.Cruise)).max(0.1))
+    def to(place: Vector3, yaw: Target.Turn) =
+      val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place, speed)
+      Target.turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw)
+    def over(place: Vector3, downMps: Double) =
+      val velocity = GoTo.velocityNed(here, motion.state.velocityNed, place.copy(z = here.z), speed)
+      Setpoint.velocity(velocity.x, velocity.y, downMps)
+    if !isArmed then Some(Setpoint.Disarmed)
+    else
+      Some(mode match
+        case FlightMode.Offboard => target.fold(Setpoint.Armed)(Target.setpoint(_, motion, speed))
+        case FlightMode.Takeoff  =>
+          val up = parameters(Parameters.TakeoffSpeed)
+          over(anchor, ((anchor.z - here.z) * 1.2).max(-up).min(up))
+        case FlightMode.Hold | FlightMode.Land if !motion.isFlying => Setpoint.Armed
+        case FlightMode.Hold                                       => to(anchor, turn)
+        case FlightMode.Land                                       =>
+          val hasTouched = stillSince.exists(since => (motion.sinceBoot - since) >= TouchedAfter)
+          if hasTouched then Setpoint.Armed else over(anchor, parameters(Parameters.LandSpeed))
+        case FlightMode.Return =>
+          val height = -parameters(Parameters.ReturnAltitude)
+          val away   = here.copy(z = 0).norm
+          // First up, then across; who is near already goes down where it is.
+          if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
+          else to(Vector3.Zero.copy(z = here.z.min(height.max(here.z))), Target.Turn.None)
+        case FlightMode.Mission if !motion.isFlying =>
+          Setpoint.velocity(0, 0, -parameters(Parameters.TakeoffSpeed))
+        case FlightMode.Mission =>
+          mission.item.fold(to(anchor, turn)): item =>
+            item.command match
+              case Command.Waypoint | Command.LoiterTime | Command.LoiterUnlimited | Command.Takeoff =>
+                to(Mission.place(item, home, anchor), yawOf(item))
+              case Command.Land => to(Mission.place(item, home, anchor).copy(z = here.z), yawOf(item))
+              case _            => to(anchor, turn))
+
+  private def yawOf(item: MissionItemInt): Target.Turn =
+    if item.param4.isFinite then Target.Turn.Towards(math.toRadians(item.param4)) else Target.Turn.None
+
+object Autopilot:
+  /** What comes of what was heard.
+    *
+    * @param answers
+    *   for who has asked
+    * @param news
+    *   for everybody
+    * @param interval
+    *   the message that the asker wants so often, µs: −1 never, 0 as usual
+    */
+  final case class Heard(
+      next: Autopilot,
+      answers: Vector[Message] = Vector.empty,
+      news: Vector[Message] = Vector.empty,
+      interval: Option[(Int, Double)] = None
+  )
+
+  /** A command, and its seven numbers; places in degrees.
+    *
+    * @param frame
+    *   of its place, where it names one
+    */
+  private final case class Order(command: Int, numbers: Vector[Double], frame: Option[Int]):
+    def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0
+    def isOne(index: Int): Boolean = numbers(index) == 1
+
+  private final case class Refusal(result: Int, why: String)
+
+  /** A line for a person, in one piece. */
+  private[autopilot] def text(severity: Int, line: String): Message = Statustext(severity, line.take(50))
+
+  /** Nearer than this it is there, m; slower than this it stands, m/s. */
+  private val NearM     = 0.3
+  private val NearHomeM = 3.0
+  private val StillMps  = 0.05
+
+  /** Still for so long while it lands, it stands on the ground. */
+  private val TouchedAfter = Span.ofMillis(500)

@@ -1,0 +1,68 @@
+package skein.autopilot
+
+import scala.collection.mutable
+import skein.mavlink.*
+import skein.units.*
+
+/** What one peer hears of some vehicles, and how often: bytes for it, cut into datagrams. Not thread-safe.
+  *
+  * @param systems
+  *   the vehicles that it sees
+  * @param mostBytes
+  *   of a datagram
+  */
+final class Channel(val systems: Vector[Int], from: Span, mostBytes: Int = 1400):
+  private val writers = systems.map(system => system -> FrameWriter(system, Numbers.Autopilot1)).toMap
+  private val every   = mutable.HashMap.empty[(Int, Int), Span]
+  private val due     = mutable.HashMap.empty[(Int, Int), Span]
+  private val pieces  = Vector.newBuilder[Array[Byte]]
+  private var piece   = Array.emptyByteArray
+
+  for system <- systems; (id, interval) <- Telemetry.intervals do
+    every((system, id)) = interval
+    due((system, id)) = from
+
+  /** What it sends, and what of it was damaged. */
+  val reader: FrameReader = FrameReader()
+
+  /** Changes how often a message is told.
+    *
+    * @param micros
+    *   −1 never, 0 as usual
+    */
+  def setInterval(system: Int, id: Int, micros: Double, now: Span): Unit =
+    if micros < 0 then
+      val _ = due.remove((system, id))
+    else
+      val asked = if micros == 0 then Telemetry.intervals(id) else Span.ofSeconds(micros.min(1e9) * 1e-6)
+      every((system, id)) = asked.max(Telemetry.Shortest)
+      due((system, id)) = now
+
+  /** The earliest time at which something is to be told. */
+  def nextDue: Option[Span] = due.valuesIterator.minOption
+
+  /** The messages that are due, by vehicle and number; each is next due an interval later. */
+  def takeDue(now: Span): Vector[(system: Int, id: Int)] =
+    val ready = due.iterator.collect { case (key, at) if at <= now => key }.toVector.sorted
+    for key <- ready do
+      val next = due(key) + every(key)
+      // What was late is not made up for.
+      due(key) = if next > now then next else now + every(key)
+    ready.map((system, id) => (system = system, id = id))
+
+  def write(system: Int, message: Message): Unit =
+    for writer <- writers.get(system) do
+      val frame = writer.write(message)
+      if piece.length + frame.length > mostBytes then cut()
+      piece = piece ++ frame
+
+  /** The datagrams since this was asked before. */
+  def take(): Vector[Array[Byte]] =
+    cut()
+    val all = pieces.result()
+    pieces.clear()
+    all
+
+  private def cut(): Unit =
+    if piece.nonEmpty then pieces += piece
+    piece = Array.emptyByteArray

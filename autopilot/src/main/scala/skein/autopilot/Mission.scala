@@ -1,0 +1,87 @@
+package skein.autopilot
+
+import skein.mavlink.*
+import skein.units.*
+
+/** A mission that can be flown.
+  *
+  * @param current
+  *   the item that is flown to
+  * @param reachedAt
+  *   since when the vehicle is there
+  */
+final case class Mission(
+    items: Vector[MissionItemInt] = Vector.empty,
+    current: Int = 0,
+    reachedAt: Option[Span] = None
+):
+  def isOver: Boolean              = current >= items.size
+  def item: Option[MissionItemInt] = items.lift(current)
+  def next: Mission                = copy(current = current + 1, reachedAt = None)
+  def from(seq: Int): Mission      = copy(current = seq, reachedAt = None)
+
+  def told: Message = MissionCurrent((current.min(items.size - 1)).max(0), items.size)
+
+object Mission:
+  /** Items that a mission has at most. */
+  val Most = 1000
+
+  /** The mission's kind, beside which there are fences and rally points: they are not known here. */
+  val Kind = 0
+
+  /** Of acknowledgements. */
+  object Ack:
+    val Accepted         = 0
+    val Failed           = 1
+    val UnsupportedFrame = 2
+    val Unsupported      = 3
+    val NoSpace          = 4
+    val Invalid          = 5
+    val OutOfOrder       = 13
+    val Cancelled        = 15
+
+  /** Why an item cannot be flown: the acknowledgement's kind and a text. */
+  def mistake(item: MissionItemInt): Option[(Int, String)] =
+    import Numbers.Command.*
+    import Numbers.Frame
+    val places  = Set(Waypoint, LoiterUnlimited, LoiterTime, Land, Takeoff)
+    val others  = Set(ReturnToLaunch, Delay, ChangeSpeed)
+    val isPlace = places(item.command)
+    val frames  = Set(Frame.Global, Frame.GlobalInt, Frame.RelativeAltitude, Frame.RelativeAltitudeI)
+    if !isPlace && !others(item.command) then
+      Some((Ack.Unsupported, s"mission item ${item.seq}: command ${item.command} unsupported"))
+    else if isPlace && !frames(item.frame) then
+      Some((Ack.UnsupportedFrame, s"mission item ${item.seq}: frame ${item.frame} unsupported"))
+    else if isPlace && !(item.z.isFinite && item.z.abs < 1e5) then
+      Some((Ack.Invalid, s"mission item ${item.seq}: altitude is no number"))
+    else if isPlace && !(item.x.abs <= 900_000_000 && item.y.abs <= 1_800_000_000) then
+      Some((Ack.Invalid, s"mission item ${item.seq}: no place on the globe"))
+    else None
+
+  /** Where an item is, in the vehicle's own frame; a place of 0, 0 is where it is already. */
+  def place(item: MissionItemInt, home: GeoLocation, hereNed: Vector3): Vector3 =
+    val altitude = Target.heightOf(item.frame, item.z, home).getOrElse(home.altitude)
+    val at       = GeoLocation(item.x * 1e-7, item.y * 1e-7, altitude).nedFrom(home)
+    if item.x == 0 && item.y == 0 then hereNed.copy(z = at.z) else at
+
+/** A mission on its way to the vehicle: items are asked for one by one, again where one does not come.
+  *
+  * @param system
+  *   who sends it
+  * @param askedAt
+  *   when the next item was asked for last
+  */
+final case class Upload(
+    system: Int,
+    component: Int,
+    count: Int,
+    items: Vector[MissionItemInt],
+    askedAt: Span,
+    tries: Int
+):
+  def question: Message       = MissionRequestInt(system, component, items.size)
+  def ack(kind: Int): Message = MissionAck(system, component, kind)
+
+object Upload:
+  val AskAgain: Span = Span.ofMillis(250)
+  val MostTries      = 10

@@ -1,0 +1,75 @@
+package skein.autopilot
+
+/** Numbers of the common dialect (mavlink.io, `common.xml`) that more than one file needs. */
+object Numbers:
+  /** The autopilot's own component. */
+  val Autopilot1 = 1
+
+  object Command:
+    val Waypoint            = 16
+    val LoiterUnlimited     = 17
+    val LoiterTime          = 19
+    val ReturnToLaunch      = 20
+    val Land                = 21
+    val Takeoff             = 22
+    val Delay               = 93
+    val SetMode             = 176
+    val ChangeSpeed         = 178
+    val Terminate           = 185
+    val Reposition          = 192
+    val StartMission        = 300
+    val Arm                 = 400
+    val GetHome             = 410
+    val GetMessageInterval  = 510
+    val SetMessageInterval  = 511
+    val RequestMessage      = 512
+    val RequestCapabilities = 520
+
+  object Result:
+    val Accepted    = 0
+    val Rejected    = 1
+    val Denied      = 2
+    val Unsupported = 3
+    val Failed      = 4
+
+  object Frame:
+    val Global            = 0
+    val LocalNed          = 1
+    val Mission           = 2
+    val RelativeAltitude  = 3
+    val GlobalInt         = 5
+    val RelativeAltitudeI = 6
+    val BodyNed           = 8
+    val BodyFrd           = 12
+
+  /** Of a text, as syslog has them. */
+  object Severity:
+    val Critical = 2
+    val Warning  = 4
+    val Info     = 6
+
+  /** In the parameter of a command to arm or disarm: whatever speaks against it. */
+  val Force = 21196
+
+  /** Of a heartbeat's base mode. */
+  object ModeFlag:
+    val Custom     = 1
+    val Automatic  = 4
+    val Guided     = 8
+    val Stabilized = 16
+    val Armed      = 128
+
+  /** Bits of a setpoint's mask: what to ignore. */
+  object Ignore:
+    val X        = 1
+    val Y        = 2
+    val Z        = 4
+    val Vx       = 8
+    val Vy       = 16
+    val Vz       = 32
+    val Force    = 512
+    val Yaw      = 1024
+    val YawRate  = 2048
+    val Position = X | Y | Z
+    val Velocity = Vx | Vy | Vz
+    val Accel    = 64 | 128 | 256

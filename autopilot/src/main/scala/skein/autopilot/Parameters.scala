@@ -1,0 +1,98 @@
+package skein.autopilot
+
+import skein.mavlink.{Message, ParamValue}
+
+/** An autopilot's parameters, by PX4's names and with PX4's defaults. */
+final case class Parameters(values: Map[String, Double] = Parameters.defaults):
+  import Parameters.*
+
+  def apply(parameter: Parameter): Double = values(parameter.name)
+
+  def all: Vector[Message] = known.map(message)
+
+  /** By its name, or by its place where that is not negative. */
+  def one(name: String, index: Int): Option[Message] =
+    (if index >= 0 then known.lift(index) else known.find(_.name == name)).map(message)
+
+  /** @param value
+    *   as it stands in a message: the bits of an integer
+    * @return
+    *   the parameters with it, and what is told; or why not
+    */
+  def set(name: String, value: Float): Either[String, (Parameters, Message)] =
+    known.find(_.name == name) match
+      case None            => Left(s"unknown param: $name")
+      case Some(parameter) =>
+        val number =
+          if parameter.isInteger then java.lang.Float.floatToRawIntBits(value).toDouble else value.toDouble
+        if !(number >= parameter.least && number <= parameter.most) then
+          Left(s"$name: expected ${parameter.least} to ${parameter.most}")
+        else
+          val next = copy(values.updated(name, number))
+          Right((next, next.message(parameter)))
+
+  private def message(parameter: Parameter): Message =
+    val number = apply(parameter)
+    val value  =
+      if parameter.isInteger then java.lang.Float.intBitsToFloat(number.toInt) else number.toFloat
+    ParamValue(
+      parameter.name,
+      value,
+      if parameter.isInteger then Int32 else Real32,
+      known.size,
+      known.indexOf(parameter)
+    )
+
+/** @param default
+  *   in the unit that PX4's reference states
+  */
+final case class Parameter(
+    name: String,
+    default: Double,
+    least: Double,
+    most: Double,
+    isInteger: Boolean = false
+)
+
+object Parameters:
+  private val Int32  = 6
+  private val Real32 = 9
+
+  /** To which it takes off, m above the ground. */
+  val TakeoffAltitude = Parameter("MIS_TAKEOFF_ALT", 2.5, 0.5, 500)
+
+  /** m/s */
+  val Cruise       = Parameter("MPC_XY_CRUISE", 5, 0.5, 20)
+  val TakeoffSpeed = Parameter("MPC_TKO_SPEED", 1.5, 0.3, 5)
+  val LandSpeed    = Parameter("MPC_LAND_SPEED", 0.7, 0.2, 2)
+
+  /** At which it returns, m above home. */
+  val ReturnAltitude = Parameter("RTL_RETURN_ALT", 30, 0, 500)
+
+  /** A waypoint is reached so near, m. */
+  val AcceptanceRadius = Parameter("NAV_ACC_RAD", 2, 0.2, 200)
+
+  /** Offboard ends so long after the last setpoint, s. */
+  val OffboardLoss = Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
+
+  /** It disarms so long after landing, and where it was armed and does not take off, s; never below 0. */
+  val DisarmLanded    = Parameter("COM_DISARM_LAND", 2, -1, 20)
+  val DisarmPreflight = Parameter("COM_DISARM_PRFLT", 10, -1, 600)
+
+  /** Nothing comes of it; ground stations read it. */
+  val Airframe = Parameter("SYS_AUTOSTART", 4001, 4001, 4001, isInteger = true)
+
+  val known: Vector[Parameter] = Vector(
+    TakeoffAltitude,
+    Cruise,
+    TakeoffSpeed,
+    LandSpeed,
+    ReturnAltitude,
+    AcceptanceRadius,
+    OffboardLoss,
+    DisarmLanded,
+    DisarmPreflight,
+    Airframe
+  )
+
+  private val defaults: Map[String, Double] = known.map(one => one.name -> one.default).toMap

@@ -1,0 +1,169 @@
+package skein.autopilot
+
+import skein.mavlink.*
+import skein.units.*
+import skein.vehicle.{GoTo, Setpoint}
+
+/** What somebody outside wants the vehicle to do now, in offboard. */
+enum Target:
+  /** Per axis a place, a velocity, or nothing; in the vehicle's own frame. A place and a velocity together are flown to
+    * with that velocity added.
+    *
+    * @param inBody
+    *   whether the velocity is front, right and down
+    */
+  case Move(
+      north: Option[Double],
+      east: Option[Double],
+      down: Option[Double],
+      velocity: (Option[Double], Option[Double], Option[Double]),
+      inBody: Boolean,
+      turn: Target.Turn
+  )
+
+  /** Thrust is a share of the most. */
+  case Attitude(rollRad: Double, pitchRad: Double, yawRad: Double, thrust: Double)
+
+  /** Body rates. */
+  case Rates(rollRadps: Double, pitchRadps: Double, yawRadps: Double, thrust: Double)
+
+object Target:
+  enum Turn:
+    case None
+    case Towards(yawRad: Double)
+    case Turning(radps: Double)
+
+  /** What a message asks for.
+    *
+    * @param home
+    *   the origin of the vehicle's own frame
+    * @return
+    *   None where it is no setpoint, or why it cannot be flown
+    */
+  def of(message: Message, home: GeoLocation): Option[Either[String, Target]] = message match
+    case one: SetPositionTargetLocalNed =>
+      import Numbers.Frame.*
+      val frame = one.coordinateFrame
+      Some(
+        if !Set(LocalNed, BodyNed, BodyFrd).contains(frame) then
+          Left(s"SET_POSITION_TARGET_LOCAL_NED: coordinate frame $frame unsupported")
+        else
+          val inBody = frame != LocalNed
+          val places = Vector(one.x, one.y, one.z)
+          val speeds = Vector(one.vx, one.vy, one.vz)
+          val move   = moveOf(places.map(_.toDouble), speeds, one.typeMask, inBody, one.yaw, one.yawRate)
+          if inBody && move.exists(_.hasPlace) then Left("a place in the body's frame is unsupported")
+          else move
+      )
+    case one: SetPositionTargetGlobalInt =>
+      heightOf(one.coordinateFrame, one.alt, home) match
+        case None =>
+          Some(Left(s"SET_POSITION_TARGET_GLOBAL_INT: coordinate frame ${one.coordinateFrame} unsupported"))
+        case Some(altitude) =>
+          val at = GeoLocation(one.latInt * 1e-7, one.lonInt * 1e-7, altitude).nedFrom(home)
+          Some(moveOf(
+            Vector(at.x, at.y, at.z),
+            Vector(one.vx, one.vy, one.vz),
+            one.typeMask,
+            inBody = false,
+            one.yaw,
+            one.yawRate
+          ))
+    case one: SetAttitudeTarget =>
+      val q       = one.q.map(_.toDouble)
+      val byRates = (one.typeMask & IgnoreAttitude) != 0
+      val rates   = Vector(one.bodyRollRate, one.bodyPitchRate, one.bodyYawRate).map(_.toDouble)
+      val numbers = one.thrust.toDouble +: (if byRates then rates else q)
+      def isTurn  = q.size == 4 && math.abs(q.map(x => x * x).sum - 1) < 0.1
+      if !numbers.forall(_.isFinite) || !(byRates || isTurn) then
+        Some(Left("SET_ATTITUDE_TARGET: no attitude"))
+      else
+        val thrust = numbers.head.max(0).min(1)
+        Some(Right(
+          if byRates then Rates(rates(0), rates(1), rates(2), thrust)
+          else
+            val turn = Quaternion(q(0), q(1), q(2), q(3))
+            Attitude(turn.rollRad, turn.pitchRad, turn.yawRad, thrust)
+        ))
+    case _ => None
+
+  /** Above the sea, of an altitude in one of the frames that are known. */
+  private[autopilot] def heightOf(frame: Int, altitudeM: Double, home: GeoLocation): Option[Metres] =
+    import Numbers.Frame.*
+    if frame == Global || frame == GlobalInt then Some(Metres(altitudeM))
+    else if frame == RelativeAltitude || frame == RelativeAltitudeI then
+      Some(Metres(home.altitude.value + altitudeM))
+    else None
+
+  private val IgnoreAttitude = 128
+
+  /** No vehicle is sent farther, m, or faster, m/s. */
+  private val Most = 1e5
+
+  private def moveOf(
+      places: Vector[Double],
+      speeds: Vector[Float],
+      mask: Int,
+      inBody: Boolean,
+      yaw: Float,
+      yawRate: Float
+  ): Either[String, Target.Move] =
+    import Numbers.Ignore
+    def asked(value: Double, bit: Int) = Option.when((mask & bit) == 0 && !value.isNaN)(value)
+    val place                          = places.zip(Seq(Ignore.X, Ignore.Y, Ignore.Z)).map(asked)
+    val velocity = speeds.map(_.toDouble).zip(Seq(Ignore.Vx, Ignore.Vy, Ignore.Vz)).map(asked)
+    val turn     = asked(yaw, Ignore.Yaw)
+    val rate     = asked(yawRate, Ignore.YawRate)
+    val numbers  = (place ++ velocity :+ turn :+ rate).flatten
+    if (place ++ velocity).flatten.isEmpty then
+      Left("setpoint: expected a position or a velocity, came neither")
+    else if numbers.exists(number => !(math.abs(number) <= Most)) then
+      Left("setpoint: expected finite numbers, came others")
+    else
+      Right(Target.Move(
+        place(0),
+        place(1),
+        place(2),
+        (velocity(0), velocity(1), velocity(2)),
+        inBody,
+        turn.map(Turn.Towards(_)).orElse(rate.map(Turn.Turning(_))).getOrElse(Turn.None)
+      ))
+
+  extension (move: Target.Move) private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
+
+  /** What the flight controller is told for it.
+    *
+    * @param cruise
+    *   the fastest that places are flown to
+    */
+  def setpoint(target: Target, motion: Motion, cruise: MetresPerSecond): Setpoint = target match
+    case Attitude(roll, pitch, yaw, thrust) => Setpoint.anglesThrottle(roll, pitch, yaw, thrust)
+    case Rates(roll, pitch, yaw, thrust)    => Setpoint.ratesThrottle(roll, pitch, yaw, thrust)
+    case move: Move                         =>
+      val state        = motion.state
+      val (vn, ve, vd) = move.velocity
+      val asked        = Vector3(vn.getOrElse(0), ve.getOrElse(0), vd.getOrElse(0))
+      val yaw          = state.orientation.yawRad
+      val velocity     =
+        if move.inBody then Quaternion(StrictMath.cos(yaw / 2), 0, 0, StrictMath.sin(yaw / 2)).toWorld(asked)
+        else asked
+      val goal = Vector3(
+        move.north.getOrElse(state.positionNed.x),
+        move.east.getOrElse(state.positionNed.y),
+        move.down.getOrElse(state.positionNed.z)
+      )
+      val towards = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, cruise)
+      val north   = velocity.x + move.north.fold(0.0)(_ => towards.x)
+      val east    = velocity.y + move.east.fold(0.0)(_ => towards.y)
+      // By velocity in the plane and at an altitude: what the flight controller does by itself.
+      val byPlane  = move.north.isEmpty && move.east.isEmpty && vd.isEmpty
+      val setpoint = move.down match
+        case Some(down) if byPlane => Setpoint.velocityZ(north, east, down)
+        case Some(_)               => Setpoint.velocity(north, east, velocity.z + towards.z)
+        case None                  => Setpoint.velocity(north, east, velocity.z)
+      turned(setpoint, move.turn)
+
+  private[autopilot] def turned(setpoint: Setpoint, turn: Turn): Setpoint = turn match
+    case Turn.None           => setpoint
+    case Turn.Towards(yaw)   => setpoint.withYaw(yaw)
+    case Turn.Turning(radps) => setpoint.withYawRate(radps)

@@ -1,0 +1,79 @@
+package skein.flight
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.util.ByteString
+import scala.concurrent.Future
+import skein.offboard.{MavlinkLink, MavlinkVehicle, OffboardSettings}
+import skein.policy.Fleet
+import skein.port.VehicleError
+import skein.units.*
+
+/** A scenario's vehicles over MAVLink, system 1 being its first. */
+private[flight] final class MavlinkFleet(
+    fleet: Fleet,
+    clock: Clock,
+    origin: Option[GeoLocation],
+    connect: () => Flow[ByteString, ByteString, ?]
+)(using system: ActorSystem):
+  import MavlinkFleet.*
+  import system.dispatcher
+
+  private val systems  = fleet.agents.indices.map(_ + 1).toVector
+  private val settings =
+    OffboardSettings(highestM = (fleet.agents.map(agent => -agent.startPositionNed.z).max + AboveM).max(120))
+
+  /** Brings all to their starts, over a connection of its own: this is not part of the flight. */
+  def prepare(): Future[Either[String, Done]] =
+    MavlinkLink.open(connect(), systems, clock, origin, settings).flatMap:
+      case Left(error) => Future.successful(Left(error.message))
+      case Right(link) =>
+        val starts = fleet.agents.zip(systems).map: (agent, number) =>
+          val vehicle = MavlinkVehicle(link, number)
+          Climb.Starting(
+            agent.startPositionNed,
+            Approach(agent.name, vehicle, clock),
+            () => leaveGround(vehicle)
+          )
+        Climb
+          .fly(starts)
+          .map(_ => Right(Done))
+          .recover { case Climb.NotReady(reason) => Left(reason) }
+          .flatMap(result => link.close().map(_ => result))
+
+  /** Opens the connection that is flown over. */
+  def open(
+      flow: Flow[ByteString, ByteString, ?]
+  ): Future[Either[String, (MavlinkLink, Vector[MavlinkVehicle])]] =
+    MavlinkLink
+      .open(flow, systems, clock, origin, settings)
+      .map(_.left.map(_.message).map(link => (link, systems.map(MavlinkVehicle(link, _)))))
+
+  private def leaveGround(vehicle: MavlinkVehicle): Future[Vector3] =
+    for
+      from  <- asked(vehicle.read()).map(_.value.positionNed)
+      _     <- if vehicle.isArmed then Future.unit else asked(vehicle.arm())
+      _     <- if vehicle.isOnGround then asked(vehicle.takeoff()) else Future.unit
+      above <- if vehicle.isOnGround then risen(vehicle, from.z, MostLooks) else Future.successful(from)
+    yield above
+
+  private def risen(vehicle: MavlinkVehicle, fromDownM: Double, looks: Int): Future[Vector3] =
+    asked(vehicle.read()).map(_.value.positionNed).flatMap: at =>
+      if at.z < fromDownM - RisenM then Future.successful(at)
+      else if looks == 0 then Future.failed(Climb.NotReady("a vehicle did not leave the ground in time"))
+      else after(LookEvery.toDuration, system.scheduler)(risen(vehicle, fromDownM, looks - 1))
+
+  private def asked[A](answer: Future[Either[VehicleError, A]]): Future[A] =
+    answer.map(_.fold(error => throw Climb.NotReady(error.message), identity))
+
+private object MavlinkFleet:
+  /** Of the geofence above the highest start, m: vehicles climb to their layers first. */
+  private val AboveM = 100.0
+
+  /** So far off the ground a vehicle flies, m. */
+  private val RisenM = 1.0
+
+  private val LookEvery = Span.ofMillis(100)
+  private val MostLooks = 200

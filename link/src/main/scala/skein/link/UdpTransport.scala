@@ -1,0 +1,175 @@
+package skein.link
+
+import java.net.{
+  BindException,
+  DatagramPacket,
+  DatagramSocket,
+  InetAddress,
+  InetSocketAddress,
+  SocketException,
+  UnknownHostException
+}
+import java.util.concurrent.ConcurrentHashMap
+import java.util.concurrent.atomic.LongAdder
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.BoundedSourceQueue
+import org.apache.pekko.stream.QueueOfferResult
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
+import org.apache.pekko.util.ByteString
+import org.apache.pekko.{Done, NotUsed}
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Try
+import skein.units.Span
+
+/** Datagrams as connections: whoever is heard at a port is one, until nothing was heard of it for `idle`. Nobody is told of
+  * the other side's end, what is lost is lost, and what does not fit into a datagram is cut. For protocols that find the
+  * beginning of a message by themselves, such as MAVLink.
+  *
+  * @param mostPeers
+  *   at one port; what others send is dropped
+  */
+final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
+    extends Transport:
+
+  def connect(to: Address): Flow[ByteString, ByteString, Future[Done]] =
+    Flow
+      .lazyFutureFlow: () =>
+        Future.fromTry(Try:
+          val peer  = UdpSocket.resolved(to)
+          val local = if peer.getAddress.isLoopbackAddress then "127.0.0.1" else "0.0.0.0"
+          val port  = UdpSocket.bind(Address(local, 0), mostPeers = 0, idle)
+          port.peer(to, onEnd = () => port.close()))
+      // A port is open as soon as there is a first datagram to send; there is nothing to wait for.
+      .mapMaterializedValue(_ => Future.successful(Done))
+
+  def listen(at: Address): Source[Incoming, Future[Listening]] =
+    Source
+      .queue[Incoming](mostPeers)
+      .mapMaterializedValue: queue =>
+        Try(UdpSocket.bind(at, mostPeers, idle)).fold(
+          error =>
+            queue.fail(error)
+            Future.failed(error)
+          ,
+          socket =>
+            socket.onPeer(incoming => queue.offer(incoming): Unit)
+            Future.successful(new Listening:
+              val address: Address      = socket.address
+              def close(): Future[Done] =
+                socket.close()
+                queue.complete()
+                Future.successful(Done))
+        )
+
+/** An open UDP port, with a thread of its own that receives.
+  *
+  * @param dropped
+  *   datagrams of peers beyond the limit, or for which nobody was quick enough
+  */
+final class UdpSocket private (
+    socket: DatagramSocket,
+    mostPeers: Int,
+    idle: Span,
+    val dropped: LongAdder
+)(using system: ActorSystem):
+  import UdpSocket.*
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  private val peers             = ConcurrentHashMap[InetSocketAddress, Peer]()
+  @volatile private var tellNew = Option.empty[Incoming => Unit]
+
+  /** With the actual port. */
+  val address: Address = Address(socket.getLocalAddress.getHostAddress, socket.getLocalPort)
+
+  /** From now on, is given everybody who is heard and was not known. */
+  def onPeer(tell: Incoming => Unit): Unit = tellNew = Some(tell)
+
+  /** What is sent to an address and comes from there; to be materialised once. */
+  def peer(to: Address, onEnd: () => Unit = () => ()): Flow[ByteString, ByteString, NotUsed] =
+    open(resolved(to), isLasting = true, onEnd).flow
+
+  def close(): Unit =
+    socket.close()
+    peers.forEach((_, peer) => peer.end())
+    peers.clear()
+
+  private final class Peer(at: InetSocketAddress, isLasting: Boolean, onEnd: () => Unit):
+    private val (queue, source): (BoundedSourceQueue[ByteString], Source[ByteString, NotUsed]) =
+      Source.queue[ByteString](Waiting).preMaterialize()
+    @volatile private var heardNs = System.nanoTime()
+
+    def isIdle: Boolean = !isLasting && System.nanoTime() - heardNs > idle.toNanos
+
+    def heard(bytes: ByteString): Unit =
+      heardNs = System.nanoTime()
+      if queue.offer(bytes) != QueueOfferResult.Enqueued then dropped.increment()
+
+    def end(): Unit = if !queue.isCompleted then queue.complete()
+
+    val flow: Flow[ByteString, ByteString, NotUsed] =
+      Flow.fromSinkAndSourceCoupled(
+        Sink
+          .foreach[ByteString](bytes => bytes.grouped(MostBytes).foreach(send(at, _)))
+          .mapMaterializedValue(_.onComplete: _ =>
+            peers.remove(at)
+            onEnd()),
+        source
+      )
+
+  private def send(to: InetSocketAddress, bytes: ByteString): Unit =
+    // Nobody need listen there, and the line may be full: that is what datagrams are.
+    try socket.send(DatagramPacket(bytes.toArrayUnsafe(), bytes.size, to))
+    catch case _: java.io.IOException => dropped.increment()
+
+  private def open(at: InetSocketAddress, isLasting: Boolean, onEnd: () => Unit): Peer =
+    val peer = Peer(at, isLasting, onEnd)
+    peers.put(at, peer)
+    peer
+
+  private def receive(): Unit =
+    val packet = DatagramPacket(new Array[Byte](1 << 16), 1 << 16)
+    while !socket.isClosed do
+      try
+        socket.receive(packet)
+        val from  = packet.getSocketAddress.asInstanceOf[InetSocketAddress]
+        val bytes = ByteString.fromArray(packet.getData, packet.getOffset, packet.getLength)
+        packet.setLength(1 << 16)
+        forgetIdle()
+        Option(peers.get(from)).orElse(admitted(from)) match
+          case Some(peer) => peer.heard(bytes)
+          case None       => dropped.increment()
+      catch case _: java.io.IOException => ()
+
+  private def admitted(from: InetSocketAddress): Option[Peer] =
+    for tell <- tellNew if peers.size < mostPeers yield
+      val peer = open(from, isLasting = false, () => ())
+      tell(Incoming(Address(from.getAddress.getHostAddress, from.getPort), peer.flow))
+      peer
+
+  private def forgetIdle(): Unit = peers.forEach: (at, peer) =>
+    if peer.isIdle then
+      peers.remove(at)
+      peer.end()
+
+object UdpSocket:
+  /** Fails with a [[TransportError]]. */
+  def bind(at: Address, mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem): UdpSocket =
+    val socket =
+      try DatagramSocket(resolved(at))
+      catch
+        case e: BindException if e.getMessage.contains("in use") => throw TransportError.PortTaken(at)
+        case e: SocketException => throw TransportError.CannotListen(at, e.getMessage)
+    socket.setReceiveBufferSize(1 << 20)
+    val opened = UdpSocket(socket, mostPeers, idle, LongAdder())
+    Thread.ofPlatform().daemon().name(s"udp-${opened.address}").start(() => opened.receive())
+    opened
+
+  private[link] def resolved(at: Address): InetSocketAddress =
+    try InetSocketAddress(InetAddress.getByName(at.host), at.port)
+    catch case _: UnknownHostException => throw TransportError.UnknownHost(at)
+
+  /** Of a datagram that is sent: fits into an Ethernet frame. */
+  private val MostBytes = 1400
+
+  /** Datagrams of one peer that may wait. */
+  private val Waiting = 256

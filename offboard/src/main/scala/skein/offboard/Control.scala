@@ -1,0 +1,369 @@
+package skein.offboard
+
+import skein.mavlink.*
+import skein.policy.Action
+import skein.port.VehicleError
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** How vehicles are controlled over MAVLink.
+  *
+  * @param renewEvery
+  *   a setpoint is sent again so often, until its action's time is over; then the vehicle is told to stay where it is, as
+  *   often, for as long as the link is open. PX4 leaves offboard below 2 Hz
+  * @param sampleEvery
+  *   how often the vehicle is asked to tell its motion
+  * @param timeout
+  *   of every answer
+  * @param farthestM
+  *   the geofence: so far from the flight's origin in the plane, m; who leaves it holds its position and is flown no more
+  * @param highestM
+  *   and so far above it
+  */
+final case class OffboardSettings(
+    renewEvery: Span = Span.ofMillis(100),
+    sampleEvery: Span = Span.ofMillis(50),
+    timeout: Span = Span.ofSeconds(1),
+    farthestM: Double = 1000,
+    highestM: Double = 120
+)
+
+/** One vehicle's control as a value: what is asked of it, what comes from it and how time passes go in; messages and
+  * answers come out. Knows no socket and no clock.
+  *
+  * A TIMESYNC goes behind every setpoint. Its answer is the setpoint's receipt, and tells when it came, on the vehicle's
+  * clock: so an action counts as replaced when the vehicle has its successor.
+  *
+  * @param originNed
+  *   of the vehicle's own frame, in the flight's
+  * @param asked
+  *   actions without an answer, the oldest first
+  * @param readers
+  *   who waits for the next sample
+  * @param lastSync
+  *   the newest TIMESYNC's time; each has a later one
+  */
+final case class Control(
+    system: Int,
+    settings: OffboardSettings = OffboardSettings(),
+    originNed: Vector3 = Vector3.Zero,
+    origin: Option[GeoLocation] = None,
+    estimate: Estimate = Estimate(),
+    clock: Option[VehicleClock] = None,
+    shift: (shift: Span, doubt: Span) = (shift = Span.Zero, doubt = Span.Zero),
+    asked: Vector[Control.Asked] = Vector.empty,
+    flown: Option[Action] = None,
+    until: Instant = Instant.Epoch,
+    renewAt: Instant = Instant.Epoch,
+    readers: Vector[(token: Long, until: Instant)] = Vector.empty,
+    orders: Vector[Control.Order] = Vector.empty,
+    lastSync: Instant = Instant.Epoch,
+    heardAt: Option[Instant] = None,
+    mode: Long = 0,
+    isArmed: Boolean = false,
+    isOnGround: Boolean = true,
+    isOut: Boolean = false
+):
+  import Control.*
+
+  /** Whether it can be flown: it was heard, its clock is known and so is where its frame is. */
+  def isReady: Boolean = origin.isDefined && clock.isDefined && estimate.newest.isDefined
+
+  /** @return
+    *   an answer of the next sample to `token`
+    */
+  def read(token: Long, now: Instant): Step =
+    if readers.size >= MostReaders then
+      Step(
+        this,
+        answers = Vector(token -> Left(VehicleError.Overloaded(s"$name: $MostReaders readings wait already")))
+      )
+    else Step(copy(readers = readers :+ ((token, now + settings.timeout))))
+
+  def act(token: Long, action: Action, lasts: Span, now: Instant): Step =
+    if isOut then refused(token, s"$name is outside of the geofence: it holds its position")
+    else if !isArmed then refused(token, s"$name is disarmed")
+    else if !Flyable(mode) then refused(token, s"$name is in another mode: somebody else has taken it over")
+    else
+      action match
+        case Action.Hover => hover(token, now)
+        case Action.Land  =>
+          givenUp(order(token, Land, now, Vector.fill(7)(Float.NaN)))
+        case _ =>
+          val next = copy(
+            asked = asked :+ Asked(token, lastSync.max(now), now + lasts, replacedAt = None),
+            flown = Some(action),
+            until = now + lasts
+          ).replacing(now)
+          val entering =
+            if mode == OffboardMode || orders.exists(_.isOffboard) then Step(next)
+            else next.order(Silent, SetMode, now, modeNumbers(6, 0))
+          entering.andThen(_.send(now))
+
+  def hover(token: Long, now: Instant): Step =
+    givenUp(order(token, SetMode, now, modeNumbers(4, 3)))
+
+  /** Does nothing more by itself; actions under way end as replaced. */
+  private def givenUp(step: Step): Step =
+    val next = step.next
+    step.copy(
+      next = next.copy(flown = None, asked = Vector.empty),
+      answers = step.answers ++ next.asked.map(_.token -> Right(false))
+    )
+
+  /** Sends a command until it is answered: [[MostTries]] times, the timeout over all. */
+  def order(token: Long, command: Int, now: Instant, numbers: Vector[Float]): Step =
+    val one = Order(token, command, numbers, 0, now + settings.timeout, now, None)
+    // A newer command of the kind takes an older one's place.
+    val (older, others) = orders.partition(_.command == command)
+    Step(copy(orders = others), answers = older.map(_.token -> Right(false)))
+      .andThen(_.copy(orders = others :+ one).due(now))
+
+  def heard(message: Message, now: Instant): Step = copy(heardAt = Some(now)).taken(message, now)
+
+  /** @param reference
+    *   the clock that all vehicles of the flight are told in
+    */
+  def inTimeOf(reference: Option[VehicleClock]): Control =
+    (clock, reference) match
+      case (Some(own), Some(other)) if own ne other => copy(shift = own.shiftTo(other))
+      case _                                        => this
+
+  /** Time has passed: to be called every [[Control.Tick]]. */
+  def passed(now: Instant): Step =
+    val (late, waiting) = readers.partition(_.until <= now)
+    val first           = Step(
+      copy(readers = waiting),
+      answers =
+        late.map(_.token -> Left(VehicleError.TimedOut(s"$name: no sample within ${inMs(settings.timeout)}")))
+    )
+    first.andThen(_.ended(now)).andThen(_.due(now)).andThen(one =>
+      if now >= one.renewAt then one.send(now) else Step(one)
+    )
+
+  private def name = s"system $system"
+
+  private def refused(token: Long, why: String): Step =
+    Step(this, answers = Vector(token -> Left(VehicleError.Refused(why))))
+
+  /** The newest action is not the only one any more. */
+  private def replacing(now: Instant): Control =
+    copy(asked =
+      asked.dropRight(1).map(one =>
+        one.copy(replacedAt = one.replacedAt.orElse(Some(now)))
+      ) ++ asked.lastOption
+    )
+
+  /** Actions whose time is over, and those whose receipt has not come. */
+  private def ended(now: Instant): Step =
+    val (lost, rest) = asked.partition(_.replacedAt.exists(at => now > at + settings.timeout))
+    val (done, open) = rest.partition(one => one.replacedAt.isEmpty && now >= one.until)
+    Step(
+      copy(asked = open, flown = if done.isEmpty then flown else Some(Stay)),
+      answers = done.map(_.token -> Right(true)) ++ lost.map(
+        _.token -> Left(
+          VehicleError.TimedOut(s"$name: no receipt of the next setpoint within ${inMs(settings.timeout)}")
+        )
+      )
+    )
+
+  /** The setpoint, once more, and a TIMESYNC; without one, a TIMESYNC alone. */
+  private def send(now: Instant): Step =
+    val at       = now.max(lastSync + Span.ofNanos(1))
+    val setpoint =
+      for
+        action <- flown
+        known  <- estimate.newest
+        out    <- Setpoints.of(action, known.state, originNed, system)
+      yield out
+    val next = copy(lastSync = at, renewAt = now + settings.renewEvery)
+    Step(next, setpoint.toVector :+ Timesync(0, at.toNanos, system, 1))
+
+  private def taken(message: Message, now: Instant): Step = message match
+    case Heartbeat(_, autopilot, base, custom, _, _) if autopilot != NoAutopilot =>
+      Step(copy(mode = custom, isArmed = (base & Armed) != 0))
+    case ExtendedSysState(_, landed)       => Step(copy(isOnGround = landed == 1))
+    case GpsGlobalOrigin(lat, lon, alt, _) =>
+      Step(copy(origin = Some(GeoLocation(lat * 1e-7, lon * 1e-7, Metres(alt / 1000.0)))))
+    case Timesync(theirs, ours, _, _) if theirs != 0 =>
+      received(Instant.ofNanos(ours), Instant.ofNanos(theirs), now)
+    case CommandAck(command, result, _, _, _, _)                 => acknowledged(command, result, now)
+    case Statustext(severity, text, _, _) if severity <= Warning => explained(text)
+    case sample                                                  =>
+      val (told, isNew) = estimate.heard(sample)
+      val next          = copy(estimate = told)
+      if !isNew then Step(next) else next.sampled(now)
+
+  private def received(sentAt: Instant, theirs: Instant, now: Instant): Step =
+    // An answer to somebody else's question has a time that was never sent.
+    if sentAt > lastSync || now.since(sentAt) > Span.ofSeconds(10) then Step(this)
+    else
+      val known  = clock.fold(VehicleClock.of(sentAt, theirs, now))(_.answered(sentAt, theirs, now))
+      val newest = asked.lastIndexWhere(_.sentAt <= sentAt)
+      val (replaced, flying) = asked.splitAt(newest.max(0))
+      Step(copy(clock = Some(known), asked = flying), answers = replaced.map(_.token -> Right(false)))
+
+  private def sampled(now: Instant): Step =
+    (for
+      known  <- estimate.newest
+      synced <- clock
+    yield
+      val state = known.state.copy(positionNed = known.state.positionNed + originNed)
+      val told  = synced.stamped(state, known.at, now, shift.shift, shift.doubt)
+      val place = state.positionNed
+      val away  = StrictMath.hypot(place.x, place.y)
+      val first = Step(copy(readers = Vector.empty), answers = readers.map(_.token -> Right(told)))
+      if (away <= settings.farthestM && -place.z <= settings.highestM) || isOut then first
+      else first.andThen(_.leftTheFence(away, -place.z, now))
+    ).getOrElse(Step(this))
+
+  private def leftTheFence(awayM: Double, upM: Double, now: Instant): Step =
+    val why = s"$name has left the geofence: ${awayM.fixed(0)} m away, ${upM.fixed(0)} m up"
+    val out = copy(isOut = true, flown = None, asked = Vector.empty)
+    Step(out, answers = asked.map(_.token -> Left(VehicleError.Refused(why))))
+      .andThen(_.order(Silent, SetMode, now, modeNumbers(4, 3)))
+
+  private def acknowledged(command: Int, result: Int, now: Instant): Step =
+    orders.find(_.command == command) match
+      case None                     => Step(this)
+      case Some(one) if result == 0 =>
+        val entered = if command == SetMode then modeOf(one.numbers) else mode
+        val armed   = if command == Arm then one.numbers(0) == 1 else isArmed
+        Step(
+          copy(orders = orders.filter(_ ne one), mode = entered, isArmed = armed),
+          answers = Vector(one.token -> Right(true))
+        )
+      case Some(_) if result == InProgress => Step(this)
+      // Setpoints may not have come yet.
+      case Some(one) if one.isOffboard && one.tries < MostTries => Step(this)
+      case Some(one)                                            =>
+        Step(copy(orders =
+          orders.map(other => if other eq one then one.copy(refusal = Some((result, now))) else other)
+        ))
+
+  /** The autopilot's own words come beside its refusal. */
+  private def explained(text: String): Step =
+    orders.find(_.refusal.isDefined).fold(Step(this))(one =>
+      copy(orders = orders.filter(_ ne one)).failed(one, text)
+    )
+
+  private def failed(one: Order, why: String): Step =
+    val error = VehicleError.Refused(s"$name: $why")
+    if !one.isOffboard then Step(this, answers = Vector(one.token -> Left(error)))
+    else Step(copy(flown = None, asked = Vector.empty), answers = asked.map(_.token -> Left(error)))
+
+  /** Commands that are to be sent, again or at last not any more. */
+  private def due(now: Instant): Step =
+    orders.foldLeft(Step(this)): (before, one) =>
+      val next = before.next
+      one.refusal match
+        case Some((result, at)) if now >= at + TextWithin =>
+          before.andThen(_.copy(orders =
+            next.orders.filter(_ ne one)
+          ).failed(one, s"refused (result $result)"))
+        case None if now >= one.until =>
+          val without = next.copy(orders = next.orders.filter(_ ne one))
+          if one.isOffboard then before.andThen(_ => without.failed(one, "offboard was not entered in time"))
+          else
+            before.andThen(_ =>
+              Step(
+                without,
+                answers = Vector(one.token -> Left(VehicleError.TimedOut(
+                  s"$name: no answer to command ${one.command} within ${inMs(settings.timeout)}"
+                )))
+              )
+            )
+        case None if now >= one.sendAt =>
+          val again = one.copy(tries = one.tries + 1, sendAt = now + settings.timeout / MostTries.toLong)
+          val kept  = next.orders.map(other => if other eq one then again else other)
+          before.andThen(_ => Step(next.copy(orders = kept), Vector(one.message(system))))
+        case _ => before
+
+object Control:
+  type Answer = Either[VehicleError, Boolean | Stamped[Kinematics]]
+
+  /** @param answers
+    *   by their askers' tokens
+    */
+  final case class Step(
+      next: Control,
+      messages: Vector[Message] = Vector.empty,
+      answers: Vector[(Long, Answer)] = Vector.empty
+  ):
+    private[offboard] def andThen(more: Control => Step): Step =
+      val after = more(next)
+      Step(after.next, messages ++ after.messages, (answers ++ after.answers).filter(_._1 != Silent))
+
+  /** @param sentAt
+    *   a TIMESYNC of this time or later tells that the vehicle has it
+    */
+  final case class Asked(token: Long, sentAt: Instant, until: Instant, replacedAt: Option[Instant])
+
+  final case class Order(
+      token: Long,
+      command: Int,
+      numbers: Vector[Float],
+      tries: Int,
+      until: Instant,
+      sendAt: Instant,
+      refusal: Option[(Int, Instant)]
+  ):
+    private[offboard] def isOffboard: Boolean = command == SetMode && modeOf(numbers) == OffboardMode
+
+    private[offboard] def message(system: Int): Message = CommandLong(
+      system,
+      1,
+      command,
+      tries,
+      numbers(0),
+      numbers(1),
+      numbers(2),
+      numbers(3),
+      numbers(4),
+      numbers(5),
+      numbers(6)
+    )
+
+  /** How often time is told to have passed. */
+  val Tick: Span = Span.ofMillis(10)
+
+  /** A command is sent so often within its timeout. */
+  val MostTries = 8
+
+  private val MostReaders = 8
+
+  /** A refusal's text comes within this. */
+  private val TextWithin = Span.ofMillis(150)
+
+  /** Of an asker that needs no answer. */
+  private[offboard] val Silent = -1L
+
+  private[offboard] val Takeoff = 22
+  private[offboard] val Land    = 21
+  private[offboard] val SetMode = 176
+  private[offboard] val Arm     = 400
+
+  private val NoAutopilot = 8
+  private val Armed       = 128
+  private val Warning     = 4
+  private val InProgress  = 5
+
+  /** What a vehicle does whose action's time is over. */
+  private val Stay = Action.Velocity(Vector3.Zero)
+
+  private def numberOf(main: Int, sub: Int): Long = main.toLong << 16 | sub.toLong << 24
+
+  private[offboard] val OffboardMode = numberOf(6, 0)
+
+  /** Modes out of which it is taken into offboard: that itself, and PX4's automatic takeoff and hold. Whoever puts it into
+    * another one, a pilot or a failsafe, has it.
+    */
+  private val Flyable = Set(OffboardMode, numberOf(4, 2), numberOf(4, 3))
+
+  private def modeNumbers(main: Int, sub: Int): Vector[Float] =
+    Vector(1f, main.toFloat, sub.toFloat, 0f, 0f, 0f, 0f)
+
+  private def modeOf(numbers: Vector[Float]): Long = numberOf(numbers(1).toInt, numbers(2).toInt)
+
+  private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

@@ -1,0 +1,50 @@
+package skein.offboard
+
+import skein.mavlink.*
+import skein.signal.Kinematics
+import skein.units.*
+
+/** What a vehicle has told of its motion, in its own frame: by ODOMETRY, or else by LOCAL_POSITION_NED and the newest
+  * ATTITUDE_QUATERNION.
+  *
+  * @param newest
+  *   and when it was so, on the vehicle's clock
+  */
+final case class Estimate(
+    newest: Option[(state: Kinematics, at: Instant)] = None,
+    attitude: Option[AttitudeQuaternion] = None,
+    hasOdometry: Boolean = false
+):
+  /** @return
+    *   and whether there is something new
+    */
+  def heard(message: Message): (Estimate, Boolean) = message match
+    case one: Odometry if one.frameId == LocalNed && one.q.size == 4 =>
+      val turn     = Quaternion(one.q(0), one.q(1), one.q(2), one.q(3))
+      val told     = Vector3(one.vx, one.vy, one.vz)
+      val velocity = if one.childFrameId == LocalNed then told else turn.toWorld(told)
+      val state    = Kinematics(
+        Vector3(one.x, one.y, one.z),
+        velocity,
+        turn,
+        Vector3(one.rollspeed, one.pitchspeed, one.yawspeed)
+      )
+      copy(hasOdometry = true).withNewest(state, Instant.ofNanos(one.timeUsec * 1000))
+    case one: AttitudeQuaternion               => (copy(attitude = Some(one)), false)
+    case one: LocalPositionNed if !hasOdometry =>
+      attitude.fold((this, false)): turned =>
+        val state = Kinematics(
+          Vector3(one.x, one.y, one.z),
+          Vector3(one.vx, one.vy, one.vz),
+          Quaternion(turned.q1, turned.q2, turned.q3, turned.q4),
+          Vector3(turned.rollspeed, turned.pitchspeed, turned.yawspeed)
+        )
+        // Its time is cut to whole milliseconds.
+        withNewest(state, Instant.ofNanos(one.timeBootMs * 1_000_000 + 500_000))
+    case _ => (this, false)
+
+  private def withNewest(state: Kinematics, at: Instant): (Estimate, Boolean) =
+    if state.isFinite && newest.forall(at > _.at) then (copy(newest = Some((state = state, at = at))), true)
+    else (this, false)
+
+private val LocalNed = 1

@@ -1,0 +1,50 @@
+package skein.offboard
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.policy.Action
+import skein.port.{VehicleError, VehiclePort}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode. Not for real aircraft.
+  *
+  * A reading is the next sample that the vehicle tells. An action ends as replaced when the vehicle has its successor.
+  */
+final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSystem) extends VehiclePort:
+  import system.dispatcher
+
+  def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
+    link
+      .ask(number)((control, token, now) => control.read(token, now))
+      .map(_.map:
+        case told: Stamped[Kinematics @unchecked] => told
+        case _: Boolean => throw IllegalStateException("a reading was answered as an action"))
+
+  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+    done((control, token, now) => control.act(token, action, lasts, now))
+
+  def hover(): Future[Either[VehicleError, Boolean]] =
+    done((control, token, now) => control.hover(token, now))
+
+  def arm(): Future[Either[VehicleError, Boolean]] = order(Control.Arm, 1)
+
+  /** Stops the motors at once, wherever it is. */
+  def kill(): Future[Either[VehicleError, Boolean]] = order(Control.Arm, 0, 21196)
+
+  /** To the autopilot's own height; answers when it begins. */
+  def takeoff(): Future[Either[VehicleError, Boolean]] =
+    order(Control.Takeoff, Vector.fill(7)(Float.NaN)*)
+
+  def isArmed: Boolean    = link.control(number).isArmed
+  def isOnGround: Boolean = link.control(number).isOnGround
+
+  private def order(command: Int, numbers: Float*): Future[Either[VehicleError, Boolean]] =
+    done((control, token, now) => control.order(token, command, now, numbers.toVector.padTo(7, 0f)))
+
+  private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =
+    link
+      .ask(number)(what)
+      .map(_.map:
+        case answer: Boolean => answer
+        case _               => throw IllegalStateException("an action was answered as a reading"))

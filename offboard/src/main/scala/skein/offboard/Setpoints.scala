@@ -1,0 +1,88 @@
+package skein.offboard
+
+import skein.mavlink.{Message, SetAttitudeTarget, SetPositionTargetLocalNed}
+import skein.policy.{Action, Yaw}
+import skein.signal.Kinematics
+import skein.units.*
+import skein.vehicle.GoTo
+
+/** The message that has a vehicle do an action for now. */
+private[offboard] object Setpoints:
+
+  /** Absent where that is no setpoint, but a mode: hovering, landing.
+    *
+    * @param state
+    *   of the vehicle, in its own frame
+    * @param originNed
+    *   of that frame, in the flight's
+    */
+  def of(action: Action, state: Kinematics, originNed: Vector3, system: Int): Option[Message] = action match
+    case Action.Velocity(v, yaw) =>
+      Some(local(system, Vector3.Zero, v, Position | Acceleration, turn(yaw, v)))
+    case Action.VelocityAt(north, east, down, yaw) =>
+      val velocity = Vector3(north, east, 0)
+      val at       = Vector3(0, 0, down.value - originNed.z)
+      Some(local(system, at, velocity, 1 | 2 | 32 | Acceleration, turn(yaw, velocity)))
+    case Action.Position(place, speed, yaw) =>
+      val goal = place - originNed
+      val way  = goal - state.positionNed
+      // No setpoint says how fast a place is flown to: far from it, a velocity does.
+      if way.norm > NearM then
+        val velocity = GoTo.velocityNed(state.positionNed, state.velocityNed, goal, speed)
+        Some(local(system, Vector3.Zero, velocity, Position | Acceleration, turn(yaw, way)))
+      else Some(local(system, goal, Vector3.Zero, Velocity | Acceleration, turn(yaw, way)))
+    case Action.Turn(yaw) =>
+      Some(local(system, Vector3.Zero, Vector3.Zero, Position | Acceleration, turn(yaw, Vector3.Zero)))
+    case Action.Attitude(roll, pitch, yaw, thrust) =>
+      val (r, p, y)    = (roll.value / 2, pitch.value / 2, yaw.value / 2)
+      val (sr, sp, sy) = (StrictMath.sin(r), StrictMath.sin(p), StrictMath.sin(y))
+      val (cr, cp, cy) = (StrictMath.cos(r), StrictMath.cos(p), StrictMath.cos(y))
+      val q            = Vector(
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy
+      )
+      Some(SetAttitudeTarget(0, system, 1, 7, q.map(_.toFloat), 0, 0, 0, thrust.toFloat))
+    case Action.Hover | Action.Land => None
+
+  private val Position     = 1 | 2 | 4
+  private val Velocity     = 8 | 16 | 32
+  private val Acceleration = 64 | 128 | 256
+  private val IgnoreYaw    = 1024
+  private val IgnoreRate   = 2048
+  private val NearM        = 1.0
+  private val ForwardMps   = 0.5
+
+  /** Bits to ignore, yaw and yaw rate. */
+  private def turn(yaw: Yaw, travelNed: Vector3): (mask: Int, yaw: Double, rate: Double) = yaw match
+    case Yaw.Towards(heading) => (mask = IgnoreRate, yaw = heading.value, rate = 0.0)
+    case Yaw.Turning(rate)    => (mask = IgnoreYaw, yaw = 0.0, rate = rate)
+    case Yaw.Forward if StrictMath.hypot(travelNed.x, travelNed.y) > ForwardMps =>
+      (mask = IgnoreRate, yaw = StrictMath.atan2(travelNed.y, travelNed.x), rate = 0.0)
+    case Yaw.Still | Yaw.Forward => (mask = IgnoreYaw | IgnoreRate, yaw = 0.0, rate = 0.0)
+
+  private def local(
+      system: Int,
+      at: Vector3,
+      velocity: Vector3,
+      ignored: Int,
+      turn: (mask: Int, yaw: Double, rate: Double)
+  ): Message = SetPositionTargetLocalNed(
+    0,
+    system,
+    1,
+    LocalNed,
+    ignored | turn.mask,
+    at.x.toFloat,
+    at.y.toFloat,
+    at.z.toFloat,
+    velocity.x.toFloat,
+    velocity.y.toFloat,
+    velocity.z.toFloat,
+    0,
+    0,
+    0,
+    turn.yaw.toFloat,
+    turn.rate.toFloat
+  )

@@ -1,0 +1,124 @@
+package skein.simulator
+
+import scala.collection.mutable
+import skein.autopilot.*
+import skein.mavlink.Message
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** The vehicles of a simulation as MAVLink vehicles, with system numbers from 1 in their order: bytes of peers go in, bytes
+  * for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is disarmed; before and after,
+  * AirSim's API can fly it. Not thread-safe.
+  */
+private[simulator] final class MavlinkVehicles(simulation: Simulation):
+  import MavlinkVehicles.*
+
+  private val world      = simulation.world
+  private val startedAt  = world.now
+  private val autopilots = world.vehicles.indices.map(OnBoard(_)).toVector
+  private val channels   = mutable.LinkedHashMap.empty[Long, Channel]
+
+  autopilots.foreach(one => world.attach(one.index, one))
+
+  /** @param systems
+    *   that the peer sees; none is all
+    */
+  def join(channel: Long, systems: Vector[Int]): Unit =
+    val seen = if systems.isEmpty then autopilots.map(_.system) else systems
+    channels(channel) = Channel(seen, sinceBoot)
+
+  def leave(channel: Long): Unit = channels.remove(channel): Unit
+
+  /** Takes in what a peer has sent, now: time was let pass before. */
+  def receive(channel: Long, bytes: Array[Byte]): Unit =
+    for
+      peer  <- channels.get(channel)
+      frame <- peer.reader.read(bytes)
+      (system, component) = targetOf(frame.message)
+      one <- autopilots
+      if peer.systems.contains(
+        one.system
+      ) && (system == 0 || system == one.system) && component <= Numbers.Autopilot1
+    do one.hear(frame.message, (system = frame.system, component = frame.component), peer)
+
+  /** What is due for each peer, in datagrams. */
+  def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
+    val now = sinceBoot
+    for (_, peer) <- channels; (system, id) <- peer.takeDue(now) do
+      val one = autopilots(system - 1)
+      Telemetry.of(id, one.autopilot, one.motion).foreach(peer.write(system, _))
+    channels.iterator.map((id, peer) => (channel = id, datagrams = peer.take())).filter(
+      _.datagrams.nonEmpty
+    ).toVector
+
+  /** When something is to be told next, on the simulator's clock. */
+  def nextDue: Option[Instant] =
+    channels.valuesIterator.flatMap(_.nextDue).minOption.map(startedAt + _)
+
+  /** Frames that came whole, and those that were damaged, unknown or missing. */
+  def counts: (whole: Long, damaged: Long) =
+    val all = channels.valuesIterator.map(_.reader.counts).toVector
+    (all.map(_.frames).sum, all.map(one => one.badChecksum + one.unknown + one.notUnderstood).sum)
+
+  private def sinceBoot: Span = world.now.since(startedAt)
+
+  private def tell(system: Int, messages: Vector[Message]): Unit =
+    for message <- messages; (_, peer) <- channels do peer.write(system, message)
+
+  /** One vehicle's autopilot. */
+  private final class OnBoard(val index: Int) extends Pilot:
+    val system: Int          = index + 1
+    private val vehicle      = world.vehicles(index)
+    private var decided      = Autopilot(system, vehicle.home)
+    def autopilot: Autopilot = decided
+
+    def motion: Motion = motionAt(world.now)
+
+    private def motionAt(at: Instant): Motion =
+      val state = vehicle.state.kinematics.copy(
+        positionNed = vehicle.positionAt(at),
+        velocityNed = vehicle.velocityAt(at)
+      )
+      Motion(at.since(startedAt), state, vehicle.flying)
+
+    def turn(vehicle: SimulatedVehicle, at: Instant): Option[Setpoint] =
+      val wasArmed          = decided.isArmed
+      val (heard, setpoint) = decided.steer(motionAt(at))
+      decided = heard.next
+      tell(system, heard.news)
+      if decided.isArmed || wasArmed then
+        takeOver()
+        setpoint
+      else None
+
+    def hear(message: Message, from: (system: Int, component: Int), peer: Channel): Unit =
+      val heard = decided.heard(message, from, motion)
+      decided = heard.next
+      takeOver()
+      heard.answers.foreach(peer.write(system, _))
+      tell(system, heard.news)
+      for (id, micros) <- heard.interval do peer.setInterval(system, id, micros, sinceBoot)
+      // A setpoint acts at once, as a move does.
+      turn(vehicle, world.now).foreach(vehicle.command(_, world.now))
+
+    private def takeOver(): Unit =
+      if decided.isArmed && !armed then
+        vehicle.setApiControl(true)
+        val _ = vehicle.arm(true)
+      if !decided.isArmed && armed then
+        val _ = vehicle.arm(false)
+        vehicle.setApiControl(false)
+      armed = decided.isArmed
+
+    private var armed = false
+
+private[simulator] object MavlinkVehicles:
+  /** To which system and component a message goes; 0 is all. */
+  private def targetOf(message: Message): (system: Int, component: Int) =
+    def named(name: String) = message.productElementNames.indexOf(name) match
+      case -1    => 0
+      case index =>
+        message.productElement(index) match
+          case number: Int => number
+          case _           => 0
+    (system = named("targetSystem"), component = named("targetComponent"))

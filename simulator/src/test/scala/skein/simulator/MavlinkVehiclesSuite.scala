@@ -1,0 +1,134 @@
+package skein.simulator
+
+import scala.util.Random
+import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.mavlink.*
+import skein.units.*
+
+/** The simulator's vehicles by MAVLink, without sockets and without a clock. */
+class MavlinkVehiclesSuite extends munit.FunSuite:
+  private final class Flown(vehicles: Int = 1):
+    val simulation = Simulation(
+      SimulatorSettings(WorldSettings(Vector.tabulate(vehicles)(index =>
+        VehicleSettings(s"v$index", Vector3(0, 10 * index, 0))
+      ))),
+      Instant.Epoch
+    )
+    private val mavlink = MavlinkVehicles(simulation)
+    private val reader  = FrameReader()
+    private val writer  = FrameWriter(245, 190)
+    var heard           = Vector.empty[Frame]
+    var now             = Instant.Epoch
+    mavlink.join(0, Vector.empty)
+
+    def send(message: Message): Unit = send(writer.write(message))
+
+    def send(bytes: Array[Byte]): Unit =
+      mavlink.receive(0, bytes)
+      take()
+
+    def run(span: Span): Unit =
+      val until = now + span
+      while now < until do
+        now = (now + Span.ofMillis(20)).min(until)
+        simulation.advance(now)
+        take()
+
+    private def take(): Unit =
+      for (_, datagrams) <- mavlink.take(); bytes <- datagrams do
+        assert(bytes.length <= 1400, s"${bytes.length} bytes")
+        heard ++= reader.readDatagram(bytes)
+
+    def last[A](using tag: reflect.ClassTag[A]): A =
+      heard.reverseIterator.map(_.message).collectFirst { case one: A => one }.get
+
+  private def command(system: Int, number: Int, numbers: Float*): Message =
+    val all = numbers.padTo(7, 0f)
+    CommandLong(system, 1, number, 0, all(0), all(1), all(2), all(3), all(4), all(5), all(6))
+
+  private def takenOff(vehicles: Int = 1): Flown =
+    val flown = Flown(vehicles)
+    for system <- 1 to vehicles do
+      flown.send(command(system, 400, 1))
+      flown.send(command(system, 22, 0, 0, 0, 0, 0, 0, Float.NaN))
+    flown.run(Span.ofSeconds(8))
+    flown
+
+  test("a vehicle arms, takes off, flies a velocity, returns, lands and disarms; all of it is told"):
+    val flown = takenOff()
+    assertEqualsFloat(flown.last[LocalPositionNed].z, -2.5f, 0.35f)
+    def fly() = flown.send(SetPositionTargetLocalNed(0, 1, 1, 1, 0xdc7, 0, 0, 0, 3, 0, -1, 0, 0, 0, 0, 0))
+    fly()
+    flown.send(command(1, 176, 1, 6, 0))
+    for _ <- 1 to 50 do
+      fly()
+      flown.run(Span.ofMillis(100))
+    val flying = flown.last[LocalPositionNed]
+    assertEqualsFloat(flying.vx, 3, 0.1f)
+    assertEqualsFloat(flying.vz, -1, 0.1f)
+    val odometry = flown.last[Odometry]
+    val turn     = Quaternion(odometry.q(0), odometry.q(1), odometry.q(2), odometry.q(3))
+    val inWorld  = turn.toWorld(Vector3(odometry.vx, odometry.vy, odometry.vz))
+    assert((inWorld - Vector3(flying.vx, flying.vy, flying.vz)).norm < 1e-3, inWorld.toString)
+    flown.run(Span.ofSeconds(2))
+    assertEquals(flown.last[Heartbeat].customMode, 4L << 16 | 3L << 24)
+    flown.send(command(1, 20))
+    flown.run(Span.ofSeconds(90))
+    val landed = flown.last[LocalPositionNed]
+    assert(StrictMath.hypot(landed.x, landed.y) < 1 && landed.z.abs < 0.3, landed.toString)
+    assertEquals(flown.last[ExtendedSysState].landedState, 1)
+    assertEquals(flown.last[Heartbeat].baseMode & 128, 0)
+
+  test("each vehicle hears what is meant for it, and all what is meant for all"):
+    val flown = Flown(vehicles = 3)
+    flown.send(command(2, 400, 1))
+    flown.run(Span.ofSeconds(1.1))
+    val armed = (1 to 3).map(system =>
+      flown.heard.filter(_.system == system).map(_.message).collect { case h: Heartbeat =>
+        h
+      }.last.baseMode & 128
+    )
+    assertEquals(armed, Vector(0, 128, 0))
+    flown.send(Timesync(0, 5))
+    assertEquals(
+      flown.heard.collect { case Frame(system, _, _, Timesync(_, 5, _, _), _) => system },
+      Vector(1, 2, 3)
+    )
+
+  test("messages come as often as they are asked for"):
+    val flown = Flown()
+    flown.send(command(1, 511, 32, 20_000))
+    flown.send(command(1, 511, 30, -1))
+    flown.heard = Vector.empty
+    flown.run(Span.ofSeconds(2))
+    val messages = flown.heard.map(_.message)
+    assertEquals(messages.count(_.isInstanceOf[LocalPositionNed]), 100)
+    assertEquals(messages.count(_.isInstanceOf[Attitude]), 0)
+    assertEquals(messages.count(_.isInstanceOf[Heartbeat]), 2)
+
+  test("without MAVLink's arming, AirSim's own calls fly the vehicle"):
+    val flown = Flown()
+    flown.run(Span.ofSeconds(1))
+    assert(!flown.simulation.world.vehicles.head.apiControl)
+
+  test("a thousand damaged frames of each kind, and a thousand whole ones of any content, harm nothing"):
+    val random = Random(18)
+    val flown  = takenOff()
+    val writer = FrameWriter(245, 190)
+    for definition <- Dialect.all; round <- 1 to 1000 do
+      val bytes   = random.nextBytes(definition.length)
+      val message = definition.decode(bytes)
+      val frame   = writer.write(message)
+      flown.send(frame)
+      frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
+      flown.send(frame.take(1 + random.nextInt(frame.length)))
+      if round % 100 == 0 then
+        flown.heard = Vector.empty
+        flown.run(Span.ofMillis(20))
+    flown.run(Span.ofSeconds(60))
+    flown.heard = Vector.empty
+    for _ <- 1 to 40 do flown.send(Timesync(0, 99)) // Whatever a damaged one has claimed, these end it.
+    assert(flown.heard.exists(_.message match
+      case Timesync(_, 99, _, _) => true
+      case _                     => false))
+    assert(flown.simulation.world.vehicles.head.state.kinematics.isFinite)

@@ -1,0 +1,54 @@
+package skein.simulator
+
+import java.io.File
+import java.nio.file.{Files, Path}
+import scala.sys.process.{Process, ProcessLogger}
+
+/** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions' names.
+  *
+  * @param imports
+  *   the module that is there when all is
+  * @param scripts
+  *   a resource beside which scripts lie
+  * @param installs
+  *   what `pip install` is called with, one call after the other
+  */
+private[simulator] final class PythonEnvironment(imports: String, scripts: String, installs: Seq[String]*):
+  private val resources = Path.of(getClass.getResource(scripts).toURI).getParent
+
+  /** The environment's Python, or why there is none. */
+  def install(): Either[String, Path] =
+    val cache =
+      Option(System.getenv("XDG_CACHE_HOME")).fold(Path.of(sys.props("user.home"), ".cache"))(Path.of(_))
+    val pinned = installs.flatten.filter(_.contains("=="))
+    val home   = cache.resolve("skein").resolve(pinned.mkString("python-", "-", "").replace("==", "-"))
+    val bin    = home.resolve("bin").resolve("python")
+    if isThere(bin) then Right(bin)
+    else
+      val made = ran("python3", "-m", "venv", "--clear", home.toString)
+      for
+        _ <- installs.foldLeft(made)((before, packages) => before.flatMap(_ => pip(bin, packages)))
+        _ <- Either.cond(isThere(bin), (), "it is installed but cannot be imported")
+      yield bin
+
+  def run(python: Path, script: String, arguments: String*): (Int, String) =
+    val output  = StringBuilder()
+    val command = Seq(python.toString, "-u", resources.resolve(script).toString) ++ arguments
+    val status  = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
+    (status, output.toString)
+
+  private def isThere(python: Path): Boolean =
+    Files.exists(python) && ran(python.toString, "-c", s"import $imports").isRight
+
+  private def pip(python: Path, packages: Seq[String]): Either[String, Unit] =
+    ran(Seq(python.toString, "-m", "pip", "install", "--quiet", "--disable-pip-version-check") ++ packages*)
+
+  private def ran(command: String*): Either[String, Unit] =
+    val output = StringBuilder()
+    try
+      val status = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
+      Either.cond(status == 0, (), s"${command.mkString(" ")}: ${output.toString.takeRight(500)}")
+    catch case e: java.io.IOException => Left(e.getMessage)
+
+  private def process(command: Seq[String]) =
+    Process(command, Option.empty[File], "PYTHONPATH" -> resources.toString)
