@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks)
+    .aggregate(scene, blocks, cluster)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -143,6 +143,12 @@ lazy val blocks = project
   .dependsOn(core % Test)
   .settings(libraryDependencies ++= munit)
 
+/** Blocks computed by any number of machines that come and go, over Pekko Cluster. */
+lazy val cluster = project
+  .settings(artifact("cluster", "Work on many machines that come and go, counted once, over Pekko Cluster"))
+  .dependsOn(blocks)
+  .settings(libraryDependencies ++= pekkoCluster ++ munit)
+
 /** Recordings. */
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
@@ -171,7 +177,7 @@ lazy val environment = project
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, environment)
+  .dependsOn(flight % "compile->compile;test->test", view, environment, cluster)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
@@ -203,7 +209,7 @@ lazy val cli = project
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
       """case " $* " in""",
-      """  " search "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
+      """  " search "* | " worker "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
       """    addJava "--add-modules=jdk.incubator.vector"""",
       """    addJava "-XX:SharedArchiveFile=${app_home}/../skein-vector.jsa"""",
       """    exec 2> >(""",
