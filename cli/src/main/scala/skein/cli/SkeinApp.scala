@@ -24,7 +24,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
     SpreadCommand(),
-    SearchCommand(),
+    SearchCommand(getClass.getName.stripSuffix("$")),
+    WorkerCommand(),
     BudgetCommand(),
     ServeCommand,
     LinkCommand,

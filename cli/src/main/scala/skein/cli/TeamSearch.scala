@@ -7,7 +7,7 @@ import skein.search.*
 import skein.settings.PolicyFile.brief
 
 /** `./skein search --scenario`: a search over a scenario's settings, to its end or until it is stopped. */
-private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int, shown: Shown):
+private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int, fliers: Fliers, shown: Shown):
   import TeamSearch.*
 
   def run(from: SearchState): Either[String, Unit] =
@@ -17,10 +17,15 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
-      val searched  =
-        SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
-          .run(from, () => stopped)(state => line.show(state.flown, progress(state)))
+      var last      = from
+      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
+      val searched =
+        SearchRun(setup.search, setup.question, fliers(Judge.Candidates), folder, () => System.nanoTime())
+          .run(from, () => stopped): state =>
+            last = state
+            line.show(state.flown, progress(state))
       line.end()
+      fliers.onWait((_, _) => ())
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
@@ -53,7 +58,7 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
   /** Measures the winner on fresh episodes and writes settings and pictures. */
   private def conclude(batch: TeamBatch, state: SearchState): Either[String, Unit] =
     val fresh  = if state.isDone then setup.question.fresh else setup.question.fresh.min(FreshEpisodes)
-    val result = TeamSearchResult.measured(setup, batch, state, fresh)
+    val result = TeamSearchResult.measured(setup, fliers(_), state, fresh)
     for
       file <- OutFolder.write(folder, Seq(OutFolder.text("scenario.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
@@ -66,7 +71,7 @@ private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int
     val land    = Landscape.of(
       setup.space,
       result.best,
-      setup.evaluator(batch),
+      fliers(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + (if byLanes then LandscapeEpisodes else 2),
       onMap = if byLanes then OnMap else ScalarOnMap
     )
