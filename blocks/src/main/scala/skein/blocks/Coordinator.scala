@@ -56,7 +56,7 @@ final case class Coordinator private (
     * wait for their turn at the worker.
     *
     * @param holding
-    *   numbers of the blocks that it has; what it was given more than [[OnItsWay]] ago and does not name was lost
+    *   numbers of the blocks that it has; what it was given, or named, more than [[OnItsWay]] ago and does not name was lost
     * @param nowNanos
     *   on any clock that does not go back
     * @return
@@ -66,8 +66,11 @@ final case class Coordinator private (
     workers.get(worker).filter(_.isHere) match
       case None         => (this, None)
       case Some(record) =>
-        val gone = record.holds.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
-        val here = forgotten(worker, gone.keySet).released(worker, gone)
+        // An answer that is on its way may be overtaken by the request behind it.
+        val seen = record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
+        val gone = seen.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
+        val here = copy(workers = workers.updated(worker, record.copy(holds = seen -- gone.keySet)))
+          .released(worker, gone)
         val most = if waiting.size >= cores then MostHeld * record.cores else record.cores
         if holding.size.max(here.workers(worker).holds.size) >= most then (here, None)
         else here.handedOut(worker, nowNanos)
@@ -187,8 +190,10 @@ object Coordinator:
   /** Of each core: a block that is computed, and one that waits for its turn at the worker. */
   val MostHeld = 2
 
-  /** Within which a block that was given may still be on its way. */
-  val OnItsWay: Long = 2_000_000_000L
+  /** Within which a block that was given, or the answer to one that its worker named, may still be on its way: twice as
+    * long as workers wait between two requests, at most.
+    */
+  val OnItsWay: Long = 4_000_000_000L
 
   val Patience: Long = 600_000_000_000L
 
@@ -224,7 +229,7 @@ object Coordinator:
 /** What a worker has done.
   *
   * @param holds
-  *   numbers of the blocks that it was given, and when
+  *   numbers of the blocks that it was given, and when, or when it named them last
   * @param busyNanos
   *   that it computed, over all its answers
   */

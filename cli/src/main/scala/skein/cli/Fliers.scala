@@ -26,8 +26,8 @@ private[cli] object Fliers:
 
   /** This process. */
   def here(ready: ReadySearch, threads: Int): Fliers = new Fliers:
-    private val judges                     = ready.judges(threads)
-    def apply(judge: Judge): Evaluator     = judges(judge)
+    private val judges                             = ready.judges(threads)
+    def apply(judge: Judge): Evaluator             = judges(judge)
     def onWait(show: (Long, String) => Unit): Unit = ()
 
   /** Runs with those whom the options choose, and ends them.
@@ -70,8 +70,8 @@ private[cli] object Fliers:
       blockEpisodes: Int,
       shown: Shown
   ) extends Fliers with Elsewhere:
-    private val startedAt = System.nanoTime()
-    private val failure   = AtomicReference(Option.empty[String])
+    private val startedAt                    = System.nanoTime()
+    private val failure                      = AtomicReference(Option.empty[String])
     private var show: (Long, String) => Unit = (_, _) => ()
 
     private val processes = WorkerProcesses(
@@ -145,7 +145,10 @@ private[cli] object Fliers:
             f"${record.busyNanos * 1e-9}%.1f"
           )
       s"""${counts.accepted} blocks counted, ${now.resumed} more were in the ledger; ${counts.repeated} answers came twice, ${counts.lost} blocks were lost with their workers and given out again
-         |${TextTable(Vector("<worker", "cores", "counted", "repeated", "busy, s"), rows.take(MostRows)).render}${
+         |${TextTable(
+          Vector("<worker", "cores", "counted", "repeated", "busy, s"),
+          rows.take(MostRows)
+        ).render}${
           if rows.size > MostRows then s"\nand ${rows.size - MostRows} more" else ""
         }""".stripMargin
 

@@ -207,7 +207,10 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         )
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
-        else conclude(setup, batch, folder, state, fliers, shown).map(_ => if !state.isDone then say(shown, goOn))
+        else
+          conclude(setup, batch, folder, state, fliers, shown).map(_ =>
+            if !state.isDone then say(shown, goOn)
+          )
 
   private def introduction(setup: SearchSetup, batch: DuelBatch): String =
     import setup.{family, objective, opponent, question}

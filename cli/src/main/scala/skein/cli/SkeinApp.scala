@@ -26,6 +26,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     SpreadCommand(),
     SearchCommand(getClass.getName.stripSuffix("$")),
     WorkerCommand(),
+    ClusterCommand,
     BudgetCommand(),
     ServeCommand,
     LinkCommand,

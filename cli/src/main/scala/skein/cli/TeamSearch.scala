@@ -7,7 +7,13 @@ import skein.search.*
 import skein.settings.PolicyFile.brief
 
 /** `./skein search --scenario`: a search over a scenario's settings, to its end or until it is stopped. */
-private[cli] final class TeamSearch(setup: TeamSetup, folder: Path, threads: Int, fliers: Fliers, shown: Shown):
+private[cli] final class TeamSearch(
+    setup: TeamSetup,
+    folder: Path,
+    threads: Int,
+    fliers: Fliers,
+    shown: Shown
+):
   import TeamSearch.*
 
   def run(from: SearchState): Either[String, Unit] =

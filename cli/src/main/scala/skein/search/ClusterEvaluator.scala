@@ -39,8 +39,8 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
       candidates: Vector[Vector[Double]],
       episodes: Range
   ): Option[Vector[Tally]] =
-    val blocks   = SearchBlock.cut(judge, candidates, episodes, atMost)
-    val answered = elsewhere.compute(blocks.map(_.bytes))
+    val blocks    = SearchBlock.cut(judge, candidates, episodes, atMost)
+    val answered  = elsewhere.compute(blocks.map(_.bytes))
     var isGivenUp = false
     while !answered.isCompleted do
       try Await.ready(answered, 200.millis): Unit
@@ -54,5 +54,5 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
       .result(answered, 1.second)
       .flatMap:
         case None          => Right(None)
-        case Some(answers) => SearchBlock.together(blocks, answers).map(Some(_))
+        case Some(answers) => SearchBlock.together(blocks, answers, episodes.size).map(Some(_))
       .fold(reason => throw ElsewhereFailed(reason), identity)

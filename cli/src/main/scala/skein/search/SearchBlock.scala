@@ -69,10 +69,10 @@ object SearchBlock:
       atMost: Int
   ): Vector[SearchBlock] =
     val total = candidates.size.toLong * episodes.size
-    val most  = (total / 16).max(atMost / 16).max(1).min(atMost.min(MostEpisodes)).toInt
+    val most  = (total / 16).max(atMost / 256).max(1).min(atMost.min(MostEpisodes)).toInt
     if episodes.size > most then
-      for candidate <- candidates; part <- episodes.grouped(most).toVector
-      yield SearchBlock(judge, Vector(candidate), part, isWhole = part.size == episodes.size)
+      for candidate <- candidates; from <- Vector.range(episodes.start, episodes.end, most)
+      yield SearchBlock(judge, Vector(candidate), from until (from + most).min(episodes.end), isWhole = false)
     else
       val fit     = (MostBytes / (8 * candidates.head.size.max(1))).max(1).min(MostBytes / TallyBytes)
       val several = (most / episodes.size).max(1).min(fit)
@@ -81,39 +81,41 @@ object SearchBlock:
 
   /** Puts the answers of a call's blocks together.
     *
+    * @param episodes
+    *   of the call
     * @return
     *   a tally for each candidate in their order, equal to an undivided call's to the bit; or what was wrong
     */
-  def together(blocks: Vector[SearchBlock], answers: Vector[ArraySeq[Byte]]): Either[String, Vector[Tally]] =
+  def together(
+      blocks: Vector[SearchBlock],
+      answers: Vector[ArraySeq[Byte]],
+      episodes: Int
+  ): Either[String, Vector[Tally]] =
     blocks.zip(answers).find((block, answer) => answer.length != block.expected) match
       case Some((block, answer)) =>
         Left(s"expected an answer of ${block.expected} bytes to a block, came ${answer.length}")
       case None =>
         val tallies = Vector.newBuilder[Tally]
         var parts   = Vector.empty[Double]
-        var of      = Vector.empty[Double]
-        def end()   =
-          if parts.nonEmpty then tallies += Tally.of(parts.size)(parts)
-          parts = Vector.empty
         for (block, answer) <- blocks.zip(answers) do
           val in = ByteBuffer.wrap(answer.toArray)
           if block.isWhole then
             for _ <- block.candidates do tallies += Tally(in.getInt, in.getDouble, in.getDouble)
           else
-            if block.candidates.head ne of then end()
-            of = block.candidates.head
             parts ++= Vector.fill(block.episodes.size)(in.getDouble)
-        end()
+            if parts.size == episodes then
+              tallies += Tally.of(episodes)(parts)
+              parts = Vector.empty
         Right(tallies.result())
 
   /** @return or what was expected, and what came */
   def read(bytes: ArraySeq[Byte]): Either[String, SearchBlock] =
     val in = ByteBuffer.wrap(bytes.toArray)
     try
-      val (judge, whole)     = (in.get.toInt, in.get.toInt)
-      val (from, end)        = (in.getInt, in.getInt)
-      val (count, axes)      = (in.getInt, in.getInt)
-      val isSound            =
+      val (judge, whole) = (in.get.toInt, in.get.toInt)
+      val (from, end)    = (in.getInt, in.getInt)
+      val (count, axes)  = (in.getInt, in.getInt)
+      val isSound        =
         judge >= 0 && judge < Judge.values.length && from >= 0 && end > from && end - from <= MostEpisodes &&
           count > 0 && axes >= 0 && in.remaining == 8L * count * axes
       Either.cond(

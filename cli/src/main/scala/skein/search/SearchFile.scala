@@ -15,12 +15,12 @@ object SearchFile:
 
   type Question = SearchQuestion | TeamQuestion
 
-  given ReadWriter[Tally]                                 = ReadWriter.derived
-  private given ReadWriter[Scored]                        = ReadWriter.derived
-  private given ReadWriter[CmaEs.State]                   = ReadWriter.derived
-  private given ReadWriter[Course]                        = ReadWriter.derived
-  private given ReadWriter[SearchState]                   = ReadWriter.derived
-  given ReadWriter[Question]                              = readwriter[ujson.Value].bimap(
+  given ReadWriter[Tally]               = ReadWriter.derived
+  private given ReadWriter[Scored]      = ReadWriter.derived
+  private given ReadWriter[CmaEs.State] = ReadWriter.derived
+  private given ReadWriter[Course]      = ReadWriter.derived
+  private given ReadWriter[SearchState] = ReadWriter.derived
+  given ReadWriter[Question]            = readwriter[ujson.Value].bimap(
     {
       case duel: SearchQuestion => writeJs(duel)
       case team: TeamQuestion   => writeJs(team)

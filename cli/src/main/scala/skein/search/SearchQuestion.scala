@@ -140,7 +140,11 @@ final case class SearchSetup(
   /** @param many
     *   whether many candidates will meet the same episodes
     */
-  def evaluator(batch: DuelBatch, of: PolicyFamily = family, many: Boolean = true): ValueEvaluator = DuelEvaluator(
+  def evaluator(
+      batch: DuelBatch,
+      of: PolicyFamily = family,
+      many: Boolean = true
+  ): ValueEvaluator = DuelEvaluator(
     batch,
     conditions.duel.durationS,
     of,

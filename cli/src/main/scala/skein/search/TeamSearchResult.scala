@@ -61,7 +61,12 @@ object TeamSearchResult:
   /** @param state
     *   with a best candidate
     */
-  def measured(setup: TeamSetup, by: Judge => Evaluator, state: SearchState, episodes: Int): TeamSearchResult =
+  def measured(
+      setup: TeamSetup,
+      by: Judge => Evaluator,
+      state: SearchState,
+      episodes: Int
+  ): TeamSearchResult =
     val best    = state.best.get.candidate
     val range   = SearchResult.FreshFrom until SearchResult.FreshFrom + episodes
     val tallies = by(Judge.Winner).tallies(Vector(best, setup.space.defaults), range)

@@ -29,7 +29,9 @@ class BadInputSuite extends munit.FunSuite:
 
   folder.test("a folder that cannot be made is told before the flight"): path =>
     val file = Files.writeString(path.resolve("file"), "").toString
-    for command <- Seq(FlyCommand(), SpreadCommand(), SearchCommand("skein.cli.Main"), BudgetCommand(), LatencyCommand) do
+    for command <-
+        Seq(FlyCommand(), SpreadCommand(), SearchCommand("skein.cli.Main"), BudgetCommand(), LatencyCommand)
+    do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 

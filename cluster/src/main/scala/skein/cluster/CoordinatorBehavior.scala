@@ -51,9 +51,9 @@ private[cluster] final class CoordinatorBehavior private (
 
   def onMessage(command: Command): Behavior[Command] =
     command match
-      case ask: ToCoordinator.Ask                                     => asked(ask)
-      case ToCoordinator.Done(job.run, worker, number, busy, answer)  => answered(worker, number, busy, answer)
-      case ToCoordinator.Failed(job.run, worker, number, reason)      =>
+      case ask: ToCoordinator.Ask                                    => asked(ask)
+      case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
+      case ToCoordinator.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
       case _: ToCoordinator                              => () // Of an earlier run.
@@ -173,8 +173,8 @@ private[cluster] object CoordinatorBehavior:
 
   sealed trait Local
   final case class Compute(works: Vector[ArraySeq[Byte]], promise: Promise[Outcome]) extends Local
-  case object Cancel                                                                extends Local
-  final case class Unreachable(address: Address)                                    extends Local
+  case object Cancel                                                                 extends Local
+  final case class Unreachable(address: Address)                                     extends Local
 
   /** A worker's process has ended. */
   final case class Ended(worker: String) extends Local
@@ -193,9 +193,9 @@ private[cluster] object CoordinatorBehavior:
       answers: mutable.HashMap[BlockKey, ArraySeq[Byte]],
       promise: Promise[Outcome]
   ):
-    val asked: Int                   = keys.toSet.size
-    def isDone: Boolean              = answers.size == asked
-    def all: Vector[ArraySeq[Byte]]  = keys.map(answers)
+    val asked: Int                  = keys.toSet.size
+    def isDone: Boolean             = answers.size == asked
+    def all: Vector[ArraySeq[Byte]] = keys.map(answers)
 
   def apply(job: Job, ledger: Ledger, tell: News => Unit, onProgress: Progress => Unit): Behavior[Command] =
     Behaviors.withTimers: (timers: TimerScheduler[Command]) =>

@@ -6,7 +6,12 @@ import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
 import org.apache.pekko.actor.{ActorSystem, Address, ExtendedActorSystem}
-import org.apache.pekko.cluster.ClusterEvent.{MemberEvent, MemberRemoved, ReachabilityEvent, UnreachableMember}
+import org.apache.pekko.cluster.ClusterEvent.{
+  MemberEvent,
+  MemberRemoved,
+  ReachabilityEvent,
+  UnreachableMember
+}
 import org.apache.pekko.cluster.typed.{Cluster, Join, Subscribe}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
@@ -93,10 +98,13 @@ object CoordinatorNode:
     system.asInstanceOf[ExtendedActorSystem].provider.getDefaultAddress
 
   private def reason(failed: Throwable): String =
-    Iterator.iterate(failed)(_.getCause).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
+    Iterator.iterate(failed)(
+      _.getCause
+    ).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
 
   /** Tells the coordinator who is out of reach. */
-  private def watching(coordinator: ActorRef[CoordinatorBehavior.Command]): Behavior[MemberEvent | ReachabilityEvent] =
+  private def watching(coordinator: ActorRef[CoordinatorBehavior.Command])
+      : Behavior[MemberEvent | ReachabilityEvent] =
     Behaviors.setup: context =>
       val events = Cluster(context.system).subscriptions
       events ! Subscribe(context.self, classOf[MemberEvent])

@@ -17,8 +17,8 @@ private[cluster] final class MessageCodec(
   import MessageCodec.*
 
   def bytes(message: ToCoordinator | ToWorker): Array[Byte] =
-    val out  = ByteArrayOutputStream()
-    val data = DataOutputStream(out)
+    val out                 = ByteArrayOutputStream()
+    val data                = DataOutputStream(out)
     def text(value: String) =
       val encoded = value.take(MostText / 4).getBytes("UTF-8")
       data.writeInt(encoded.length)
@@ -72,23 +72,23 @@ private[cluster] final class MessageCodec(
 
   /** @return or what was expected, and what came */
   def message(bytes: Array[Byte]): Either[String, ToCoordinator | ToWorker] =
-    val in                      = DataInputStream(ByteArrayInputStream(bytes))
-    def count(most: Int): Int   =
+    val in                    = DataInputStream(ByteArrayInputStream(bytes))
+    def count(most: Int): Int =
       val came = in.readInt()
       if came < 0 || came > most then throw IOException(s"expected a length of 0 to $most, came $came")
       came
-    def part(most: Int)         =
+    def part(most: Int) =
       val length = count(most)
       if length > in.available then
         throw IOException(s"expected $length more bytes, came ${in.available}")
       in.readNBytes(length)
-    def text()                  = String(part(MostText), "UTF-8")
-    def blob(): ArraySeq[Byte]  = ArraySeq.unsafeWrapArray(part(MostBytes))
+    def text()                 = String(part(MostText), "UTF-8")
+    def blob(): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(part(MostBytes))
     try
       val read: ToCoordinator | ToWorker = in.readByte().toInt match
         case 1 =>
-          val worker  = text()
-          val cores   = in.readInt()
+          val worker = text()
+          val cores  = in.readInt()
           if cores < 1 || cores > MostCores then
             throw IOException(s"expected 1 to $MostCores cores, came $cores")
           val build   = text()
@@ -105,8 +105,8 @@ private[cluster] final class MessageCodec(
         case other => throw IOException(s"expected a kind of message from 1 to 8, came $other")
       Either.cond(in.available == 0, read, s"expected the message's end, came ${in.available} more bytes")
     catch
-      case _: java.io.EOFException        => Left(s"the message is cut off after ${bytes.length} bytes")
-      case wrong: IOException             => Left(wrong.getMessage)
+      case _: java.io.EOFException         => Left(s"the message is cut off after ${bytes.length} bytes")
+      case wrong: IOException              => Left(wrong.getMessage)
       case wrong: IllegalArgumentException => Left(s"expected an actor's address: ${wrong.getMessage}")
 
 private[cluster] object MessageCodec:

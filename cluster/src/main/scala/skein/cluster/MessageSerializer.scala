@@ -21,5 +21,6 @@ final class MessageSerializer(system: ExtendedActorSystem) extends SerializerWit
     case other => throw NotSerializableException(s"expected a message of the cluster, came ${other.getClass}")
 
   def fromBinary(bytes: Array[Byte], manifest: String): AnyRef =
-    if manifest != "1" then throw NotSerializableException(s"expected messages of version 1, came '$manifest'")
+    if manifest != "1" then
+      throw NotSerializableException(s"expected messages of version 1, came '$manifest'")
     codec.message(bytes).fold(wrong => throw NotSerializableException(wrong), identity)

@@ -1,6 +1,6 @@
 package skein.cluster
 
-import com.typesafe.config.{Config, ConfigFactory}
+import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
 
 /** How Pekko is set up for a node. */
 private[cluster] object NodeConfig:
@@ -44,7 +44,7 @@ private[cluster] object NodeConfig:
         warn-about-direct-use = off
         artery {
           transport = tcp
-          canonical.hostname = "${listen.host}"
+          canonical.hostname = ${ConfigUtil.quoteString(listen.host)}
           canonical.port = ${listen.port}
           advanced {
             maximum-frame-size = $MostFrame b

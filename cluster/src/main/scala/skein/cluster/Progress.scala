@@ -18,6 +18,8 @@ final case class Progress(coordinator: Coordinator, done: Int, of: Int, resumed:
 
 /** What a coordinator tells of its workers, in a line for a person. */
 enum News(val text: String):
-  case Joined(worker: String, cores: Int) extends News(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")
-  case Lost(worker: String, blocks: Int)  extends News(s"$worker is gone; $blocks blocks that it had wait again")
+  case Joined(worker: String, cores: Int)
+      extends News(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")
+  case Lost(worker: String, blocks: Int)
+      extends News(s"$worker is gone; $blocks blocks that it had wait again")
   case Refused(worker: String, reason: String) extends News(s"refused $worker: $reason")

@@ -41,7 +41,8 @@ object Tls:
     *   or what is missing
     */
   def of(folder: Path): Either[String, Tls] =
-    val missing = Vector(KeyStore, TrustStore, Password).filterNot(name => Files.isReadable(folder.resolve(name)))
+    val missing =
+      Vector(KeyStore, TrustStore, Password).filterNot(name => Files.isReadable(folder.resolve(name)))
     Either.cond(
       missing.isEmpty,
       Tls(

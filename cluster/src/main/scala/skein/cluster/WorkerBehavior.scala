@@ -29,6 +29,7 @@ private[cluster] final class WorkerBehavior private (
   private var run     = 0L
   private var solvers = Option.empty[ArrayBlockingQueue[Solver]]
   private var held    = Set.empty[Long]
+  private var begun   = 0L
   private var blocks  = 0L
   private var busy    = 0L
   private var beats   = 0
@@ -47,7 +48,8 @@ private[cluster] final class WorkerBehavior private (
         tell("the coordinator told its question")
         inPool(Prepared(welcome, prepared(question)))
       this
-    case Prepared(of, made) if of == run => made match
+    case Prepared(of, made) if of == run =>
+      made match
         case Right(ready) =>
           solvers = Some(ready)
           ask()
@@ -57,6 +59,8 @@ private[cluster] final class WorkerBehavior private (
           end(End.Refused(s"cannot answer the coordinator's question: $reason"))
     case ToWorker.Give(of, number, work) if of == run && !held(number) && held.size < MessageCodec.MostHeld =>
       solvers.foreach: ready =>
+        if begun == 0 then tell("computes its first block")
+        begun += 1
         held += number
         inPool(solved(of, number, work, ready))
       this
@@ -97,7 +101,12 @@ private[cluster] final class WorkerBehavior private (
         ready
     catch case NonFatal(failed) => Left(failed.toString)
 
-  private def solved(of: Long, number: Long, work: ArraySeq[Byte], ready: ArrayBlockingQueue[Solver]): Solved =
+  private def solved(
+      of: Long,
+      number: Long,
+      work: ArraySeq[Byte],
+      ready: ArrayBlockingQueue[Solver]
+  ): Solved =
     // There are as many as threads, so that one is always free.
     val solver = ready.take()
     val begun  = System.nanoTime()
@@ -120,10 +129,14 @@ private[cluster] object WorkerBehavior:
     case Refused(reason: String)
 
   sealed trait Local
-  private case object Beat                                                                      extends Local
+  private case object Beat                                                                       extends Local
   private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[Solver]]) extends Local
-  private final case class Solved(run: Long, number: Long, answer: Either[String, ArraySeq[Byte]], nanos: Long)
-      extends Local
+  private final case class Solved(
+      run: Long,
+      number: Long,
+      answer: Either[String, ArraySeq[Byte]],
+      nanos: Long
+  ) extends Local
 
   /** The coordinator is out of reach. */
   case object Unreachable extends Local

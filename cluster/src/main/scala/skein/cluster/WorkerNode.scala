@@ -7,7 +7,12 @@ import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
 import org.apache.pekko.actor.{ActorSystem, Address}
-import org.apache.pekko.cluster.ClusterEvent.{MemberEvent, MemberRemoved, ReachabilityEvent, UnreachableMember}
+import org.apache.pekko.cluster.ClusterEvent.{
+  MemberEvent,
+  MemberRemoved,
+  ReachabilityEvent,
+  UnreachableMember
+}
 import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
 import scala.concurrent.duration.{Duration, FiniteDuration}
 import scala.concurrent.{Await, Promise}
@@ -32,7 +37,10 @@ final class WorkerNode(
     name: String = WorkerNode.nameOf(ProcessHandle.current().pid()),
     build: String = BuildId.current
 )(tell: String => Unit):
-  require(cores >= 1 && cores <= MessageCodec.MostCores, s"cores: expected 1 to ${MessageCodec.MostCores}, got $cores")
+  require(
+    cores >= 1 && cores <= MessageCodec.MostCores,
+    s"cores: expected 1 to ${MessageCodec.MostCores}, got $cores"
+  )
 
   @volatile private var stopped = false
   @volatile private var ending  = Promise[End]()
@@ -61,9 +69,9 @@ final class WorkerNode(
           val how    = once(config, pool)
           val waited = System.nanoTime() - contactAt
           outcome = how match
-            case _ if stopped         => Some(Right(()))
-            case End.Finished         => Some(Right(tell("the coordinator has all that it asked")))
-            case End.Refused(reason)  => Some(Left(reason))
+            case _ if stopped        => Some(Right(tell("told to end")))
+            case End.Finished        => Some(Right(tell("the coordinator has all that it asked")))
+            case End.Refused(reason) => Some(Left(reason))
             case End.Lost if waited > patience.toNanos =>
               Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s"))
             case End.Lost =>
@@ -76,17 +84,18 @@ final class WorkerNode(
 
   /** From joining to the end, once. */
   private def once(config: Config, pool: ExecutorService): End =
-    val promise = Promise[End]()
+    val promise            = Promise[End]()
     @volatile var isMember = false
     ending = promise
     if stopped then promise.trySuccess(End.Finished): Unit
-    val system  = ActorSystem(NodeConfig.System, config)
+    val system = ActorSystem(NodeConfig.System, config)
     try
       val seed = Address("pekko", NodeConfig.System, coordinator.host, coordinator.port)
       system.whenTerminated.onComplete(_ => promise.trySuccess(End.Lost))(using
         scala.concurrent.ExecutionContext.parasitic
       )
-      val to = ActorRefResolver(system.toTyped).resolveActorRef[ToCoordinator](s"$seed/user/${CoordinatorNode.Name}")
+      val to =
+        ActorRefResolver(system.toTyped).resolveActorRef[ToCoordinator](s"$seed/user/${CoordinatorNode.Name}")
       val self = WorkerBehavior.Self(name, cores, build, solvers)
       val _    = system.spawn(
         WorkerNode.member(seed, () => { isMember = true; tell(s"joined $coordinator") }):

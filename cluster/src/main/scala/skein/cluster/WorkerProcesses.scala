@@ -53,7 +53,9 @@ final class WorkerProcesses(
       !isClosing && (livedNanos > Soon || early.incrementAndGet() <= MostEarly)
     if again then begin(number)
     else if synchronized(!isClosing && processes.isEmpty) then
-      onGivenUp(s"the workers on this machine end soon after their start, with status ${process.exitValue}: see ${log(number)}")
+      onGivenUp(
+        s"the workers on this machine end soon after their start, with status ${process.exitValue}: see ${log(number)}"
+      )
 
   /** Ends all, and waits for them, but not for long. */
   def close(): Unit =

@@ -28,8 +28,8 @@ class ClusterLiveSuite extends munit.FunSuite:
     *   called before each block
     */
   private final class Reversing(before: () => Unit = () => ()) extends Solvers:
-    val solved                       = AtomicInteger()
-    def of(asked: ArraySeq[Byte])    =
+    val solved                    = AtomicInteger()
+    def of(asked: ArraySeq[Byte]) =
       Either.cond(
         asked == question,
         () =>
@@ -41,11 +41,11 @@ class ClusterLiveSuite extends munit.FunSuite:
         "no such question"
       )
 
-  private final class Coordinating(val folder: Path, port: Int = 0):
+  private final class Coordinating(val folder: Path, port: Int = 0, tls: Option[Tls] = None):
     val news   = ConcurrentLinkedQueue[News]()
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(loopback.copy(port = port), None, question, ledger, build = "one")(news.add(_): Unit)
+      .start(loopback.copy(port = port), tls, question, ledger, build = "one")(news.add(_): Unit)
       .fold(fail(_), identity)
 
     def close(): Unit =
@@ -57,10 +57,24 @@ class ClusterLiveSuite extends munit.FunSuite:
     try body(coordinator)
     finally coordinator.close()
 
-  private def worker(to: Endpoint, name: String, solvers: Solvers, build: String = "one", cores: Int = 1) =
+  private def worker(
+      to: Endpoint,
+      name: String,
+      solvers: Solvers,
+      build: String = "one",
+      cores: Int = 1,
+      tls: Option[Tls] = None,
+      patience: FiniteDuration = 60.seconds
+  ) =
     val told = ConcurrentLinkedQueue[String]()
-    val node = WorkerNode(to, loopback, None, cores, solvers, 60.seconds, name, build)(told.add(_): Unit)
+    val node = WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
     (node, Future(blocking(node.run())), told)
+
+  private def certificates(hosts: String*): Vector[Tls] =
+    Certificates
+      .make(Files.createTempDirectory("certificates"), hosts)
+      .fold(fail(_), identity)
+      .map(Tls.of(_).fold(fail(_), identity))
 
   private def computed(node: CoordinatorNode) =
     Await.result(node.compute(works), 60.seconds).fold(fail(_), _.get)
@@ -104,7 +118,10 @@ class ClusterLiveSuite extends munit.FunSuite:
         finally socket.close()
       // What begins as Pekko's own wire does, and goes on with a frame of 2 GiB.
       val lying = Socket("127.0.0.1", port)
-      try lying.getOutputStream.write("AKKA".getBytes("US-ASCII") ++ Array[Byte](1, -1, -1, -1, 127) ++ Array.ofDim[Byte](4096))
+      try
+        lying.getOutputStream.write("AKKA".getBytes("US-ASCII") ++ Array[Byte](
+          1, -1, -1, -1, 127
+        ) ++ Array.ofDim[Byte](4096))
       catch case _: java.io.IOException => ()
       finally lying.close()
       val (node, _, _) = worker(coordinator.node.address, "anna", Reversing())
@@ -166,3 +183,34 @@ class ClusterLiveSuite extends munit.FunSuite:
     val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
     assert(clue(refused.swap.getOrElse("started")).contains("certificates"))
     ledger.close()
+
+  test(
+    "with certificates of one set nodes work together; without, of another set, or of another host, nobody joins"
+  ):
+    val Vector(own, elsewhere) = certificates("localhost", "one.workers.lab"): @unchecked
+    val Vector(strangers)      = certificates("localhost"): @unchecked
+    val coordinator            = Coordinating(Files.createTempDirectory("cluster"), tls = Some(own))
+    try
+      val to      = coordinator.node.address
+      val solvers = Reversing()
+      val refused =
+        Vector("plain" -> None, "stranger" -> Some(strangers), "elsewhere" -> Some(elsewhere)).map:
+          (name, tls) => worker(to, name, solvers, tls = tls, patience = 1.second)._2
+      for outcome <- refused do
+        assert(Await.result(outcome, 90.seconds).isLeft)
+      assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set.empty)
+      val (anna, _, _) = worker(to, "anna", solvers, tls = Some(own))
+      assertEquals(computed(coordinator.node), answers)
+      anna.stop()
+    finally coordinator.close()
+
+  test("a set's folders are for their owner alone, and a certificate is not made twice"):
+    val folder = Files.createTempDirectory("certificates")
+    val made   = Certificates.make(folder, Seq("*.workers.lab", "10.0.0.7")).fold(fail(_), identity)
+    assertEquals(made.map(_.getFileName.toString), Vector("_.workers.lab", "10.0.0.7"))
+    for key <-
+        Seq(folder.resolve("signer.p12"), made.head.resolve(Tls.KeyStore), made.head.resolve(Tls.Password))
+    do
+      assertEquals(Files.getPosixFilePermissions(key).size, 2, key.toString)
+    assert(clue(Certificates.make(folder, Seq("10.0.0.7")).swap.getOrElse("made")).contains("already"))
+    assert(clue(Certificates.make(folder, Seq("no host")).swap.getOrElse("made")).contains("no host"))

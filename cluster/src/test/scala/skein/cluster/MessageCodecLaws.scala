@@ -9,10 +9,13 @@ import scala.concurrent.Await
 import scala.concurrent.duration.DurationInt
 
 class MessageCodecLaws extends munit.ScalaCheckSuite:
-  private lazy val system = ActorSystem("codec")
+  private lazy val system                     = ActorSystem("codec")
   private lazy val nobody: ActorRef[ToWorker] = system.deadLetters.toTyped
-  private lazy val codec  =
-    MessageCodec(_ => "nobody", name => if name == "nobody" then nobody else throw IllegalArgumentException(name))
+  private lazy val codec                      =
+    MessageCodec(
+      _ => "nobody",
+      name => if name == "nobody" then nobody else throw IllegalArgumentException(name)
+    )
 
   override def afterAll(): Unit =
     val _ = Await.result(system.terminate(), 10.seconds)
