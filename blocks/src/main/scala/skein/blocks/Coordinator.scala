@@ -67,7 +67,8 @@ final case class Coordinator private (
       case None         => (this, None)
       case Some(record) =>
         // An answer that is on its way may be overtaken by the request behind it.
-        val seen = record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
+        val seen =
+          record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
         val gone = seen.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
         val here = copy(workers = workers.updated(worker, record.copy(holds = seen -- gone.keySet)))
           .released(worker, gone)

@@ -13,7 +13,7 @@ import skein.cluster.WorkerProcesses
 
 /** Searches by processes of this machine, over loopback. */
 class ClusterSearchLiveSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
+  override val munitTimeout: Duration = 10.minutes
   private given ExecutionContext      = ExecutionContext.global
 
   private val question =
@@ -51,7 +51,7 @@ class ClusterSearchLiveSuite extends munit.FunSuite:
 
   /** Asks again and again, since other processes tell when they have come so far. */
   private def until(isSo: => Boolean)(unless: => Boolean): Boolean =
-    val deadline = 2.minutes.fromNow
+    val deadline = 4.minutes.fromNow
     while !isSo && !unless && deadline.hasTimeLeft() do Thread.sleep(20)
     isSo
 
@@ -62,7 +62,7 @@ class ClusterSearchLiveSuite extends munit.FunSuite:
     assert(atWork, log(out, 1))
     val pid = """(\d+), 1 core, build""".r.findFirstMatchIn(log(out, 1)).get.group(1).toLong
     assert(ProcessHandle.of(pid).toScala.exists(_.destroyForcibly()))
-    val said = Await.result(searching, 4.minutes)
+    val said = Await.result(searching, 8.minutes)
     assert(clue(said).contains(s"-$pid is gone"))
     assertSame(out)
     assert(
@@ -86,7 +86,7 @@ class ClusterSearchLiveSuite extends munit.FunSuite:
     val workers = coordinator.children().toList.asScala
     coordinator.destroyForcibly().waitFor(): Unit
     for worker <- workers do
-      worker.onExit().get(30, TimeUnit.SECONDS): Unit
+      worker.onExit().get(60, TimeUnit.SECONDS): Unit
     val said = searched(Seq("search", "--resume", out.toString) ++ elsewhere)
     val had  = """(\d+) more were in the ledger""".r.findFirstMatchIn(said).get.group(1).toInt
     // Of the round under way; those before it stand in the search's own state.
