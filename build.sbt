@@ -52,7 +52,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks, autopilot, offboard)
+    .aggregate(scene, blocks, cluster, autopilot, offboard)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -158,6 +158,12 @@ lazy val blocks = project
   .dependsOn(core % Test)
   .settings(libraryDependencies ++= munit)
 
+/** Blocks computed by any number of machines that come and go, over Pekko Cluster. */
+lazy val cluster = project
+  .settings(artifact("cluster", "Work on many machines that come and go, counted once, over Pekko Cluster"))
+  .dependsOn(blocks)
+  .settings(libraryDependencies ++= pekkoCluster ++ munit)
+
 /** Recordings. */
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
@@ -191,7 +197,7 @@ lazy val learn = project
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, learn, recognition)
+  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
@@ -225,7 +231,7 @@ lazy val cli = project
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
       """case " $* " in""",
-      """  " search "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
+      """  " search "* | " worker "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
       """    addJava "--add-modules=jdk.incubator.vector"""",
       """    addJava "-XX:SharedArchiveFile=${app_home}/../skein-vector.jsa"""",
       """    exec 2> >(""",

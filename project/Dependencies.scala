@@ -9,6 +9,10 @@ object Dependencies {
 
   val pekkoStream   = pekkoModules("actor", "stream")
   val pekkoTyped    = pekkoModules("actor-typed")
+  val pekkoCluster  = pekkoModules(
+    "actor-typed", "cluster-typed", "cluster", "cluster-tools", "distributed-data", "coordination", "remote", "pki", "stream",
+    "protobuf-v3"
+  )
   val pekkoLog      = pekkoModules("slf4j")
   val httpCore      = "org.apache.pekko"      %% "pekko-http-core"      % "1.3.0"
   val streamTestkit = "org.apache.pekko"      %% "pekko-stream-testkit" % pekkoVersion % Test

@@ -1,6 +1,6 @@
 package skein.blocks
 
-import scala.collection.immutable.{Queue, TreeSet}
+import scala.collection.immutable.TreeSet
 
 /** Who computes which block: a value, changed by what workers say and by time. Blocks may be given out several times;
   * the first answer counts, and later ones are counted as repeats.
@@ -13,38 +13,50 @@ import scala.collection.immutable.{Queue, TreeSet}
   *   leases of one worker alone, the oldest first: given out again once nothing waits
   * @param workers
   *   by name, also those that are gone
+  * @param cores
+  *   of all workers that are here
   * @param patienceNanos
   *   after which a block is given to others, whatever its worker does
+  * @param slowNanos
+  *   after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
-    waiting: Queue[Block],
+    waiting: Vector[Block],
     leases: Map[Long, Coordinator.Lease],
     seldom: TreeSet[(Long, Long)],
     workers: Map[String, WorkerRecord],
     counts: Coordinator.Counts,
-    patienceNanos: Long
+    cores: Int,
+    patienceNanos: Long,
+    slowNanos: Long
 ):
   import Coordinator.*
 
   def isIdle: Boolean = waiting.isEmpty && leases.isEmpty
 
   def joined(worker: String, cores: Int): Coordinator =
-    val record = workers.getOrElse(worker, WorkerRecord(cores))
-    copy(workers = workers.updated(worker, record.copy(isHere = true)))
+    val record = workers.getOrElse(worker, WorkerRecord(cores, isHere = false))
+    val before = if record.isHere then record.cores else 0
+    copy(
+      workers = workers.updated(worker, record.copy(cores = cores, isHere = true)),
+      cores = this.cores - before + cores
+    )
 
   /** What only this worker had waits again, before all else. */
   def lost(worker: String): Coordinator =
     workers.get(worker).filter(_.isHere).fold(this): record =>
-      released(worker, record.holds).copy(workers =
-        workers.updated(worker, record.copy(isHere = false, holds = Map.empty))
+      released(worker, record.holds).copy(
+        workers = workers.updated(worker, record.copy(isHere = false, holds = Map.empty)),
+        cores = cores - record.cores
       )
 
-  def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.enqueueAll(blocks))
+  def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting ++ blocks)
 
-  /** A worker has room for a block.
+  /** A worker asks for a block. It holds one for each of its cores and, while there are more than enough, as many that
+    * wait for their turn at the worker.
     *
     * @param holding
-    *   numbers of the blocks that it has; what it was given more than [[OnItsWay]] ago and does not name was lost
+    *   numbers of the blocks that it has; what it was given, or named, more than [[OnItsWay]] ago and does not name was lost
     * @param nowNanos
     *   on any clock that does not go back
     * @return
@@ -54,9 +66,14 @@ final case class Coordinator private (
     workers.get(worker).filter(_.isHere) match
       case None         => (this, None)
       case Some(record) =>
-        val gone = record.holds.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
-        val here = forgotten(worker, gone.keySet).released(worker, gone)
-        if holding.size.max(here.workers(worker).holds.size) >= MostHeld then (here, None)
+        // An answer that is on its way may be overtaken by the request behind it.
+        val seen =
+          record.holds.map((number, since) => number -> (if holding(number) then nowNanos else since))
+        val gone = seen.filter((number, since) => !holding(number) && nowNanos - since > OnItsWay)
+        val here = copy(workers = workers.updated(worker, record.copy(holds = seen -- gone.keySet)))
+          .released(worker, gone)
+        val most = if waiting.size >= cores then MostHeld * record.cores else record.cores
+        if holding.size.max(here.workers(worker).holds.size) >= most then (here, None)
         else here.handedOut(worker, nowNanos)
 
   /** A worker's answer.
@@ -71,7 +88,7 @@ final case class Coordinator private (
       repeated = record.repeated + 1 - accepted,
       busyNanos = record.busyNanos + busyNanos
     )
-    val known = workers.getOrElse(worker, WorkerRecord(0))
+    val known = workers.getOrElse(worker, WorkerRecord(0, isHere = false))
     leases.get(number) match
       case Some(lease) =>
         val freed = lease.holders.keys.foldLeft(workers): (all, holder) =>
@@ -120,19 +137,22 @@ final case class Coordinator private (
 
   /** Gives up all that is asked; answers that still come are repeats. */
   def cancelled: Coordinator = copy(
-    waiting = Queue.empty,
+    waiting = Vector.empty,
     leases = Map.empty,
     seldom = TreeSet.empty,
     workers = workers.view.mapValues(_.copy(holds = Map.empty)).toMap
   )
 
   private def handedOut(worker: String, nowNanos: Long): (Coordinator, Option[Block]) =
-    waiting.dequeueOption match
-      case Some((block, rest)) =>
-        (copy(waiting = rest).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
+    waiting.headOption match
+      case Some(block) =>
+        (copy(waiting = waiting.tail).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
       case None =>
         // The last blocks go out twice: whoever is quicker counts.
-        val slow = seldom.iterator.map((_, number) => leases(number)).find(!_.holders.contains(worker))
+        val slow = seldom.iterator
+          .takeWhile((since, _) => nowNanos - since >= slowNanos)
+          .map((_, number) => leases(number))
+          .find(!_.holders.contains(worker))
         slow.fold((this, None)): lease =>
           val next = copy(seldom = seldom - lease.place, counts = counts.copy(doubled = counts.doubled + 1))
           (next.leased(lease, worker, nowNanos), Some(lease.block))
@@ -168,16 +188,27 @@ final case class Coordinator private (
         else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
 
 object Coordinator:
-  /** A block that is computed, and one that waits for its turn at the worker. */
+  /** Of each core: a block that is computed, and one that waits for its turn at the worker. */
   val MostHeld = 2
 
-  /** Within which a block that was given may still be on its way. */
-  val OnItsWay: Long = 2_000_000_000L
+  /** Within which a block that was given, or the answer to one that its worker named, may still be on its way: twice as
+    * long as workers wait between two requests, at most.
+    */
+  val OnItsWay: Long = 4_000_000_000L
 
   val Patience: Long = 600_000_000_000L
 
-  def apply(patienceNanos: Long = Patience): Coordinator =
-    Coordinator(Queue.empty, Map.empty, TreeSet.empty, Map.empty, Counts(0, 0, 0, 0, 0), patienceNanos)
+  def apply(patienceNanos: Long = Patience, slowNanos: Long = 0): Coordinator =
+    Coordinator(
+      Vector.empty,
+      Map.empty,
+      TreeSet.empty,
+      Map.empty,
+      Counts(0, 0, 0, 0, 0),
+      cores = 0,
+      patienceNanos,
+      slowNanos
+    )
 
   /** A block with the workers that have it, and since when. */
   final case class Lease(block: Block, holders: Map[String, Long]):
@@ -199,7 +230,7 @@ object Coordinator:
 /** What a worker has done.
   *
   * @param holds
-  *   numbers of the blocks that it was given, and when
+  *   numbers of the blocks that it was given, and when, or when it named them last
   * @param busyNanos
   *   that it computed, over all its answers
   */

@@ -48,9 +48,7 @@ final case class ForwardOptions(
       altitude.getOrElse(PaperDuel.AltitudeM)
     )
 
-  def threadCount: Either[String, Int] =
-    val count = threads.getOrElse(Runtime.getRuntime.availableProcessors)
-    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, came $count")
+  def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)
 
   /** @param role
     *   of the policy that is judged
@@ -61,6 +59,11 @@ final case class ForwardOptions(
 
 object ForwardOptions:
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
+
+  /** As many as there are cores, unless told. */
+  def threadCount(told: Option[Int]): Either[String, Int] =
+    val count = told.getOrElse(Runtime.getRuntime.availableProcessors)
+    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, came $count")
 
   /** Options that are a duel's, and were given. */
   def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =

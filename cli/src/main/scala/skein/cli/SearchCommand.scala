@@ -45,6 +45,7 @@ final case class SearchOptions(
     @arg(doc = "NAME=LOW..HIGH: a setting of the scenario to search; may be given several times")
     vary: Seq[String],
     forward: ForwardOptions,
+    cluster: ClusterOptions,
     @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
     out: Option[String],
     @arg(doc = "a folder whose search was stopped: goes on with it, and ends as if it had not been stopped")
@@ -54,7 +55,10 @@ final case class SearchOptions(
     json: Flag
 )
 
-final class SearchCommand(using scenarios: Scenarios)
+/** @param program
+  *   the class whose `main` starts the commands
+  */
+final class SearchCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[SearchOptions](
       "search",
       "looks for the best of many policies by forward simulation under a loop's real timing",
@@ -65,21 +69,24 @@ final class SearchCommand(using scenarios: Scenarios)
     val shown = Shown(options.json.value)
     for
       threads <- options.forward.threadCount
+      cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      shows                     = Shows()
-      task                      = TaskShow("search")
-      _                         = shows.add(task)
+      shows = Shows()
+      task  = TaskShow("search")
+      _     = shows.add(task)
       _ <- options.view.serving(shows):
         question match
           case duel: SearchQuestion =>
-            duel.setup.flatMap(setup =>
-              run(setup, folder, state.getOrElse(setup.search.start), threads, shown, task)
-            )
+            duel.setup.flatMap: setup =>
+              val block = Effort.blockEpisodes(setup.isFast(setup.batch(1)), setup.conditions.vehicle)
+              Fliers.using(cluster, program, setup, duel, folder, threads, block, shown):
+                run(setup, folder, state.getOrElse(setup.search.start), threads, _, shown, task)
           case team: TeamQuestion =>
-            team.setup.flatMap(setup =>
-              TeamSearch(setup, folder, threads, shown, task).run(state.getOrElse(setup.search.start))
-            )
+            team.setup.flatMap: setup =>
+              val block = Effort.blockEpisodes(setup.fliesByLanes(setup.batch(1)), setup.conditions.vehicle)
+              Fliers.using(cluster, program, setup, team, folder, threads, block, shown):
+                TeamSearch(setup, folder, threads, _, shown, task).run(state.getOrElse(setup.search.start))
     yield ()
 
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
@@ -92,7 +99,7 @@ final class SearchCommand(using scenarios: Scenarios)
       _ <- Either.cond(
         others.forall(_.isEmpty) && set.isEmpty && vary.isEmpty && forward.isEmpty,
         (),
-        "--resume: everything but --threads is taken from the folder; expected no other option"
+        "--resume: everything but --threads and who computes is taken from the folder; expected no other option"
       )
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
     yield (Path.of(folder), file.question, Some(file.state))
@@ -179,6 +186,7 @@ final class SearchCommand(using scenarios: Scenarios)
       folder: Path,
       from: SearchState,
       threads: Int,
+      fliers: Fliers,
       shown: Shown,
       task: TaskShow
   ): Either[String, Unit] =
@@ -194,12 +202,16 @@ final class SearchCommand(using scenarios: Scenarios)
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
-      val searched  =
-        SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
+      var last      = from
+      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(setup, last)}"))
+      val searched =
+        SearchRun(setup.search, setup.question, fliers(Judge.Candidates), folder, () => System.nanoTime())
           .run(from, () => stopped): state =>
+            last = state
             line.show(state.flown, progress(setup, state))
             onShow.step(state, progress(setup, state))
       line.end()
+      fliers.onWait((_, _) => ())
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
@@ -210,7 +222,7 @@ final class SearchCommand(using scenarios: Scenarios)
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else
-          conclude(setup, batch, folder, state, shown, onShow).map(_ =>
+          conclude(setup, batch, folder, state, fliers, shown, onShow).map(_ =>
             if !state.isDone then say(shown, goOn)
           )
 
@@ -237,6 +249,7 @@ final class SearchCommand(using scenarios: Scenarios)
       batch: DuelBatch,
       folder: Path,
       state: SearchState,
+      fliers: Fliers,
       shown: Shown,
       onShow: SearchOnShow
   ): Either[String, Unit] =
@@ -244,21 +257,21 @@ final class SearchCommand(using scenarios: Scenarios)
     // Somebody who stops a search does not wait for long.
     val most   = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh  = setup.question.fresh.getOrElse(effort.freshEpisodes).min(most)
-    val result = SearchResult.measured(setup, batch, state, fresh)
+    val result = SearchResult.measured(setup, fliers(_), state, fresh)
     for
       file <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
       pictures <-
-        if state.isDone then landscape(setup, batch, folder, result, effort.within(fresh), shown, onShow)
+        if state.isDone then landscape(setup, folder, result, effort.within(fresh), fliers, shown, onShow)
         else Right(Vector.empty)
     yield say(shown, s"written: ${(file ++ pictures).mkString(", ")}")
 
   private def landscape(
       setup: SearchSetup,
-      batch: DuelBatch,
       folder: Path,
       result: SearchResult,
       effort: Effort,
+      fliers: Fliers,
       shown: Shown,
       onShow: SearchOnShow
   ): Either[String, Vector[Path]] =
@@ -266,7 +279,7 @@ final class SearchCommand(using scenarios: Scenarios)
     val land = Landscape.of(
       setup.family.space,
       result.policy.parameters,
-      setup.evaluator(batch),
+      fliers(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
       onMap = effort.onMap,
       onRow = onShow.landscape

@@ -24,8 +24,10 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
     SpreadCommand(),
-    SearchCommand(),
+    SearchCommand(getClass.getName.stripSuffix("$")),
     LearnCommand(),
+    WorkerCommand(),
+    ClusterCommand,
     BudgetCommand(),
     ServeCommand,
     LinkCommand,

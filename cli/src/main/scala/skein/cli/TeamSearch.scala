@@ -12,6 +12,7 @@ private[cli] final class TeamSearch(
     setup: TeamSetup,
     folder: Path,
     threads: Int,
+    fliers: Fliers,
     shown: Shown,
     task: TaskShow
 ):
@@ -32,12 +33,16 @@ private[cli] final class TeamSearch(
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
-      val searched  =
-        SearchRun(setup.search, setup.question, setup.evaluator(batch), folder, () => System.nanoTime())
+      var last      = from
+      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
+      val searched =
+        SearchRun(setup.search, setup.question, fliers(Judge.Candidates), folder, () => System.nanoTime())
           .run(from, () => stopped): state =>
+            last = state
             line.show(state.flown, progress(state))
             onShow.step(state, progress(state))
       line.end()
+      fliers.onWait((_, _) => ())
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
@@ -70,7 +75,7 @@ private[cli] final class TeamSearch(
   /** Measures the winner on fresh episodes and writes settings and pictures. */
   private def conclude(batch: TeamBatch, state: SearchState): Either[String, Unit] =
     val fresh  = if state.isDone then setup.question.fresh else setup.question.fresh.min(FreshEpisodes)
-    val result = TeamSearchResult.measured(setup, batch, state, fresh)
+    val result = TeamSearchResult.measured(setup, fliers(_), state, fresh)
     for
       file <- OutFolder.write(folder, Seq(OutFolder.text("scenario.conf", result.file)))
       _ = shown.tables(Seq(result.section), lines(result.summary))
@@ -83,7 +88,7 @@ private[cli] final class TeamSearch(
     val land    = Landscape.of(
       setup.space,
       result.best,
-      setup.evaluator(batch),
+      fliers(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + (if byLanes then LandscapeEpisodes else 2),
       onMap = if byLanes then OnMap else ScalarOnMap,
       onRow = onShow.landscape

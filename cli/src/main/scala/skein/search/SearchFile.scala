@@ -7,18 +7,20 @@ import skein.optimise.{CmaEs, Course, Scored, SearchState, Tally}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson, write as writeJson}
 
 /** A search as it stands on disk: the question, and the state it has come to. */
-final case class SearchFile(version: Int, question: SearchQuestion | TeamQuestion, state: SearchState)
+final case class SearchFile(version: Int, question: SearchFile.Question, state: SearchState)
 
 object SearchFile:
   val Name    = "search.json"
   val Version = 1
 
-  private given ReadWriter[Tally]                         = ReadWriter.derived
-  private given ReadWriter[Scored]                        = ReadWriter.derived
-  private given ReadWriter[CmaEs.State]                   = ReadWriter.derived
-  private given ReadWriter[Course]                        = ReadWriter.derived
-  private given ReadWriter[SearchState]                   = ReadWriter.derived
-  private given ReadWriter[SearchQuestion | TeamQuestion] = readwriter[ujson.Value].bimap(
+  type Question = SearchQuestion | TeamQuestion
+
+  given ReadWriter[Tally]               = ReadWriter.derived
+  private given ReadWriter[Scored]      = ReadWriter.derived
+  private given ReadWriter[CmaEs.State] = ReadWriter.derived
+  private given ReadWriter[Course]      = ReadWriter.derived
+  private given ReadWriter[SearchState] = ReadWriter.derived
+  given ReadWriter[Question]            = readwriter[ujson.Value].bimap(
     {
       case duel: SearchQuestion => writeJs(duel)
       case team: TeamQuestion   => writeJs(team)

@@ -2,8 +2,8 @@ package skein.search
 
 import skein.forward.Delays
 import skein.lanes.DuelBatch
-import skein.optimise.{DuelEvaluator, Evaluator, Objective, Search, SearchMethod}
-import skein.policy.{Policy, PolicyFamily, Role}
+import skein.optimise.{DuelEvaluator, Objective, Search, SearchMethod, ValueEvaluator}
+import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
 import skein.settings.PolicyFile
 import upickle.default.ReadWriter
 
@@ -126,7 +126,9 @@ final case class SearchSetup(
     delays: Delays,
     opponent: PolicyFile,
     method: SearchMethod
-):
+) extends ReadySearch:
+  def space: SearchSpace = family.space
+
   val search: Search = Search(family.space, method, objective.direction, question.seed)
 
   /** The paper's policy of the role, which every result is held against. */
@@ -138,7 +140,11 @@ final case class SearchSetup(
   /** @param many
     *   whether many candidates will meet the same episodes
     */
-  def evaluator(batch: DuelBatch, of: PolicyFamily = family, many: Boolean = true): Evaluator = DuelEvaluator(
+  def evaluator(
+      batch: DuelBatch,
+      of: PolicyFamily = family,
+      many: Boolean = true
+  ): ValueEvaluator = DuelEvaluator(
     batch,
     conditions.duel.durationS,
     of,
@@ -149,6 +155,15 @@ final case class SearchSetup(
     question.seed,
     shareEpisodes = many
   )
+
+  def judges(threads: Int): Judge => ValueEvaluator = judges(batch(threads))
+
+  def judges(batch: DuelBatch): Judge => ValueEvaluator =
+    val each = Judge.values.toVector.map:
+      case Judge.Candidates => evaluator(batch)
+      case Judge.Winner     => evaluator(batch, many = false)
+      case Judge.Paper      => evaluator(batch, paper, many = false)
+    judge => each(judge.ordinal)
 
   /** Whether this family's policies fly by lanes.
     *

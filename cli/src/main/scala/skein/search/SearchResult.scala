@@ -2,7 +2,7 @@ package skein.search
 
 import java.util.Locale
 import skein.lanes.DuelBatch
-import skein.optimise.{SearchState, Tally}
+import skein.optimise.{Evaluator, SearchState, Tally}
 import skein.policy.PolicyFamily
 import skein.report.Section
 import skein.settings.{PolicyFile, VehicleChoice}
@@ -89,18 +89,15 @@ object SearchResult:
   /** @param state
     *   with a best candidate
     */
-  def measured(setup: SearchSetup, batch: DuelBatch, state: SearchState, episodes: Int): SearchResult =
+  def measured(setup: SearchSetup, by: Judge => Evaluator, state: SearchState, episodes: Int): SearchResult =
     val best  = state.best.get.candidate
     val range = FreshFrom until FreshFrom + episodes
     SearchResult(
       setup,
       state,
       PolicyFile(setup.role, setup.family, best),
-      setup.evaluator(batch, many = false).tallies(Vector(best), range).head,
-      setup.evaluator(batch, setup.paper, many = false).tallies(
-        Vector(setup.paper.space.defaults),
-        range
-      ).head
+      by(Judge.Winner).tallies(Vector(best), range).head,
+      by(Judge.Paper).tallies(Vector(setup.paper.space.defaults), range).head
     )
 
   private def number(value: Double): String = String.format(Locale.ROOT, "%.4g", value)
@@ -111,6 +108,14 @@ final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, 
   def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
 object Effort:
+  /** Episodes that one core flies in about half a second. */
+  def blockEpisodes(byLanes: Boolean, vehicle: VehicleChoice): Int =
+    (byLanes, vehicle.name == "quadrotor") match
+      case (true, false)  => 32768
+      case (true, true)   => 2048
+      case (false, false) => 512
+      case (false, true)  => 16
+
   private val Cheap  = Effort(4096, 256, Landscape.OnMap, 1000)
   private val Dear   = Effort(512, 16, 21, 30)
   private val Dearer = Effort(64, 4, 13, 4)

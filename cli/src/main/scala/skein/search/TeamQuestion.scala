@@ -2,7 +2,7 @@ package skein.search
 
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{Judged, TeamBatch, TeamCandidate}
-import skein.optimise.{Direction, Evaluator, Search, SearchMethod, TeamEvaluator, WeightedSum}
+import skein.optimise.{Direction, Search, SearchMethod, TeamEvaluator, ValueEvaluator, WeightedSum}
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
@@ -190,7 +190,7 @@ final case class TeamSetup(
     conditions: Conditions.Resolved,
     delays: Delays,
     method: SearchMethod
-):
+) extends ReadySearch:
   val search: Search = Search(space, method, direction, question.seed)
 
   private val durationS = conditions.duel.durationS
@@ -198,8 +198,12 @@ final case class TeamSetup(
 
   def batch(threads: Int): TeamBatch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
 
-  def evaluator(batch: TeamBatch): Evaluator =
+  def evaluator(batch: TeamBatch): ValueEvaluator =
     TeamEvaluator(batch, candidate, delays, terms.map(_._1), question.seed)
+
+  def judges(threads: Int): Judge => ValueEvaluator =
+    val same = evaluator(batch(threads))
+    _ => same
 
   /** The scenario as a candidate has it; its settings were seen to be right. */
   def scenario(candidate: Vector[Double]): Scenario =

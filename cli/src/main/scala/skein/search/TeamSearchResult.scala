@@ -1,8 +1,7 @@
 package skein.search
 
 import java.util.Locale
-import skein.lanes.TeamBatch
-import skein.optimise.{SearchState, Tally}
+import skein.optimise.{Evaluator, SearchState, Tally}
 import skein.report.Section
 
 /** What a search over a scenario's settings came to, measured on episodes that the search never met.
@@ -62,10 +61,15 @@ object TeamSearchResult:
   /** @param state
     *   with a best candidate
     */
-  def measured(setup: TeamSetup, batch: TeamBatch, state: SearchState, episodes: Int): TeamSearchResult =
+  def measured(
+      setup: TeamSetup,
+      by: Judge => Evaluator,
+      state: SearchState,
+      episodes: Int
+  ): TeamSearchResult =
     val best    = state.best.get.candidate
     val range   = SearchResult.FreshFrom until SearchResult.FreshFrom + episodes
-    val tallies = setup.evaluator(batch).tallies(Vector(best, setup.space.defaults), range)
+    val tallies = by(Judge.Winner).tallies(Vector(best, setup.space.defaults), range)
     TeamSearchResult(setup, state, best, tallies(0), tallies(1))
 
   private def number(value: Double): String = String.format(Locale.ROOT, "%.4g", value)

@@ -29,8 +29,14 @@ class BadInputSuite extends munit.FunSuite:
 
   folder.test("a folder that cannot be made is told before the flight"): path =>
     val file     = Files.writeString(path.resolve("file"), "").toString
-    val commands =
-      Seq(FlyCommand(), SpreadCommand(), SearchCommand(), LearnCommand(), BudgetCommand(), LatencyCommand)
+    val commands = Seq(
+      FlyCommand(),
+      SpreadCommand(),
+      SearchCommand("skein.cli.Main"),
+      LearnCommand(),
+      BudgetCommand(),
+      LatencyCommand
+    )
     for command <- commands do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")

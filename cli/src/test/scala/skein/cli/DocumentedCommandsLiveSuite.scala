@@ -137,8 +137,16 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         case name if Set("flight.mcap", "again.duckdb")(name) => folder.resolve(name).toString
         case word                                             => word
       val (status, told) = words.head match
-        case "--help" => run(words)
-        case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+        case "--help"  => run(words)
+        case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))
+        case "worker"  =>
+          // Nobody is there to be joined: that is told in a line.
+          val (status, told) = run(words ++ Seq("--patience", "1ms"))
+          (if told.contains("no coordinator at") then 0 else status, told)
+        case "search" if words.contains("--cluster") =>
+          val listening = words.updated(words.indexOf("--cluster") + 1, "127.0.0.1:0")
+          runUntilItListens(listening ++ forward ++ Seq("--out", folder.resolve("cluster").toString))
+        case "serve" => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words ++ Seq("--view-port", "0"))
         case "link"                               =>
           // The ports of the guide may be taken here.
@@ -156,6 +164,8 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
         case _ => run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
       val stopped = Set(0, 130, 143)
       assert(
-        if Set("serve", "link")(words.head) || words.contains("--view") then stopped(status) else status == 0,
+        if Set("serve", "link")(words.head) || words.contains("--view") || words.contains("--cluster") then
+          stopped(status)
+        else status == 0,
         s"exit $status:\n$told"
       )

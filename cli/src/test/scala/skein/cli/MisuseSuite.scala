@@ -17,7 +17,7 @@ class MisuseSuite extends munit.FunSuite:
     for
       (command, arguments, line) <- Seq(
         (
-          SearchCommand(),
+          SearchCommand("skein.cli.Main"),
           Seq("--candidates", "x"),
           "--candidates: expected a whole number that is not too large, came 'x'"
         ),
@@ -25,9 +25,17 @@ class MisuseSuite extends munit.FunSuite:
         (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
         (SpreadCommand(), Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
         (BudgetCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
-        (SearchCommand(), Seq("--seed"), "--seed: expected a value behind it"),
-        (SearchCommand(), Seq("--seed", "1", "--seed", "2"), "--seed: expected once, came 1 and 2"),
-        (SearchCommand(), Seq("--sed", "1", "--period", "1s"), "--sed: no such option or argument")
+        (SearchCommand("skein.cli.Main"), Seq("--seed"), "--seed: expected a value behind it"),
+        (
+          SearchCommand("skein.cli.Main"),
+          Seq("--seed", "1", "--seed", "2"),
+          "--seed: expected once, came 1 and 2"
+        ),
+        (
+          SearchCommand("skein.cli.Main"),
+          Seq("--sed", "1", "--period", "1s"),
+          "--sed: no such option or argument"
+        )
       )
     do
       val (status, lines) = misused(command, arguments*)

@@ -36,7 +36,8 @@ class OptionsAgreeSuite extends munit.FunSuite:
       assertEquals(option.values, OptionValues.known("loop"), command.name)
 
   test("every command prints tables as JSON too, but for those that print none"):
-    val plain = Set("serve", "link", "export", "import", "replay", "digest", "new", "completion")
+    val plain =
+      Set("serve", "link", "export", "import", "replay", "digest", "new", "completion", "worker", "cluster")
     for command <- Main.commands if !plain(command.name) do
       val json = command.options.find(_.flag == "--json")
       assert(json.exists(_.summary.contains("JSON on standard output")), command.name)

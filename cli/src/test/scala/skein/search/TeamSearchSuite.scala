@@ -36,7 +36,7 @@ class TeamSearchSuite extends munit.FunSuite:
     val batch = ready.batch(2)
     assert(ready.engine(batch).startsWith("SIMD"), ready.engine(batch))
     val state  = ended(ready.search, ready.evaluator(batch))
-    val result = TeamSearchResult.measured(ready, batch, state, 4)
+    val result = TeamSearchResult.measured(ready, _ => ready.evaluator(batch), state, 4)
     assert(result.fresh.mean < result.plain.mean, result.summary)
     val written = ConfigFactory.parseString(result.file).withFallback(ConfigFactory.load()).resolve()
     val flown   = ScenarioSettings.read(written).fold(fail(_), identity)

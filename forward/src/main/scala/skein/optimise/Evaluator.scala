@@ -33,6 +33,30 @@ trait Evaluator:
     val all = tallies(candidates, episodes)
     Option.when(!isCancelled())(all)
 
+/** An evaluator that tells single values, so that a candidate's episodes too can be parted among many: values put
+  * together again give the same tally, to the bit.
+  */
+trait ValueEvaluator extends Evaluator:
+
+  /** The objective's values of each candidate, by its episodes; or none if it was cancelled.
+    *
+    * @param isCancelled
+    *   asked now and then, from any thread
+    */
+  def valuesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Array[Double]]]
+
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+    talliesUnless(() => false)(candidates, episodes).get
+
+  override def talliesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Tally]] =
+    valuesUnless(isCancelled)(candidates, episodes).map(_.map(values => Tally.of(values.length)(values(_))))
+
 /** Flies a family's candidates against one opponent in [[DuelBatch]].
   *
   * @param role
@@ -54,27 +78,24 @@ final class DuelEvaluator(
     objective: Objective,
     seed: Long,
     shareEpisodes: Boolean = true
-) extends Evaluator:
+) extends ValueEvaluator:
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
     if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true, Nil) then LaneMath.LANES
     else 1
 
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
-    talliesUnless(() => false)(candidates, episodes).get
-
-  override def talliesUnless(isCancelled: () => Boolean)(
+  def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range
-  ): Option[Vector[Tally]] =
+  ): Option[Vector[Array[Double]]] =
     val policies = candidates.map(family.policy).toArray
     val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
     val worlds   = Worlds(policies, keys)
     val outcomes = batch.fly(worlds, objective.captureRadiusM, isCancelled = isCancelled)
     Option.when(outcomes.flown == worlds.size):
       Vector.tabulate(policies.length): candidate =>
-        Tally.of(keys.length): episode =>
+        Array.tabulate(keys.length): episode =>
           objective.value(outcomes, candidate * keys.length + episode, role, durationS)
 
   private def pursuer(candidate: Policy): Policy = if role == Role.Pursuer then candidate else opponent

@@ -19,24 +19,21 @@ final class TeamEvaluator(
     link: Delays,
     weights: Vector[Double],
     seed: Long
-) extends Evaluator:
+) extends ValueEvaluator:
 
   override def sideBySide: Int = TeamEvaluator.SideBySide
 
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
-    talliesUnless(() => false)(candidates, episodes).get
-
-  override def talliesUnless(isCancelled: () => Boolean)(
+  def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range
-  ): Option[Vector[Tally]] =
+  ): Option[Vector[Array[Double]]] =
     val teams    = candidates.map(candidate)
     val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
     val worlds   = Worlds(teams, keys)
     val outcomes = batch.fly(worlds, isCancelled)
     Option.when(outcomes.flown == worlds.size):
       Vector.tabulate(teams.size): number =>
-        Tally.of(keys.length): episode =>
+        Array.tabulate(keys.length): episode =>
           val world = number * keys.length + episode
           weights.indices.map(i => weights(i) * outcomes.values(i)(world)).sum
 

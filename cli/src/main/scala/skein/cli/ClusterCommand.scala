@@ -1,0 +1,35 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{Leftover, ParserForClass, arg}
+import skein.cluster.Certificates
+
+/** Options of `./skein cluster`. */
+final case class ClusterCommandOptions(
+    @arg(doc =
+      "of a machine, as its certificate shows it: a name, an address, or *.DOMAIN for all of a domain; may be given several times (default: localhost)"
+    )
+    host: Seq[String],
+    @arg(doc =
+      "certificates DIR: makes what coordinator and workers show one another, a folder for each host"
+    )
+    words: Leftover[String]
+)
+
+object ClusterCommand
+    extends OptionsCommand[ClusterCommandOptions](
+      "cluster",
+      "makes certificates for searches on several machines",
+      ParserForClass[ClusterCommandOptions]
+    ):
+
+  protected def execute(options: ClusterCommandOptions): Either[String, Unit] = options.words.value match
+    case Seq("certificates", folder) =>
+      Certificates
+        .make(Path.of(folder), if options.host.isEmpty then Seq("localhost") else options.host)
+        .map: made =>
+          Console.out.println(s"written: ${made.mkString(", ")}")
+          Console.out.println(
+            s"Copy each folder to its machine alone. Who has $folder/signer.p12 and its password can make more."
+          )
+    case words => Left(s"expected ./skein cluster certificates DIR, came '${words.mkString(" ")}'")

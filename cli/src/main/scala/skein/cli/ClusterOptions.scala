@@ -1,0 +1,58 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{ParserForClass, arg}
+import skein.cluster.{Endpoint, Tls}
+import skein.search.SearchBlock
+
+/** Whether other processes compute. */
+final case class ClusterOptions(
+    @arg(doc = "computes by so many processes of this machine, which share its cores")
+    workers: Option[Int],
+    @arg(doc =
+      "HOST:PORT where workers of other machines join (./skein worker --join); the command waits for them"
+    )
+    cluster: Option[String],
+    @arg(doc = "episodes of the blocks that workers compute, about (default: half a second's)")
+    block: Option[Int],
+    @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
+    tls: Option[String]
+):
+  import ClusterOptions.*
+
+  /** @return absent where this process alone computes */
+  def checked: Either[String, Option[ClusterOptions.Checked]] =
+    if workers.isEmpty && cluster.isEmpty then
+      Either.cond(
+        block.isEmpty && tls.isEmpty,
+        None,
+        "--block, --tls: expected with --workers or --cluster"
+      )
+    else
+      for
+        _ <- Either.cond(
+          workers.forall(count => count >= 1 && count <= MostWorkers),
+          (),
+          s"--workers: expected 1 to $MostWorkers, came ${workers.getOrElse(0)}"
+        )
+        _ <- Either.cond(
+          block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes),
+          (),
+          s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
+        )
+        listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
+        tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
+      yield Some(Checked(workers.getOrElse(0), listen, block, tls))
+
+object ClusterOptions:
+  given ParserForClass[ClusterOptions] = ParserForClass[ClusterOptions]
+
+  final case class Checked(workers: Int, listen: Endpoint, block: Option[Int], tls: Option[Tls])
+
+  private val MostWorkers = 256
+
+  /** Any port of this machine alone. */
+  val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
+
+  def endpoint(option: String, text: String): Either[String, Endpoint] =
+    Arguments.address(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)

@@ -1,0 +1,70 @@
+package skein.cli
+
+import java.nio.file.Path
+import java.time.LocalTime
+import java.time.temporal.ChronoUnit
+import mainargs.{Flag, ParserForClass, arg}
+import scala.concurrent.duration.DurationLong
+import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
+import skein.scenario.Scenarios
+import skein.search.PosedQuestion
+import skein.units.Span
+
+/** Options of `./skein worker`. */
+final case class WorkerOptions(
+    @arg(doc = "HOST:PORT of a coordinator: a search with --cluster")
+    join: String,
+    @arg(doc =
+      "HOST:PORT where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
+    )
+    listen: Option[String],
+    @arg(doc = "that fly at once; does not change the result (default: one per core)")
+    threads: Option[Int],
+    @arg(doc = "for how long it tries to reach a coordinator that is not there, or is lost")
+    patience: String = "60s",
+    @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
+    tls: Option[String],
+    @arg(doc = "ends when its standard input does: with the process that started it")
+    attached: Flag
+)
+
+final class WorkerCommand(using Scenarios)
+    extends OptionsCommand[WorkerOptions](
+      "worker",
+      "computes for a search on this machine or another, until that has all that it asked",
+      ParserForClass[WorkerOptions]
+    ):
+
+  /** After which a worker that is to end does so, whatever it computes. */
+  private val Grace = 3_000L
+
+  private val LongestPatience = Span.ofSeconds(7 * 24 * 3600)
+
+  protected def execute(options: WorkerOptions): Either[String, Unit] =
+    for
+      join     <- ClusterOptions.endpoint("--join", options.join)
+      listen   <- options.listen.fold(Right(ClusterOptions.Loopback))(ClusterOptions.endpoint("--listen", _))
+      tls      <- options.tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
+      threads  <- ForwardOptions.threadCount(options.threads)
+      patience <- Span.parse(options.patience).left.map("--patience: " + _)
+      _        <- Either.cond(
+        patience <= LongestPatience,
+        (),
+        s"--patience: expected a week at most, came ${options.patience}"
+      )
+      _ <- Either.cond(
+        join.isLoopback || options.listen.isDefined,
+        (),
+        s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
+      )
+      node = WorkerNode(join, listen, tls, threads, PosedQuestion.solvers, patience.toNanos.nanos)(say)
+      _    = if options.attached.value then
+        WorkerProcesses.endWithParent: () =>
+          node.stop()
+          Thread.sleep(Grace)
+          Runtime.getRuntime.halt(1)
+      _ <- Edge.untilInterrupted(() => node.stop(), Grace)(node.run())
+    yield ()
+
+  private def say(line: String): Unit =
+    Console.out.println(s"${LocalTime.now().truncatedTo(ChronoUnit.SECONDS)} $line")

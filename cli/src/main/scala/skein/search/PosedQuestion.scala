@@ -1,0 +1,51 @@
+package skein.search
+
+import scala.collection.immutable.ArraySeq
+import skein.cluster.Solvers
+import skein.optimise.{Tally, ValueEvaluator}
+import skein.scenario.Scenarios
+import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+
+/** A search's question as workers get it.
+  *
+  * @param probe
+  *   what the defaults came to at the coordinator on the first episodes: a worker that comes to anything else, by a file
+  *   of another content for example, does not answer the question
+  */
+final case class PosedQuestion(question: SearchFile.Question, probe: Vector[Tally])
+
+object PosedQuestion:
+  import SearchFile.given
+  private given ReadWriter[PosedQuestion] = ReadWriter.derived
+
+  private val Probes = 0 until 4
+
+  private def probe(ready: ReadySearch, by: Judge => ValueEvaluator) =
+    by(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
+
+  def bytes(question: SearchFile.Question, ready: ReadySearch): ArraySeq[Byte] =
+    val posed = PosedQuestion(question, probe(ready, ready.judges(1)))
+    ArraySeq.unsafeWrapArray(writeJson(posed).getBytes("UTF-8"))
+
+  /** Answers the questions of searches whose scenarios are known here. */
+  def solvers(using Scenarios): Solvers = asked =>
+    for
+      posed <-
+        try Right(readJson[PosedQuestion](String(asked.toArray, "UTF-8")))
+        catch case mistake: Exception => Left(s"expected a search's question, came: ${mistake.getMessage}")
+      ready <- setup(posed.question)
+      came = probe(ready, ready.judges(1))
+      _ <- Either.cond(
+        came == posed.probe,
+        (),
+        s"the defaults come to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
+          "has a file that --link, --plant or --opponent names another content here?"
+      )
+    yield () =>
+      val judges = ready.judges(1)
+      work => SearchBlock.read(work).fold(wrong => throw IllegalArgumentException(wrong), _.answer(judges))
+
+  private def setup(question: SearchFile.Question)(using Scenarios): Either[String, ReadySearch] =
+    question match
+      case duel: SearchQuestion => duel.setup
+      case team: TeamQuestion   => team.setup

@@ -1,0 +1,106 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import java.util.concurrent.TimeUnit
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, ExecutionContext, Future, blocking}
+import scala.jdk.CollectionConverters.*
+import scala.jdk.OptionConverters.*
+import skein.blocks.Ledger
+import skein.cluster.WorkerProcesses
+
+/** Searches by processes of this machine, over loopback. */
+class ClusterSearchLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 10.minutes
+  private given ExecutionContext      = ExecutionContext.global
+
+  private val question =
+    "search --family lead-pursuit --method random --candidates 2000 --episodes 10 --fresh 16 --duration 20s"
+      .split(' ')
+      .toSeq
+
+  /** Half a second's blocks would be too few to be interrupted in. */
+  private val elsewhere = Seq("--workers", "2", "--block", "512")
+
+  private lazy val parent          = Files.createTempDirectory("cluster-search")
+  private def folder(name: String) = parent.resolve(name)
+
+  /** By this process alone. */
+  private lazy val alone: Path =
+    searched(question ++ Seq("--out", folder("alone").toString))
+    folder("alone")
+
+  private def searched(words: Seq[String]): String =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
+    assertEquals(status, 0, said.toString(UTF_8))
+    said.toString(UTF_8)
+
+  private def assertSame(found: Path): Unit =
+    for name <- Seq("search.json", "policy.conf", "landscape.csv") do
+      assertEquals(Files.readString(found.resolve(name)), Files.readString(alone.resolve(name)), name)
+    val audit = Ledger.audit(found.resolve(Ledger.Name))
+    assertEquals((audit.repeats, audit.broken), (0, 0L))
+    assert(audit.blocks > 40, audit.toString)
+
+  private def log(folder: Path, worker: Int): String =
+    val file = folder.resolve(s"worker-$worker.log")
+    if Files.exists(file) then Files.readString(file) else ""
+
+  /** Asks again and again, since other processes tell when they have come so far. */
+  private def until(isSo: => Boolean)(unless: => Boolean): Boolean =
+    val deadline = 4.minutes.fromNow
+    while !isSo && !unless && deadline.hasTimeLeft() do Thread.sleep(20)
+    isSo
+
+  test("two processes find what one finds, to the bit, also when one is killed at its work and replaced"):
+    val out       = folder("killed")
+    val searching = Future(blocking(searched(question ++ elsewhere ++ Seq("--out", out.toString))))
+    val atWork    = until(log(out, 1).contains("computes its first block"))(searching.isCompleted)
+    assert(atWork, log(out, 1))
+    val pid = """(\d+), 1 core, build""".r.findFirstMatchIn(log(out, 1)).get.group(1).toLong
+    assert(ProcessHandle.of(pid).toScala.exists(_.destroyForcibly()))
+    val said = Await.result(searching, 8.minutes)
+    assert(clue(said).contains(s"-$pid is gone"))
+    assertSame(out)
+    assert(
+      ProcessHandle.current().children().toList.asScala.forall(
+        !_.info().commandLine().toScala.exists(_.contains("skein.cli.Main worker"))
+      ),
+      "a worker outlived its search"
+    )
+
+  test("a search whose coordinator is killed leaves no worker behind, and goes on to the same answer"):
+    val out     = folder("resumed")
+    val command =
+      WorkerProcesses.likeThis("skein.cli.Main", question ++ elsewhere ++ Seq("--out", out.toString))
+    val coordinator = ProcessBuilder(command*)
+      .redirectErrorStream(true)
+      .redirectOutput(Files.createTempFile(parent, "coordinator", ".log").toFile)
+      .start()
+    def blocks =
+      if Files.exists(out.resolve(Ledger.Name)) then Ledger.audit(out.resolve(Ledger.Name)).blocks else 0
+    assert(until(blocks >= 4)(!coordinator.isAlive))
+    val workers = coordinator.children().toList.asScala
+    coordinator.destroyForcibly().waitFor(): Unit
+    for worker <- workers do
+      worker.onExit().get(60, TimeUnit.SECONDS): Unit
+    val said = searched(Seq("search", "--resume", out.toString) ++ elsewhere)
+    val had  = """(\d+) more were in the ledger""".r.findFirstMatchIn(said).get.group(1).toInt
+    // Of the round under way; those before it stand in the search's own state.
+    assert(clue(had) > 0)
+    assertSame(out)
+
+  test("who cannot compute is told: options that need workers, and workers that cannot start"):
+    def refused(words: String*): String =
+      val said = ByteArrayOutputStream()
+      assertEquals(
+        Console.withErr(said)(Main.run(question ++ words ++ Seq("--out", folder("refused").toString))),
+        1
+      )
+      said.toString(UTF_8)
+    assert(clue(refused("--block", "7")).contains("--workers"))
+    assert(clue(refused("--workers", "0")).contains("expected 1 to"))
+    assert(clue(refused("--cluster", "0.0.0.0:0")).contains("certificates"))

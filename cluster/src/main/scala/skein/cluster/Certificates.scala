@@ -1,0 +1,155 @@
+package skein.cluster
+
+import java.io.IOException
+import java.net.InetAddress
+import java.nio.file.attribute.PosixFilePermissions
+import java.nio.file.{FileSystems, Files, Path}
+import java.security.SecureRandom
+import scala.util.control.NonFatal
+
+/** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host that [[Tls.of]]
+  * reads.
+  */
+object Certificates:
+  private val Days = 825
+
+  /** Who signs: kept where the certificates are made, and taken to no other machine. */
+  private val Signer = "signer.p12"
+
+  /** A folder's name, of a host's; `*.workers.lab` stands for all hosts of that domain. */
+  def folderOf(host: String): String = host.replace("*", "_")
+
+  /** @param hosts
+    *   names or addresses, as `--listen` and `--join` have them
+    * @return
+    *   each host's folder; or what went wrong
+    */
+  def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =
+    try
+      Files.createDirectories(folder)
+      val signer = folder.resolve(Signer)
+      for
+        _ <- hosts.find(!isHost(_)).toLeft(()).left.map(host =>
+          s"expected a host's name or address, came '$host'"
+        )
+        _    <- if Files.exists(signer) then Right(()) else sign(folder)
+        made <- hosts.foldLeft[Either[String, Vector[Path]]](Right(Vector.empty)): (before, host) =>
+          before.flatMap(all => node(folder, host).map(all :+ _))
+      yield made
+    catch case failed: IOException => Left(s"cannot write into $folder: ${failed.getMessage}")
+
+  private def isHost(text: String) = text.matches("""(\*\.)?[A-Za-z0-9][A-Za-z0-9.:-]{0,252}""")
+
+  private def sign(folder: Path): Either[String, Unit] =
+    val secret = password(folder.resolve("signer.password"))
+    for
+      _ <- keytool(
+        secret,
+        folder.resolve(Signer),
+        Seq(
+          "-genkeypair",
+          "-alias",
+          "signer",
+          "-dname",
+          "CN=Skein lab",
+          "-ext",
+          "bc:c=ca:true,pathlen:0",
+          "-ext",
+          "ku:c=keyCertSign"
+        ) ++ Key
+      )
+      _ <- keytool(
+        secret,
+        folder.resolve(Signer),
+        Seq("-exportcert", "-rfc", "-alias", "signer", "-file", folder.resolve("signer.pem").toString)
+      )
+    yield onlyOurs(folder.resolve(Signer))
+
+  private def node(folder: Path, host: String): Either[String, Path] =
+    val own = folder.resolve(folderOf(host))
+    if Files.exists(own.resolve(Tls.KeyStore)) then Left(s"$own holds a certificate already")
+    else
+      Files.createDirectories(own)
+      val secret            = password(own.resolve(Tls.Password))
+      val (keys, trusted)   = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
+      val (request, signed) = (own.resolve("request.pem"), own.resolve("node.pem"))
+      val signerPem         = folder.resolve("signer.pem").toString
+      val isAddress         = host.matches("""[\d.]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*""")
+      val names             =
+        if host == "localhost" then "dns:localhost,ip:127.0.0.1"
+        else if isAddress then s"ip:${InetAddress.getByName(host).getHostAddress}"
+        else s"dns:$host"
+      val signing = Files.readString(folder.resolve("signer.password")).trim
+      val made    =
+        for
+          _ <- keytool(secret, keys, Seq("-genkeypair", "-alias", "node", "-dname", s"CN=$host") ++ Key)
+          _ <- keytool(secret, keys, Seq("-certreq", "-alias", "node", "-file", request.toString))
+          _ <- keytool(
+            signing,
+            folder.resolve(Signer),
+            Seq(
+              "-gencert",
+              "-rfc",
+              "-alias",
+              "signer",
+              "-infile",
+              request.toString,
+              "-outfile",
+              signed.toString,
+              "-validity",
+              Days.toString,
+              "-ext",
+              s"san=$names",
+              "-ext",
+              "eku=serverAuth,clientAuth",
+              "-ext",
+              "ku:c=digitalSignature"
+            )
+          )
+          _ <- keytool(secret, keys, Seq("-importcert", "-noprompt", "-alias", "signer", "-file", signerPem))
+          _ <-
+            keytool(secret, keys, Seq("-importcert", "-noprompt", "-alias", "node", "-file", signed.toString))
+          _ <-
+            keytool(secret, trusted, Seq("-importcert", "-noprompt", "-alias", "signer", "-file", signerPem))
+        yield
+          onlyOurs(keys)
+          own
+      Files.deleteIfExists(request): Unit
+      Files.deleteIfExists(signed): Unit
+      made
+
+  private val Key =
+    Seq("-keyalg", "EC", "-groupname", "secp256r1", "-sigalg", "SHA256withECDSA", "-validity", Days.toString)
+
+  private def password(file: Path): String =
+    val bytes = Array.ofDim[Byte](24)
+    SecureRandom().nextBytes(bytes)
+    val secret = bytes.map(byte => f"$byte%02x").mkString
+    Files.writeString(file, secret)
+    onlyOurs(file)
+    secret
+
+  /** Others on this machine read no keys. */
+  private def onlyOurs(file: Path): Unit =
+    if FileSystems.getDefault.supportedFileAttributeViews.contains("posix") then
+      Files.setPosixFilePermissions(file, PosixFilePermissions.fromString("rw-------")): Unit
+
+  /** The password goes by the environment, where other users do not see it. */
+  private def keytool(secret: String, store: Path, words: Seq[String]): Either[String, Unit] =
+    val program = Path.of(sys.props("java.home"), "bin", "keytool").toString
+    val command = (program +: words) ++ Seq(
+      "-storetype",
+      "PKCS12",
+      "-keystore",
+      store.toString,
+      "-storepass:env",
+      "SKEIN_STORE"
+    )
+    try
+      val builder = ProcessBuilder(command*).redirectErrorStream(true)
+      builder.environment.put("SKEIN_STORE", secret)
+      val process = builder.start()
+      process.getOutputStream.close()
+      val said = String(process.getInputStream.readAllBytes(), "UTF-8").trim
+      Either.cond(process.waitFor() == 0, (), s"keytool ${words.head}: $said")
+    catch case NonFatal(failed) => Left(s"cannot run $program: ${failed.getMessage}")

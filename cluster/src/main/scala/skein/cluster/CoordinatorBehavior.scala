@@ -1,0 +1,203 @@
+package skein.cluster
+
+import java.io.IOException
+import org.apache.pekko.actor.Address
+import org.apache.pekko.actor.typed.scaladsl.{AbstractBehavior, ActorContext, Behaviors, TimerScheduler}
+import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import scala.collection.immutable.ArraySeq
+import scala.collection.mutable
+import scala.concurrent.Promise
+import scala.concurrent.duration.DurationInt
+import skein.blocks.{Answer, Block, BlockKey, Coordinator, Ledger}
+
+/** What a coordinator works on.
+  *
+  * @param run
+  *   names this coordinator's life; not 0
+  * @param build
+  *   that workers must have
+  */
+private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
+
+/** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a time.
+  *
+  * @param onProgress
+  *   told after every change
+  */
+private[cluster] final class CoordinatorBehavior private (
+    context: ActorContext[CoordinatorBehavior.Command],
+    job: Job,
+    ledger: Ledger,
+    tell: News => Unit,
+    onProgress: Progress => Unit
+) extends AbstractBehavior[CoordinatorBehavior.Command](context):
+  import CoordinatorBehavior.*
+
+  private var state   = Coordinator(slowNanos = Slow)
+  private var next    = 0L
+  private var call    = Option.empty[Call]
+  private var resumed = 0L
+  private var died    = 0
+  private var unsaved = false
+
+  /** Where each worker is to be answered. */
+  private var addresses = Map.empty[String, ActorRef[ToWorker]]
+
+  /** Who has room, and nothing was there. */
+  private var hungry = Set.empty[String]
+
+  /** Whose refusal was told. */
+  private var refused = Set.empty[String]
+
+  def onMessage(command: Command): Behavior[Command] =
+    command match
+      case ask: ToCoordinator.Ask                                    => asked(ask)
+      case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
+      case ToCoordinator.Failed(job.run, worker, number, reason)     =>
+        ended(Left(s"a block cannot be computed, told by $worker: $reason"))
+      case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
+      case _: ToCoordinator                              => () // Of an earlier run.
+      case Compute(works, promise)                       => compute(works, promise)
+      case Cancel                                        =>
+        state = state.cancelled
+        ended(Right(None))
+      case Unreachable(address) =>
+        addresses.keys.filter(worker => addresses(worker).path.address == address).foreach(lost)
+      case Ended(worker) => lost(worker)
+      case Tick          =>
+        state = state.at(System.nanoTime())
+        feed()
+        save()
+      case Farewell =>
+        addresses.values.foreach(_ ! ToWorker.Goodbye)
+        save()
+        ended(Right(None))
+    publish()
+    if command == Farewell then Behaviors.stopped else this
+
+  private def asked(ask: ToCoordinator.Ask): Unit =
+    if ask.build != job.build then
+      val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
+      ask.replyTo ! ToWorker.Refused(reason)
+      refuse(ask.worker, reason)
+    else if ask.run != job.run then ask.replyTo ! ToWorker.Welcome(job.run, job.question)
+    else
+      if !state.workers.get(ask.worker).exists(_.isHere) then tell(News.Joined(ask.worker, ask.cores))
+      state = state.joined(ask.worker, ask.cores)
+      addresses += ask.worker -> ask.replyTo
+      serve(ask.worker, ask.holding)
+
+  private def refuse(worker: String, reason: String): Unit =
+    if !refused(worker) && refused.size < MostRefused then
+      refused += worker
+      tell(News.Refused(worker, reason))
+
+  private def serve(worker: String, holding: Set[Long]): Unit =
+    val (after, block) = state.asked(worker, holding, System.nanoTime())
+    state = after
+    block match
+      case Some(one) =>
+        addresses(worker) ! ToWorker.Give(job.run, one.number, one.work)
+        serve(worker, holding + one.number)
+      case None =>
+        val record = state.workers(worker)
+        if record.holds.size < record.cores then hungry += worker else hungry -= worker
+
+  private def feed(): Unit =
+    if state.waiting.nonEmpty then
+      for worker <- hungry do serve(worker, state.workers(worker).holds.keySet)
+
+  private def answered(worker: String, number: Long, busyNanos: Long, answer: ArraySeq[Byte]): Unit =
+    val (after, what) = state.answered(worker, number, busyNanos)
+    state = after
+    what match
+      case Answer.Repeated     => ()
+      case Answer.First(block) =>
+        keep(block.key, answer) match
+          case Left(mistake) => ended(Left(mistake))
+          case Right(())     =>
+            call.foreach: open =>
+              open.answers.update(block.key, answer)
+              if open.isDone then ended(Right(Some(open.all)))
+
+  private def keep(key: BlockKey, answer: ArraySeq[Byte]): Either[String, Unit] =
+    try
+      unsaved |= ledger.accept(key, answer)
+      Right(())
+    catch case failed: IOException => Left(s"cannot write the ledger of blocks: $failed")
+
+  private def save(): Unit = if unsaved then
+    try ledger.force()
+    catch case failed: IOException => ended(Left(s"cannot write the ledger of blocks: $failed"))
+    unsaved = false
+
+  private def lost(worker: String): Unit =
+    state.workers.get(worker).filter(_.isHere).foreach: record =>
+      died += 1
+      state = state.lost(worker)
+      hungry -= worker
+      addresses -= worker
+      tell(News.Lost(worker, record.holds.size))
+      feed()
+
+  private def compute(works: Vector[ArraySeq[Byte]], promise: Promise[Outcome]): Unit =
+    if call.isDefined then promise.success(Left("one call at a time"))
+    else
+      val open = Call(works.map(BlockKey.of), mutable.HashMap.empty, promise)
+      val asks = works.zip(open.keys).distinctBy(_._2).filter: (_, key) =>
+        val known = ledger.answer(key)
+        known.foreach(open.answers.update(key, _))
+        known.isEmpty
+      resumed += open.answers.size
+      call = Some(open)
+      val blocks = asks.map: (work, _) =>
+        next += 1
+        Block(next, work)
+      state = state.offered(blocks)
+      if open.isDone then ended(Right(Some(open.all))) else feed()
+
+  /** The call is over; what is still asked of it is asked no more. */
+  private def ended(outcome: Outcome): Unit =
+    if outcome.isLeft then state = state.cancelled
+    // Whoever waits for the outcome sees all of it.
+    publish()
+    call.foreach(_.promise.trySuccess(outcome))
+    call = None
+
+  private def publish(): Unit =
+    onProgress(Progress(state, call.fold(0)(_.answers.size), call.fold(0)(_.asked), resumed, died))
+
+private[cluster] object CoordinatorBehavior:
+  /** All answers in the order of the works, none if it was cancelled, or why there are none. */
+  type Outcome = Either[String, Option[Vector[ArraySeq[Byte]]]]
+
+  sealed trait Local
+  final case class Compute(works: Vector[ArraySeq[Byte]], promise: Promise[Outcome]) extends Local
+  case object Cancel                                                                 extends Local
+  final case class Unreachable(address: Address)                                     extends Local
+
+  /** A worker's process has ended. */
+  final case class Ended(worker: String) extends Local
+  case object Farewell                   extends Local
+  private case object Tick               extends Local
+
+  type Command = ToCoordinator | Local
+
+  private val MostRefused = 1000
+
+  /** A block that is out for longer goes to a second worker, when nothing else waits. */
+  private val Slow = 1_000_000_000L
+
+  private final case class Call(
+      keys: Vector[BlockKey],
+      answers: mutable.HashMap[BlockKey, ArraySeq[Byte]],
+      promise: Promise[Outcome]
+  ):
+    val asked: Int                  = keys.toSet.size
+    def isDone: Boolean             = answers.size == asked
+    def all: Vector[ArraySeq[Byte]] = keys.map(answers)
+
+  def apply(job: Job, ledger: Ledger, tell: News => Unit, onProgress: Progress => Unit): Behavior[Command] =
+    Behaviors.withTimers: (timers: TimerScheduler[Command]) =>
+      timers.startTimerWithFixedDelay(Tick, 1.second)
+      Behaviors.setup(context => new CoordinatorBehavior(context, job, ledger, tell, onProgress))

@@ -1,0 +1,117 @@
+package skein.cluster
+
+import java.security.SecureRandom
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.actor.typed.scaladsl.Behaviors
+import org.apache.pekko.actor.typed.scaladsl.adapter.*
+import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import org.apache.pekko.actor.{ActorSystem, Address, ExtendedActorSystem}
+import org.apache.pekko.cluster.ClusterEvent.{
+  MemberEvent,
+  MemberRemoved,
+  ReachabilityEvent,
+  UnreachableMember
+}
+import org.apache.pekko.cluster.typed.{Cluster, Join, Subscribe}
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.duration.DurationInt
+import scala.concurrent.{Await, Future, Promise}
+import scala.util.control.NonFatal
+import skein.blocks.{Coordinator, Ledger}
+
+/** The process that hands out blocks and keeps their answers. */
+final class CoordinatorNode private (
+    system: ActorSystem,
+    coordinator: ActorRef[CoordinatorBehavior.Command],
+    latest: AtomicReference[Progress]
+):
+  /** Where workers join. */
+  val address: Endpoint =
+    val own = CoordinatorNode.addressOf(system)
+    Endpoint(own.host.get, own.port.get)
+
+  def progress: Progress = latest.get
+
+  /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed again. One
+    * call at a time.
+    *
+    * @return
+    *   the answers in the order of the works; none if it was cancelled; or why there are none
+    */
+  def compute(works: Vector[ArraySeq[Byte]]): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
+    val promise = Promise[CoordinatorBehavior.Outcome]()
+    coordinator ! CoordinatorBehavior.Compute(works, promise)
+    promise.future
+
+  def cancel(): Unit = coordinator ! CoordinatorBehavior.Cancel
+
+  /** A worker's process is known to have ended. */
+  def ended(worker: String): Unit = coordinator ! CoordinatorBehavior.Ended(worker)
+
+  /** Bids the workers goodbye and ends; the ledger is not closed. */
+  def close(): Future[Unit] =
+    coordinator ! CoordinatorBehavior.Farewell
+    system.terminate().map(_ => ())(using scala.concurrent.ExecutionContext.parasitic)
+
+  /** Ends and says nothing, for tests. */
+  private[cluster] def kill(): Unit =
+    val _ = Await.result(system.terminate(), 30.seconds)
+
+object CoordinatorNode:
+  private[cluster] val Name = "coordinator"
+
+  /** @param listen
+    *   port 0 for any that is free
+    * @param ledger
+    *   of this question
+    * @param tell
+    *   on a thread of the node's own
+    * @return
+    *   or why it cannot listen
+    */
+  def start(
+      listen: Endpoint,
+      tls: Option[Tls],
+      question: ArraySeq[Byte],
+      ledger: Ledger,
+      build: String = BuildId.current
+  )(tell: News => Unit): Either[String, CoordinatorNode] =
+    for
+      _ <- Either.cond(
+        question.length <= MessageCodec.MostBytes,
+        (),
+        s"the question has ${question.length} bytes, expected at most ${MessageCodec.MostBytes}"
+      )
+      config <- NodeConfig.of(listen, tls)
+      system <-
+        try Right(ActorSystem(NodeConfig.System, config))
+        catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
+    yield
+      val latest = AtomicReference(Progress(Coordinator(), 0, 0, 0, 0))
+      val job    = Job(SecureRandom().nextLong() | 1, build, question)
+      val actor  = system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set), Name)
+      val _      = system.spawn(watching(actor), "members")
+      Cluster(system.toTyped).manager ! Join(addressOf(system))
+      CoordinatorNode(system, actor, latest)
+
+  private[cluster] def addressOf(system: ActorSystem): Address =
+    system.asInstanceOf[ExtendedActorSystem].provider.getDefaultAddress
+
+  private def reason(failed: Throwable): String =
+    Iterator.iterate(failed)(
+      _.getCause
+    ).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
+
+  /** Tells the coordinator who is out of reach. */
+  private def watching(coordinator: ActorRef[CoordinatorBehavior.Command])
+      : Behavior[MemberEvent | ReachabilityEvent] =
+    Behaviors.setup: context =>
+      val events = Cluster(context.system).subscriptions
+      events ! Subscribe(context.self, classOf[MemberEvent])
+      events ! Subscribe(context.self, classOf[ReachabilityEvent])
+      Behaviors.receiveMessage: event =>
+        event match
+          case UnreachableMember(member) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case MemberRemoved(member, _)  => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case _                         => ()
+        Behaviors.same

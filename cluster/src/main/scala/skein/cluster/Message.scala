@@ -1,0 +1,47 @@
+package skein.cluster
+
+import org.apache.pekko.actor.typed.ActorRef
+import scala.collection.immutable.ArraySeq
+
+/** What workers say. Any message may come late, twice or never.
+  *
+  * `run` names a coordinator's life: what was said in an earlier one means nothing. `worker` names a process, and
+  * `number` a block of the run.
+  */
+private[cluster] enum ToCoordinator:
+  /** A worker has room for blocks. Said once a second at least.
+    *
+    * @param run
+    *   0 before it is known
+    * @param build
+    *   see [[BuildId]]
+    * @param holding
+    *   the blocks that it has
+    */
+  case Ask(
+      worker: String,
+      cores: Int,
+      build: String,
+      run: Long,
+      holding: Set[Long],
+      replyTo: ActorRef[ToWorker]
+  )
+
+  case Done(run: Long, worker: String, number: Long, busyNanos: Long, answer: ArraySeq[Byte])
+
+  /** A block cannot be computed: nobody could. */
+  case Failed(run: Long, worker: String, number: Long, reason: String)
+
+  /** This worker cannot answer the run's question. */
+  case Unable(run: Long, worker: String, reason: String)
+
+/** What the coordinator says. */
+private[cluster] enum ToWorker:
+  case Welcome(run: Long, question: ArraySeq[Byte])
+  case Give(run: Long, number: Long, work: ArraySeq[Byte])
+
+  /** Its build is another. */
+  case Refused(reason: String)
+
+  /** All is done. */
+  case Goodbye

@@ -1,0 +1,85 @@
+package skein.cluster
+
+import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
+
+/** How Pekko is set up for a node. */
+private[cluster] object NodeConfig:
+  val System = "skein"
+
+  /** A message with its envelope. */
+  private val MostFrame = MessageCodec.MostBytes + (64 << 10)
+
+  /** @param listen
+    *   port 0 for any that is free
+    */
+  def of(listen: Endpoint, tls: Option[Tls]): Either[String, Config] =
+    for _ <- Either.cond(
+        listen.isLoopback || tls.isDefined,
+        (),
+        s"expected certificates of both sides (--tls DIR) where other machines get to ${listen.host}; " +
+          "./skein cluster certificates DIR makes a lab's, and without them only 127.0.0.1 is listened at"
+      )
+    yield ConfigFactory
+      .defaultOverrides()
+      .withFallback(tls.fold(ConfigFactory.empty)(_.config))
+      .withFallback(ConfigFactory.parseString(plain(listen)))
+      .withFallback(ConfigFactory.load())
+
+  private def plain(listen: Endpoint) = s"""
+    pekko {
+      loglevel = "ERROR"
+      stdout-loglevel = "OFF"
+      log-dead-letters = off
+      log-dead-letters-during-shutdown = off
+      actor {
+        provider = cluster
+        allow-java-serialization = off
+        serializers.skein = "skein.cluster.MessageSerializer"
+        serialization-bindings {
+          "skein.cluster.ToCoordinator" = skein
+          "skein.cluster.ToWorker" = skein
+        }
+      }
+      remote {
+        warn-about-direct-use = off
+        artery {
+          transport = tcp
+          canonical.hostname = ${ConfigUtil.quoteString(listen.host)}
+          canonical.port = ${listen.port}
+          advanced {
+            maximum-frame-size = $MostFrame b
+            buffer-pool-size = 16
+            outbound-message-queue-size = 8192
+            inbound-lanes = 1
+            outbound-lanes = 1
+          }
+        }
+      }
+      cluster {
+        jmx.enabled = off
+        log-info = off
+        # A process joins within a second, where nobody else waits for the same.
+        gossip-interval = 200 ms
+        leader-actions-interval = 200 ms
+        seed-node-timeout = 3 s
+        retry-unsuccessful-join-after = 1 s
+        shutdown-after-unsuccessful-join-seed-nodes = 10 s
+        failure-detector.acceptable-heartbeat-pause = 6 s
+        # Of two halves the coordinator's goes on: it was first.
+        downing-provider-class = "org.apache.pekko.cluster.sbr.SplitBrainResolverProvider"
+        split-brain-resolver {
+          active-strategy = keep-oldest
+          stable-after = 7 s
+          keep-oldest.down-if-alone = off
+        }
+      }
+      coordinated-shutdown {
+        exit-jvm = off
+        run-by-jvm-shutdown-hook = off
+        phases.cluster-leave.timeout = 2 s
+        phases.cluster-exiting.timeout = 2 s
+        phases.cluster-exiting-done.timeout = 1 s
+        phases.cluster-shutdown.timeout = 1 s
+      }
+    }
+  """

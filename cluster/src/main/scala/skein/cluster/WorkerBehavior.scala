@@ -1,0 +1,157 @@
+package skein.cluster
+
+import java.util.concurrent.{ArrayBlockingQueue, ExecutorService}
+import org.apache.pekko.actor.typed.scaladsl.{AbstractBehavior, ActorContext, Behaviors, TimerScheduler}
+import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.duration.DurationInt
+import scala.util.control.NonFatal
+
+/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers.
+  *
+  * @param pool
+  *   of as many threads as cores
+  * @param tell
+  *   what it does, in lines for a person
+  * @param onEnd
+  *   why it ended
+  */
+private[cluster] final class WorkerBehavior private (
+    context: ActorContext[WorkerBehavior.Command],
+    coordinator: ActorRef[ToCoordinator],
+    self: WorkerBehavior.Self,
+    pool: ExecutorService,
+    tell: String => Unit,
+    onEnd: WorkerBehavior.End => Unit
+) extends AbstractBehavior[WorkerBehavior.Command](context):
+  import WorkerBehavior.*
+
+  private var run     = 0L
+  private var solvers = Option.empty[ArrayBlockingQueue[Solver]]
+  private var held    = Set.empty[Long]
+  private var begun   = 0L
+  private var blocks  = 0L
+  private var busy    = 0L
+  private var beats   = 0
+
+  def onMessage(command: Command): Behavior[Command] = command match
+    case Beat =>
+      beats += 1
+      if solvers.isDefined || run == 0 then ask()
+      if beats % BeatsAReport == 0 && blocks > 0 then tell(summary)
+      this
+    case ToWorker.Welcome(welcome, question) =>
+      if welcome != run then
+        run = welcome
+        solvers = None
+        held = Set.empty
+        tell("the coordinator told its question")
+        inPool(Prepared(welcome, prepared(question)))
+      this
+    case Prepared(of, made) if of == run =>
+      made match
+        case Right(ready) =>
+          solvers = Some(ready)
+          ask()
+          this
+        case Left(reason) =>
+          coordinator ! ToCoordinator.Unable(run, self.name, reason)
+          end(End.Refused(s"cannot answer the coordinator's question: $reason"))
+    case ToWorker.Give(of, number, work) if of == run && !held(number) && held.size < MessageCodec.MostHeld =>
+      solvers.foreach: ready =>
+        if begun == 0 then tell("computes its first block")
+        begun += 1
+        held += number
+        inPool(solved(of, number, work, ready))
+      this
+    case Solved(of, number, answer, nanos) if of == run =>
+      held -= number
+      answer match
+        case Right(bytes) =>
+          blocks += 1
+          busy += nanos
+          coordinator ! ToCoordinator.Done(run, self.name, number, nanos, bytes)
+        case Left(reason) => coordinator ! ToCoordinator.Failed(run, self.name, number, reason)
+      ask()
+      this
+    case ToWorker.Refused(reason) => end(End.Refused(reason))
+    case ToWorker.Goodbye         => end(End.Finished)
+    case Unreachable              => end(End.Lost)
+    case _                        => this // Of an earlier run, or a block that it has.
+
+  private def ask(): Unit =
+    coordinator ! ToCoordinator.Ask(self.name, self.cores, self.build, run, held, context.self)
+
+  private def end(how: End): Behavior[Command] =
+    if blocks > 0 then tell(summary)
+    onEnd(how)
+    Behaviors.stopped
+
+  private def summary = f"$blocks%d blocks computed in ${busy * 1e-9}%.1f s of its cores"
+
+  private def inPool(body: => Command): Unit =
+    val me = context.self
+    pool.execute(() => me ! body)
+
+  private def prepared(question: ArraySeq[Byte]): Either[String, ArrayBlockingQueue[Solver]] =
+    try
+      self.solvers.of(question).map: make =>
+        val ready = ArrayBlockingQueue[Solver](self.cores)
+        for _ <- 0 until self.cores do ready.put(make())
+        ready
+    catch case NonFatal(failed) => Left(failed.toString)
+
+  private def solved(
+      of: Long,
+      number: Long,
+      work: ArraySeq[Byte],
+      ready: ArrayBlockingQueue[Solver]
+  ): Solved =
+    // There are as many as threads, so that one is always free.
+    val solver = ready.take()
+    val begun  = System.nanoTime()
+    val answer =
+      try Right(solver.solve(work))
+      catch
+        case NonFatal(failed)        => Left(failed.toString)
+        case _: InterruptedException => Left("the worker ends")
+      finally ready.put(solver)
+    Solved(of, number, answer, System.nanoTime() - begun)
+
+private[cluster] object WorkerBehavior:
+  /** @param build
+    *   see [[BuildId]]
+    */
+  final case class Self(name: String, cores: Int, build: String, solvers: Solvers)
+
+  enum End:
+    case Finished, Lost
+    case Refused(reason: String)
+
+  sealed trait Local
+  private case object Beat                                                                       extends Local
+  private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[Solver]]) extends Local
+  private final case class Solved(
+      run: Long,
+      number: Long,
+      answer: Either[String, ArraySeq[Byte]],
+      nanos: Long
+  ) extends Local
+
+  /** The coordinator is out of reach. */
+  case object Unreachable extends Local
+
+  type Command = ToWorker | Local
+
+  private val BeatsAReport = 10
+
+  def apply(
+      coordinator: ActorRef[ToCoordinator],
+      self: Self,
+      pool: ExecutorService,
+      tell: String => Unit,
+      onEnd: End => Unit
+  ): Behavior[Command] =
+    Behaviors.withTimers: (timers: TimerScheduler[Command]) =>
+      timers.startTimerWithFixedDelay(Beat, 0.seconds, 1.second)
+      Behaviors.setup(context => new WorkerBehavior(context, coordinator, self, pool, tell, onEnd))

@@ -1,0 +1,143 @@
+package skein.cluster
+
+import com.typesafe.config.Config
+import java.net.InetAddress
+import java.util.concurrent.{ExecutorService, Executors, TimeUnit}
+import org.apache.pekko.actor.typed.scaladsl.Behaviors
+import org.apache.pekko.actor.typed.scaladsl.adapter.*
+import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
+import org.apache.pekko.actor.{ActorSystem, Address}
+import org.apache.pekko.cluster.ClusterEvent.{
+  MemberEvent,
+  MemberRemoved,
+  ReachabilityEvent,
+  UnreachableMember
+}
+import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
+import scala.concurrent.duration.{Duration, FiniteDuration}
+import scala.concurrent.{Await, Promise}
+import scala.util.Try
+import scala.util.control.NonFatal
+import skein.cluster.WorkerBehavior.End
+
+/** A process that computes blocks.
+  *
+  * @param patience
+  *   for how long it tries to reach a coordinator that it has not reached yet, or has lost
+  * @param tell
+  *   what it does, in lines for a person
+  */
+final class WorkerNode(
+    coordinator: Endpoint,
+    listen: Endpoint,
+    tls: Option[Tls],
+    cores: Int,
+    solvers: Solvers,
+    patience: FiniteDuration,
+    name: String = WorkerNode.nameOf(ProcessHandle.current().pid()),
+    build: String = BuildId.current
+)(tell: String => Unit):
+  require(
+    cores >= 1 && cores <= MessageCodec.MostCores,
+    s"cores: expected 1 to ${MessageCodec.MostCores}, got $cores"
+  )
+
+  @volatile private var stopped = false
+  @volatile private var ending  = Promise[End]()
+
+  /** When it was last a member, or began to try. */
+  @volatile private var contactAt = 0L
+
+  /** Ends [[run]] soon, from any thread. */
+  def stop(): Unit =
+    stopped = true
+    val _ = ending.trySuccess(End.Finished)
+
+  /** Works until the coordinator has no more to do. Blocks the calling thread.
+    *
+    * @return
+    *   or why it could not
+    */
+  def run(): Either[String, Unit] =
+    NodeConfig.of(listen, tls).flatMap: config =>
+      val pool = Executors.newFixedThreadPool(cores, WorkerNode.thread(_))
+      try
+        tell(s"$name, $cores ${if cores == 1 then "core" else "cores"}, build $build: joining $coordinator")
+        contactAt = System.nanoTime()
+        var outcome = Option.empty[Either[String, Unit]]
+        while outcome.isEmpty do
+          val how    = once(config, pool)
+          val waited = System.nanoTime() - contactAt
+          outcome = how match
+            case _ if stopped        => Some(Right(tell("told to end")))
+            case End.Finished        => Some(Right(tell("the coordinator has all that it asked")))
+            case End.Refused(reason) => Some(Left(reason))
+            case End.Lost if waited > patience.toNanos =>
+              Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s"))
+            case End.Lost =>
+              val left = (patience.toNanos - waited) / 1_000_000_000
+              tell(s"cannot reach the coordinator at $coordinator; joining again, for $left s at most")
+              None
+        outcome.get
+      catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${failed.getMessage}")
+      finally pool.shutdownNow(): Unit
+
+  /** From joining to the end, once. */
+  private def once(config: Config, pool: ExecutorService): End =
+    val promise            = Promise[End]()
+    @volatile var isMember = false
+    ending = promise
+    if stopped then promise.trySuccess(End.Finished): Unit
+    val system = ActorSystem(NodeConfig.System, config)
+    try
+      val seed = Address("pekko", NodeConfig.System, coordinator.host, coordinator.port)
+      system.whenTerminated.onComplete(_ => promise.trySuccess(End.Lost))(using
+        scala.concurrent.ExecutionContext.parasitic
+      )
+      val to =
+        ActorRefResolver(system.toTyped).resolveActorRef[ToCoordinator](s"$seed/user/${CoordinatorNode.Name}")
+      val self = WorkerBehavior.Self(name, cores, build, solvers)
+      val _    = system.spawn(
+        WorkerNode.member(seed, () => { isMember = true; tell(s"joined $coordinator") }):
+          WorkerBehavior(to, self, pool, tell, end => { val _ = promise.trySuccess(end) })
+        ,
+        "worker"
+      )
+      val how = Await.result(promise.future, Duration.Inf)
+      if isMember then contactAt = System.nanoTime()
+      how
+    finally
+      val _ = Try(Await.result(system.terminate(), Duration(10, TimeUnit.SECONDS)))
+
+object WorkerNode:
+  /** A worker's name, by its process. */
+  def nameOf(pid: Long): String = s"$host-$pid"
+
+  private lazy val host: String = Try(InetAddress.getLocalHost.getHostName).getOrElse("localhost")
+
+  private def thread(body: Runnable): Thread =
+    val made = Thread(body, "blocks")
+    made.setDaemon(true)
+    made
+
+  /** Joins, works as a member, and tells the work when the coordinator is out of reach. */
+  private def member(seed: Address, onUp: () => Unit)(
+      work: Behavior[WorkerBehavior.Command]
+  ): Behavior[SelfUp | MemberEvent | ReachabilityEvent] =
+    Behaviors.setup: context =>
+      val cluster = Cluster(context.system)
+      cluster.subscriptions ! Subscribe(context.self, classOf[SelfUp])
+      cluster.subscriptions ! Subscribe(context.self, classOf[MemberEvent])
+      cluster.subscriptions ! Subscribe(context.self, classOf[ReachabilityEvent])
+      cluster.manager ! JoinSeedNodes(Vector(seed))
+      var working                  = Option.empty[ActorRef[WorkerBehavior.Command]]
+      def lostIf(address: Address) = if address == seed then working.foreach(_ ! WorkerBehavior.Unreachable)
+      Behaviors.receiveMessage: event =>
+        event match
+          case _: SelfUp =>
+            onUp()
+            working = Some(context.spawn(work, "blocks"))
+          case UnreachableMember(member) => lostIf(member.address)
+          case MemberRemoved(member, _)  => lostIf(member.address)
+          case _                         => ()
+        Behaviors.same

@@ -1,0 +1,96 @@
+package skein.cluster
+
+import java.lang.management.ManagementFactory
+import java.nio.file.Path
+import java.util.concurrent.TimeUnit
+import java.util.concurrent.atomic.AtomicInteger
+import scala.jdk.CollectionConverters.*
+
+/** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from it, whose end
+  * it watches for ([[WorkerProcesses.endWithParent]]).
+  *
+  * A process that dies is replaced, unless several have ended soon after their start.
+  *
+  * @param command
+  *   of a worker
+  * @param log
+  *   of a worker by its number, from 1
+  * @param onEnd
+  *   told the name of a worker whose process has ended, on a thread of its own
+  * @param onGivenUp
+  *   told, in a line, when no process is left and none is started again
+  */
+final class WorkerProcesses(
+    count: Int,
+    command: Seq[String],
+    log: Int => Path,
+    onEnd: String => Unit,
+    onGivenUp: String => Unit
+) extends AutoCloseable:
+  import WorkerProcesses.*
+
+  private var processes = Map.empty[Int, Process]
+  private var isClosing = false
+  private val early     = AtomicInteger()
+
+  def start(): Unit = for number <- 1 to count do begin(number)
+
+  private def begin(number: Int): Unit = synchronized:
+    if !isClosing then
+      val builder = ProcessBuilder(command*)
+      builder.redirectErrorStream(true)
+      builder.redirectOutput(ProcessBuilder.Redirect.appendTo(log(number).toFile))
+      val begun   = System.nanoTime()
+      val process = builder.start()
+      processes += number -> process
+      process.onExit.thenAccept(_ => ended(number, process, System.nanoTime() - begun)): Unit
+
+  private def ended(number: Int, process: Process, livedNanos: Long): Unit =
+    onEnd(WorkerNode.nameOf(process.pid()))
+    if livedNanos > Soon then early.set(0)
+    val again = synchronized:
+      processes -= number
+      !isClosing && (livedNanos > Soon || early.incrementAndGet() <= MostEarly)
+    if again then begin(number)
+    else if synchronized(!isClosing && processes.isEmpty) then
+      onGivenUp(
+        s"the workers on this machine end soon after their start, with status ${process.exitValue}: see ${log(number)}"
+      )
+
+  /** Ends all, and waits for them, but not for long. */
+  def close(): Unit =
+    val left = synchronized:
+      isClosing = true
+      processes.values.toVector
+    left.foreach(_.getOutputStream.close())
+    val deadline = System.nanoTime() + Grace
+    for process <- left do
+      if !process.waitFor((deadline - System.nanoTime()).max(0), TimeUnit.NANOSECONDS) then
+        process.destroyForcibly(): Unit
+
+object WorkerProcesses:
+  private val Soon      = 10_000_000_000L
+  private val MostEarly = 3
+  private val Grace     = 5_000_000_000L
+
+  /** In a worker: calls `end` once the process that started it has ended, or closed its pipe. */
+  def endWithParent(end: () => Unit): Unit =
+    val watching = Thread(() =>
+      try while System.in.read() >= 0 do ()
+      catch case _: java.io.IOException => ()
+      end()
+    )
+    watching.setDaemon(true)
+    watching.setName("parent")
+    watching.start()
+
+  /** A command that runs a program as this one runs: the same JVM, options and class path.
+    *
+    * @param program
+    *   the class with `main`
+    */
+  def likeThis(program: String, words: Seq[String]): Seq[String] =
+    val options = ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
+      .filterNot(option => option.startsWith("-agentlib") || option.startsWith("-Xrun"))
+    val java = Path.of(sys.props("java.home"), "bin", "java").toString
+    (java +: options.toSeq) ++ Seq("-cp", sys.props("java.class.path"), program) ++ words

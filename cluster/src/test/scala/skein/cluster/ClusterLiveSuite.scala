@@ -1,0 +1,216 @@
+package skein.cluster
+
+import java.net.Socket
+import java.nio.file.{Files, Path}
+import java.util.concurrent.atomic.AtomicInteger
+import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch}
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, Future, blocking}
+import scala.jdk.CollectionConverters.*
+import skein.blocks.Ledger
+
+/** Coordinator and workers as nodes of their own in one JVM, over loopback. */
+class ClusterLiveSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+  import scala.concurrent.ExecutionContext.Implicits.global
+
+  private val loopback = Endpoint("127.0.0.1", 0)
+  private val question = bytes("reverse")
+  private val works    = Vector.tabulate(120)(number => bytes(s"block $number"))
+  private val answers  = works.map(_.reverse)
+
+  private def bytes(text: String): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(text.getBytes("UTF-8"))
+
+  /** Reverses, and counts how often it was asked.
+    *
+    * @param before
+    *   called before each block
+    */
+  private final class Reversing(before: () => Unit = () => ()) extends Solvers:
+    val solved                    = AtomicInteger()
+    def of(asked: ArraySeq[Byte]) =
+      Either.cond(
+        asked == question,
+        () =>
+          work =>
+            before()
+            solved.incrementAndGet(): Unit
+            work.reverse
+        ,
+        "no such question"
+      )
+
+  private final class Coordinating(val folder: Path, port: Int = 0, tls: Option[Tls] = None):
+    val news   = ConcurrentLinkedQueue[News]()
+    val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
+    val node   = CoordinatorNode
+      .start(loopback.copy(port = port), tls, question, ledger, build = "one")(news.add(_): Unit)
+      .fold(fail(_), identity)
+
+    def close(): Unit =
+      Await.result(node.close(), 30.seconds)
+      ledger.close()
+
+  private def coordinating(body: Coordinating => Unit): Unit =
+    val coordinator = Coordinating(Files.createTempDirectory("cluster"))
+    try body(coordinator)
+    finally coordinator.close()
+
+  private def worker(
+      to: Endpoint,
+      name: String,
+      solvers: Solvers,
+      build: String = "one",
+      cores: Int = 1,
+      tls: Option[Tls] = None,
+      patience: FiniteDuration = 60.seconds
+  ) =
+    val told = ConcurrentLinkedQueue[String]()
+    val node = WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
+    (node, Future(blocking(node.run())), told)
+
+  private def certificates(hosts: String*): Vector[Tls] =
+    Certificates
+      .make(Files.createTempDirectory("certificates"), hosts)
+      .fold(fail(_), identity)
+      .map(Tls.of(_).fold(fail(_), identity))
+
+  private def computed(node: CoordinatorNode) =
+    Await.result(node.compute(works), 60.seconds).fold(fail(_), _.get)
+
+  test("workers join, every block counts once, and a second call finds its answers in the ledger"):
+    coordinating: coordinator =>
+      val solvers = Reversing()
+      val ended   = Vector("anna", "ben", "cleo").map(name =>
+        worker(coordinator.node.address, name, solvers, cores = 2)._2
+      )
+      assertEquals(computed(coordinator.node), answers)
+      val solved = solvers.solved.get
+      assertEquals(coordinator.node.progress.coordinator.counts.accepted, works.size.toLong)
+      assertEquals(computed(coordinator.node), answers)
+      assertEquals(solvers.solved.get, solved, "nothing is computed twice")
+      assertEquals(coordinator.ledger.size, works.size)
+      coordinator.node.close(): Unit
+      for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(()))
+
+  test("a worker of another build is refused with both told, and one that cannot answer the question too"):
+    coordinating: coordinator =>
+      val (_, other, _) = worker(coordinator.node.address, "anna", Reversing(), build = "two")
+      val refusal       = Await.result(other, 30.seconds).swap.getOrElse(fail("was taken"))
+      assert(clue(refusal).contains("its build is two, expected the coordinator's, one"))
+      val (_, without, _) = worker(coordinator.node.address, "ben", _ => Left("no scenario 'ridge'"))
+      val unable          = Await.result(without, 30.seconds).swap.getOrElse(fail("was taken"))
+      assert(clue(unable).contains("no scenario 'ridge'"))
+      val told = coordinator.news.asScala.map(_.text).toVector
+      assert(clue(told).exists(_.contains("refused anna: its build is two")))
+
+  test("a stranger's garbage at the port harms nothing"):
+    coordinating: coordinator =>
+      val random = java.util.Random(1)
+      val port   = coordinator.node.address.port
+      for size <- Seq(1, 16, 1 << 10, 1 << 20) do
+        val socket = Socket("127.0.0.1", port)
+        val noise  = Array.ofDim[Byte](size)
+        random.nextBytes(noise)
+        try socket.getOutputStream.write(noise)
+        catch case _: java.io.IOException => () // It is cut off midway.
+        finally socket.close()
+      // What begins as Pekko's own wire does, and goes on with a frame of 2 GiB.
+      val lying = Socket("127.0.0.1", port)
+      try
+        lying.getOutputStream.write("AKKA".getBytes("US-ASCII") ++ Array[Byte](
+          1, -1, -1, -1, 127
+        ) ++ Array.ofDim[Byte](4096))
+      catch case _: java.io.IOException => ()
+      finally lying.close()
+      val (node, _, _) = worker(coordinator.node.address, "anna", Reversing())
+      assertEquals(computed(coordinator.node), answers)
+      node.stop()
+
+  test("what a worker had that leaves is computed by another"):
+    coordinating: coordinator =>
+      val taken        = CountDownLatch(1)
+      val never        = CountDownLatch(1)
+      val (node, _, _) = worker(
+        coordinator.node.address,
+        "anna",
+        Reversing(() =>
+          taken.countDown()
+          never.await()
+        )
+      )
+      val answered = coordinator.node.compute(works)
+      taken.await()
+      node.stop()
+      val (ben, _, _) = worker(coordinator.node.address, "ben", Reversing())
+      assertEquals(Await.result(answered, 60.seconds).fold(fail(_), _.get), answers)
+      assertEquals(coordinator.node.progress.coordinator.workers("ben").accepted, works.size.toLong)
+      ben.stop()
+
+  test("a coordinator that is started again at its address finds its workers and what it had"):
+    val folder  = Files.createTempDirectory("cluster")
+    val first   = Coordinating(folder)
+    val port    = first.node.address.port
+    val reached = CountDownLatch(30)
+    val dead    = CountDownLatch(1)
+    val solvers = Reversing: () =>
+      if reached.getCount == 0 then dead.await()
+      reached.countDown()
+    // Its end is not told to anybody, as if it was killed.
+    val (node, _, told) = worker(first.node.address, "anna", solvers)
+    first.node.compute(works): Unit
+    reached.await()
+    first.node.kill()
+    dead.countDown()
+    first.ledger.close()
+    val had    = Ledger.audit(folder.resolve(Ledger.Name))
+    val second = Coordinating(folder, port)
+    try
+      assertEquals(computed(second.node), answers)
+      assertEquals(second.node.progress.resumed, had.blocks.toLong)
+      assertEquals((had.repeats, had.broken), (0, 0L))
+      assertEquals(Ledger.audit(folder.resolve(Ledger.Name)), Ledger.Audit(works.size, 0, 0))
+      assert(had.blocks >= 29 && had.blocks < works.size, had.toString)
+    finally
+      node.stop()
+      second.close()
+    assert(clue(told.asScala.toVector).exists(_.contains("joined")))
+
+  test("beyond loopback nobody listens without certificates"):
+    val folder  = Files.createTempDirectory("cluster")
+    val ledger  = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
+    val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
+    assert(clue(refused.swap.getOrElse("started")).contains("certificates"))
+    ledger.close()
+
+  test(
+    "with certificates of one set nodes work together; without, of another set, or of another host, nobody joins"
+  ):
+    val Vector(own, elsewhere) = certificates("localhost", "one.workers.lab"): @unchecked
+    val Vector(strangers)      = certificates("localhost"): @unchecked
+    val coordinator            = Coordinating(Files.createTempDirectory("cluster"), tls = Some(own))
+    try
+      val to      = coordinator.node.address
+      val solvers = Reversing()
+      val refused =
+        Vector("plain" -> None, "stranger" -> Some(strangers), "elsewhere" -> Some(elsewhere)).map:
+          (name, tls) => worker(to, name, solvers, tls = tls, patience = 1.second)._2
+      for outcome <- refused do
+        assert(Await.result(outcome, 90.seconds).isLeft)
+      assertEquals(coordinator.node.progress.coordinator.workers.keySet, Set.empty)
+      val (anna, _, _) = worker(to, "anna", solvers, tls = Some(own))
+      assertEquals(computed(coordinator.node), answers)
+      anna.stop()
+    finally coordinator.close()
+
+  test("a set's folders are for their owner alone, and a certificate is not made twice"):
+    val folder = Files.createTempDirectory("certificates")
+    val made   = Certificates.make(folder, Seq("*.workers.lab", "10.0.0.7")).fold(fail(_), identity)
+    assertEquals(made.map(_.getFileName.toString), Vector("_.workers.lab", "10.0.0.7"))
+    for key <-
+        Seq(folder.resolve("signer.p12"), made.head.resolve(Tls.KeyStore), made.head.resolve(Tls.Password))
+    do
+      assertEquals(Files.getPosixFilePermissions(key).size, 2, key.toString)
+    assert(clue(Certificates.make(folder, Seq("10.0.0.7")).swap.getOrElse("made")).contains("already"))
+    assert(clue(Certificates.make(folder, Seq("no host")).swap.getOrElse("made")).contains("no host"))
