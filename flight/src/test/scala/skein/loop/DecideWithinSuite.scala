@@ -5,7 +5,7 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
-import skein.policy.{KeepHeading, Policy}
+import skein.policy.{AgentPolicy, KeepHeading}
 import skein.record.{Decision as DecisionRow, Reading as _, *}
 import skein.scenario.PaperDuel
 import skein.signal.*
@@ -17,7 +17,7 @@ class DecideWithinSuite extends munit.FunSuite:
   private val pursuer  = 1
 
   /** Decisions and events of five turns by a policy that is late in the third. */
-  private def flown(instead: Option[Policy]): (Vector[DecisionRow], Vector[Event]) =
+  private def flown(instead: Option[AgentPolicy]): (Vector[DecisionRow], Vector[Event]) =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -98,6 +98,22 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(Replay(scenario, reworded).firstDifference, None)
     val silent = Replay(scenario, recording.copy(events = Vector.empty)).firstDifference
     assertEquals(silent.map(_.column), Some("headingRad"))
+
+  test("a replay asks the fallback that the recording names among its parameters"):
+    val pursuit             = Fallback.parse("pure-pursuit").fold(fail(_), identity)
+    val (decisions, events) = flown(pursuit.policy(scenario.agents(pursuer)))
+    val readings            = decisions.flatMap(decision => Seq(decision.own, decision.opponent)).distinct
+    def column(parameters: Parameter*) =
+      val recording = Recording(
+        Samples.heading.copy(parameters = parameters),
+        readings = readings,
+        decisions = decisions,
+        events = events
+      )
+      Replay(scenario, recording).firstDifference.map(_.column)
+    val others = Samples.heading.parameters
+    assertEquals(column(others :+ Parameter(Replay.Fallback, pursuit.label)*), None)
+    assertEquals(column(others*), Some("headingRad"))
 
   test("a fallback is hold, repeat or a policy for the roles that it is meant for"):
     assertEquals(Fallback.parse("hold").map(_.policy(scenario.agents(0))), Right(None))

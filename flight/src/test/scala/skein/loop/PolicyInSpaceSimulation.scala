@@ -75,6 +75,13 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       assert(recording.decisions.size > 150, s"${recording.decisions.size} decisions")
       assertEquals(Replay(both, recording).firstDifference, None)
 
+  test("where each predicts the whole team, its predictions are held against its own readings alone"):
+    val predictions = fly(LoopKind.Predictive).predictions
+    assertEquals(
+      predictions.map(one => (one.decider, one.vehicle)).toSet,
+      Set("Evader", "Pursuer").map(name => (name, name))
+    )
+
   test("a vehicle may fly alone"):
     val alone     = Fleet(Vector(both.agents.head))
     val altitudes = downs(fly(LoopKind.Stream, alone), "Evader")

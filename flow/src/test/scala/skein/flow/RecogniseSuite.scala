@@ -85,6 +85,11 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(mixed.emitted.size + mixed.replaced, 300)
     assertEquals(mixed.mostAtOnce, 3)
 
+  test("twice as many frames as workers wait for one before them; then no more are begun until it has ended"):
+    val held = run(perSecond = 100, count = 80, workers = 2)(frame => if frame == 0 then 505 else 5)
+    assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
+    assertEquals((held.replaced, held.skipped), (46, Vector.empty))
+
   test("the newest first: a result is emitted when it is there, and older ones no more"):
     val newest = run(perSecond = 100, count = 4, workers = 4, newestFirst = true)(Vector(50, 5, 45, 5))
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))

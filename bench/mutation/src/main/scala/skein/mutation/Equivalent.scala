@@ -63,6 +63,20 @@ object Equivalent:
       "last",
       "of several missing rows any may be told"
     ),
+    Equivalent(
+      "JointPlanning.scala",
+      "plannings.head.planner",
+      "head",
+      "last",
+      "all vehicles plan by the flight's settings"
+    ),
+    Equivalent(
+      "Planning.scala",
+      "(seed * 1_000_003 + self)",
+      "1_000_003",
+      "1000004",
+      "any large factor keeps vehicles and decisions apart"
+    ),
     Equivalent("RecordingFormat.scala", "val version", "5", "6", "counts how often tables have changed"),
     Equivalent("FoxgloveViews.scala", "placed(Vector3(0, 0, -1)", "1", "2", Size),
     Equivalent("FoxgloveViews.scala", "Vector3(0.5, 0.5, 0.5)", "0.5", "(2 * 0.5 + 1)", Size),

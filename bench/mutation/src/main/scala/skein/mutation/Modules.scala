@@ -16,9 +16,9 @@ private object Modules:
       Vector(
         "skein.loop.*Suite",
         "skein.loop.planning.*",
-        "skein.flight.ReplaySimulation",
-        "skein.loop.SensorSimulation",
-        "skein.loop.PredictiveLoopSimulation"
+        "skein.loop.*Simulation",
+        "skein.flight.*Suite",
+        "skein.flight.*Simulation"
       )
     ),
     Module(

@@ -11,8 +11,11 @@ import scala.util.{Random, Using}
 
 /** What became of a mutant. */
 enum Fate:
-  case Survived, TimedOut
+  case Survived
   case Killed(by: String)
+
+  /** Twice: that counts as noticed. */
+  case TimedOut, ProcessEnded
 
   /** It does not compile. */
   case Invalid(why: String)
@@ -68,6 +71,7 @@ object Score:
   /** The share noticed, with Wilson's interval of 95 %. */
   private def of(judged: Vector[(Mutant, Fate)]): String =
     val survived = judged.count(_._2 == Fate.Survived)
+    val endless  = judged.count(_._2 == Fate.TimedOut)
     val (n, z)   = (judged.size.max(1).toDouble, 1.96)
     val share    = 1 - survived / n
     val middle   = (share + z * z / (2 * n)) / (1 + z * z / n)
@@ -75,7 +79,8 @@ object Score:
     def percent(value: Double) = (100 * value).round
     if judged.isEmpty then "none tried"
     else
-      s"${percent(share)} % (${percent(middle - half)} … ${percent(middle + half)}) of ${judged.size}, $survived not noticed"
+      s"${percent(share)} % (${percent(middle - half)} … ${percent(middle + half)}) of ${judged.size}, $survived not noticed" +
+        (if endless > 0 then s", $endless by not ending" else "")
 
 /** Runs mutants of one module, one after the other, in a [[Worker]] that is started again where one does not end. */
 private final class Session(module: Module):
@@ -91,6 +96,7 @@ private final class Session(module: Module):
   /** What cannot pass unchanged notices nothing. Sets the time that a mutant has. */
   def checkUnchanged(): Unit =
     if suites.isEmpty then sys.error(s"${module.name}: no suites of ${module.suites.mkString(", ")}")
+    limit = 10.minutes
     val from = System.nanoTime()
     ask("-") match
       case Fate.Survived => ()
@@ -99,10 +105,17 @@ private final class Session(module: Module):
     limit = took * 4 + 60.seconds
     println(s"${module.name}: ${suites.size} suites take ${took.toMillis / 1000.0} s unchanged")
 
+  /** What does not end is tried again, in a time measured anew: the machine may have been busy. */
   def fate(mutant: Mutant): Fate =
     val file = changed.resolve(mutant.file.getFileName)
     Files.writeString(file, mutant.applied(Files.readString(mutant.file)))
-    ask(file.toString)
+    ask(file.toString) match
+      case Fate.TimedOut | Fate.ProcessEnded =>
+        checkUnchanged()
+        val again = ask(file.toString)
+        if again == Fate.TimedOut || again == Fate.ProcessEnded then checkUnchanged()
+        again
+      case told => told
 
   def close(): Unit =
     worker.destroyForcibly()
@@ -124,7 +137,7 @@ private final class Session(module: Module):
         case Some(other)            => sys.error(s"the worker answered: $other")
         case None                   =>
           worker = start()
-          Fate.Killed("the process ended")
+          Fate.ProcessEnded
     catch
       case _: TimeoutException =>
         worker.destroyForcibly().waitFor(10, TimeUnit.SECONDS)

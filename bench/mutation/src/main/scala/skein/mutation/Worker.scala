@@ -4,7 +4,8 @@ import dotty.tools.dotc.reporting.StoreReporter
 import java.io.{BufferedReader, File, InputStreamReader, PrintStream}
 import java.net.URLClassLoader
 import java.nio.file.{Files, Path}
-import org.junit.runner.{JUnitCore, Request}
+import org.junit.runner.Request
+import org.junit.runner.notification.{Failure, RunListener, RunNotifier, StoppedByUserException}
 import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
@@ -99,7 +100,15 @@ object Worker:
       StoreReporter(null)
     ).allErrors.headOption.map(_.message.replace('\n', ' '))
 
+  /** Up to the first test that fails. */
   private def passes(suite: String, loader: ClassLoader): Boolean =
     Thread.currentThread.setContextClassLoader(loader)
-    val result = JUnitCore().run(Request.aClass(loader.loadClass(suite)))
-    result.wasSuccessful
+    val notifier = RunNotifier()
+    var passed   = true
+    notifier.addListener(new RunListener:
+      override def testFailure(failure: Failure): Unit =
+        passed = false
+        notifier.pleaseStop())
+    try Request.aClass(loader.loadClass(suite)).getRunner.run(notifier)
+    catch case _: StoppedByUserException => ()
+    passed

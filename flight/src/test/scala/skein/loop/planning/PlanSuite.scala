@@ -66,3 +66,8 @@ class PlanSuite extends munit.FunSuite:
       last.best.plans(0).manoeuvre.turnRates.toSeq,
       next.best.plans(0).manoeuvre.shifted(0.1, settings.dtS).turnRates.toSeq
     )
+    assertEquals(Seq(best, next, last).map(_.unsearchedS), Seq(Vector(0.0), Vector(0.1), Vector(0.2)))
+
+  test("where nothing was ever searched, that is for ever"):
+    val answers = planned(CountedPlanWorkers(1, 0), ticks = 2).map(_._2.unsearchedS)
+    assertEquals(answers, Seq.fill(2)(Vector(Double.PositiveInfinity)))
