@@ -43,6 +43,9 @@ class SectionSuite extends munit.FunSuite:
     // 16 words of five letters with their blanks are 95.
     assertEquals(told.map(_.length), Vector(95, 95, 95, 71))
     assertEquals(lines.dropWhile(_ != "Two").size, 5)
+    def folded(first: Int, second: Int) =
+      Section.text(Seq(Section("One", s"${"a" * first} ${"b" * second}", Some(table)))).linesIterator.size - 5
+    assertEquals((folded(50, 49), folded(50, 50)), (1, 2))
 
   test("sections without rows and pictures are left out"):
     val empty   = Section("no rows", table = Some(table.copy(rows = Vector.empty)))

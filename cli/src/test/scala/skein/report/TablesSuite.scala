@@ -175,7 +175,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!PlanTable.note(Report.of(Seq(unseen))).contains("captured"))
 
   test("prediction errors are in mm, and those of which none was verified are told"):
-    val own   = PredictionErrors(made = 50, Vector.tabulate(41)(index => (100.0, index * 2 / 1000.0)))
+    val own   = PredictionErrors(made = 50, Vector.tabulate(41)(index => (100.0, index * 20 / 1000.0)))
     val none  = PredictionErrors(made = 0, Vector.empty)
     val lost  = PredictionErrors(made = 3, Vector.empty)
     val table = PredictionTable.of(
@@ -184,7 +184,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(
       table.rows,
       Vector(
-        Vector("predictive", "vpn", "own vehicle", "50", "9", "100", "40.0", "76.0", "76.0"),
+        Vector("predictive", "vpn", "own vehicle", "50", "9", "100", "400.0", "760.0", "760.0"),
         Vector("plan", "vpn", "own vehicle", "3", "3", "", "", "", ""),
         Vector("plan", "vpn", "others", "3", "3", "", "", "", "")
       )

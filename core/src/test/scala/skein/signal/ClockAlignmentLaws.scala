@@ -25,6 +25,14 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
       val alignment = aligned(legs)
       math.abs((alignment.offset - trueOffset).toNanos) <= alignment.uncertainty.toNanos + 1
 
+  property(
+    "the uncertainty is the way to the farther bound: between half and the whole of what lies between them"
+  ):
+    forAll(legs): legs =>
+      val alignment = aligned(legs)
+      val width     = alignment.upper - alignment.lower
+      alignment.uncertainty * 2 >= width && alignment.uncertainty <= width
+
   property("more readings never widen the bounds by more than the clocks may have drifted"):
     forAll(legs): legs =>
       val drifted       = Span.ofMillis((legs.size * 100 + 200) * ClockAlignment.MaxDrift) * 2

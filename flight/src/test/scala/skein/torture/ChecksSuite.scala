@@ -41,6 +41,10 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(clean.copy(arrivals =
       clean.arrivals.filter(_.at < until)
     )).contains("no command for 2.00 s in calm"))
+    val one = found(clean.copy(arrivals =
+      clean.arrivals.filter(arrival => arrival.at < until || arrival.vehicle == "Pursuer")
+    ))
+    assert(one.contains("Evader: no command for") && !one.contains("Pursuer: no command for"), one)
 
   test("a call that never ended"):
     val stats = clean.stats.copy(answered = clean.stats.answered - 1)

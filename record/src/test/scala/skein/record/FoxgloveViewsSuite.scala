@@ -52,6 +52,12 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals(seen("cubes")(0)("pose"), pose(expected.x, expected.y, expected.z))
     val own = entity(drawn(1))("cubes")(0)("color")
     assertEquals((line("color"), seen("cubes")(0)("color")), (own, own))
+    // When the command acts, by the clocks' offset that the decision tells, on the controller's clock.
+    val acts = (decision.predicted.get.actsAt + decision.trueAge.get.clockOffset).toNanos
+    assertEquals(
+      seen("timestamp"),
+      ujson.Obj("sec" -> (acts / 1_000_000_000L).toInt, "nsec" -> (acts % 1_000_000_000L).toInt)
+    )
 
   test("the world's frame of north, east, down is drawn in one of east, north, up"):
     val turn            = read(drawn.head)("transforms")(0)

@@ -66,18 +66,19 @@ class RecordingSuite extends munit.FunSuite:
             assert(why.contains(table), why)
           case other => fail(s"expected a recording or NotARecording, got $other")
 
-  folder.test("a number that every row has is neither left out nor empty, and its column is not missed silently"):
-    folder =>
-      val file = folder.resolve("flight.duckdb")
-      record(file, Samples.oneOfEach*)
-      for column <- Seq("positionNorthM", "sequence", "vehicle") do
-        val refused =
-          intercept[java.sql.SQLException](execute(file, s"UPDATE reading SET $column = NULL"))
-        assert(refused.getMessage.contains("NOT NULL"), refused.getMessage)
-      execute(file, "ALTER TABLE reading DROP COLUMN positionNorthM")
-      RecordingReader.read(file) match
-        case Left(RecordError.NotARecording(`file`, why)) => assert(why.contains("positionNorthM"), why)
-        case other                                        => fail(s"expected NotARecording, got $other")
+  folder.test(
+    "a number that every row has is neither left out nor empty, and its column is not missed silently"
+  ): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    for column <- Seq("positionNorthM", "sequence", "vehicle") do
+      val refused =
+        intercept[java.sql.SQLException](execute(file, s"UPDATE reading SET $column = NULL"))
+      assert(refused.getMessage.contains("NOT NULL"), refused.getMessage)
+    execute(file, "ALTER TABLE reading DROP COLUMN positionNorthM")
+    RecordingReader.read(file) match
+      case Left(RecordError.NotARecording(`file`, why)) => assert(why.contains("positionNorthM"), why)
+      case other                                        => fail(s"expected NotARecording, got $other")
 
   folder.test("rows are numbered through all tables in the order of their records"): folder =>
     val file = folder.resolve("flight.duckdb")

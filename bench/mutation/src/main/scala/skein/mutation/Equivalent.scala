@@ -77,6 +77,28 @@ object Equivalent:
       "1000004",
       "any large factor keeps vehicles and decisions apart"
     ),
+    Equivalent(
+      "Metronome.scala",
+      "if late > Span.Zero then",
+      ">",
+      ">=",
+      "0 periods behind the first is the first"
+    ),
+    Equivalent("Sense.scala", "question > last", ">", ">=", "no question is answered twice"),
+    Equivalent(
+      "Checks.scala",
+      "at < until",
+      "<",
+      "<=",
+      "a command at the end of a gap is the end of the gap"
+    ),
+    Equivalent(
+      "TortureFlight.scala",
+      "val connectTimeout",
+      "1",
+      "2",
+      "how long a simulator that is away keeps a client waiting is a choice"
+    ),
     Equivalent("RecordingFormat.scala", "val version", "5", "6", "counts how often tables have changed"),
     Equivalent("FoxgloveViews.scala", "placed(Vector3(0, 0, -1)", "1", "2", Size),
     Equivalent("FoxgloveViews.scala", "Vector3(0.5, 0.5, 0.5)", "0.5", "(2 * 0.5 + 1)", Size),

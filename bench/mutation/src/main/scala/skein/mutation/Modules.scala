@@ -17,8 +17,11 @@ private object Modules:
         "skein.loop.*Suite",
         "skein.loop.planning.*",
         "skein.loop.*Simulation",
-        "skein.flight.*Suite",
-        "skein.flight.*Simulation"
+        "skein.flight.FailureTellingSimulation",
+        "skein.flight.KeptLimitsSimulation",
+        "skein.flight.OutsidePolicySimulation",
+        "skein.flight.ReplaySimulation",
+        "skein.flight.RunningSimulatorSimulation"
       )
     ),
     Module(

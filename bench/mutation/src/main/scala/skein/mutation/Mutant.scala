@@ -6,17 +6,25 @@ import scala.util.matching.Regex
 /** One change of one source file.
   *
   * @param line
-  *   counts from 1
+  *   and column count from 1
   * @param at
   *   where in the file `before` stands
   */
-final case class Mutant(module: String, file: Path, line: Int, at: Int, before: String, after: String):
+final case class Mutant(
+    module: String,
+    file: Path,
+    line: Int,
+    column: Int,
+    at: Int,
+    before: String,
+    after: String
+):
   /** Whether a number was changed: many a limit is a choice that no test should repeat. */
   def isNumber: Boolean = before.head.isDigit
 
   def applied(source: String): String = source.patch(at, after, before.length)
 
-  override def toString: String = s"${file.getFileName}:$line  $before  →  $after"
+  override def toString: String = s"${file.getFileName}:$line:$column  $before  →  $after"
 
 object Mutant:
 
@@ -34,7 +42,7 @@ object Mutant:
       at = start + found.start(1)
       if (at until at + found.group(1).length).forall(isCode)
       after <- rule.instead(found.group(1)) if after != found.group(1)
-    yield Mutant(module, file, line + 1, at, found.group(1), after)
+    yield Mutant(module, file, line + 1, found.start(1) + 1, at, found.group(1), after)
 
   /** Lines on which nothing is computed. */
   private val Declares = """\s*(package|import|@|\*|//|sealed|private object|object|enum) ?.*""".r

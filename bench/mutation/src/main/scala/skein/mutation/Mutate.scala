@@ -36,11 +36,15 @@ enum Fate:
     Files.exists(at.resolve("build.sbt"))
   ).get
   println(s"seed $seed")
-  val until  = System.nanoTime() + minutes.toLong * 60_000_000_000L
+  val until = System.nanoTime() + minutes.toLong * 60_000_000_000L
+  val work  =
+    if arguments.contains("--named") then Named.all(root)
+    else
+      for name <- only yield
+        val module = Modules.all.find(_.name == name).getOrElse(sys.error(s"no module $name"))
+        (module, Modules.mutants(root, module))
   val scores =
-    for name <- only yield
-      val module  = Modules.all.find(_.name == name).getOrElse(sys.error(s"no module $name"))
-      val all     = Modules.mutants(root, module)
+    for (module, all) <- work yield
       val chosen  = Random(seed).shuffle(all).filter(mutant => lines.forall(_(mutant.toString)))
       val session = Session(module)
       val judged  =
@@ -52,11 +56,11 @@ enum Fate:
             .takeWhile(_ => System.nanoTime() < until)
             .take(sample)
             .map: (mutant, fate) =>
-              println(s"$name\t$fate\t$mutant")
+              println(s"${module.name}\t$fate\t$mutant")
               (mutant, fate)
             .toVector
         finally session.close()
-      Score(name, all.size, judged)
+      Score(module.name, all.size, judged)
   scores.foreach(score => println(score.line))
 
 /** @param found
