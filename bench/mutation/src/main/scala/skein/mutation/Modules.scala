@@ -18,10 +18,8 @@ private object Modules:
         "skein.loop.planning.*",
         "skein.loop.*Simulation",
         "skein.flight.FailureTellingSimulation",
-        "skein.flight.KeptLimitsSimulation",
         "skein.flight.OutsidePolicySimulation",
-        "skein.flight.ReplaySimulation",
-        "skein.flight.RunningSimulatorSimulation"
+        "skein.flight.ReplaySimulation"
       )
     ),
     Module(

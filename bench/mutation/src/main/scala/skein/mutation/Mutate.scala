@@ -97,17 +97,22 @@ private final class Session(module: Module):
   private var worker = start()
   private var limit  = 10.minutes
 
-  /** What cannot pass unchanged notices nothing. Sets the time that a mutant has. */
+  /** What cannot pass unchanged notices nothing. */
   def checkUnchanged(): Unit =
     if suites.isEmpty then sys.error(s"${module.name}: no suites of ${module.suites.mkString(", ")}")
-    limit = 10.minutes
-    val from = System.nanoTime()
-    ask("-") match
+    unchanged() match
       case Fate.Survived => ()
       case other         => sys.error(s"${module.name}: unchanged sources do not pass: $other")
+
+  /** Sets the time that a mutant has. */
+  private def unchanged(): Fate =
+    limit = 10.minutes
+    val from = System.nanoTime()
+    val fate = ask("-")
     val took = (System.nanoTime() - from).nanos
     limit = took * 4 + 60.seconds
     println(s"${module.name}: ${suites.size} suites take ${took.toMillis / 1000.0} s unchanged")
+    fate
 
   /** What does not end is tried again, in a time measured anew: the machine may have been busy. */
   def fate(mutant: Mutant): Fate =
@@ -115,10 +120,11 @@ private final class Session(module: Module):
     Files.writeString(file, mutant.applied(Files.readString(mutant.file)))
     ask(file.toString) match
       case Fate.TimedOut | Fate.ProcessEnded =>
-        checkUnchanged()
-        val again = ask(file.toString)
-        if again == Fate.TimedOut || again == Fate.ProcessEnded then checkUnchanged()
-        again
+        unchanged() match
+          case Fate.Survived => ask(file.toString)
+          case other         =>
+            println(s"${module.name}\tnot judged, as unchanged sources do not pass now: $other\t$mutant")
+            Fate.Invalid("the machine is too busy")
       case told => told
 
   def close(): Unit =
@@ -154,7 +160,6 @@ private final class Session(module: Module):
       .filterNot(_.startsWith("-Xm"))
     val command = Vector(java) ++ options ++ Vector(
       "-Xmx1200m",
-      "-XX:TieredStopAtLevel=1",
       s"-Dmutation.folders=${own.mkString(File.pathSeparator)}",
       "-cp",
       jars.mkString(File.pathSeparator),

@@ -34,11 +34,15 @@ object Named:
   private val units = Vector(
     Named("flight/src/main/scala/skein/measure/Distribution.scala", "quantile(0.99)", "quantile(0.95)"),
     Named(Rows, "toController(opponent.state.validAt)", "toController(own.state.validAt)"),
+    Named(Alignment, "fromSimulator - toSimulator", "toSimulator - fromSimulator"),
     Named(Alignment, "(lower - slack).max(one.lower)", "lower.max(one.lower)"),
     Named(Alignment, "(upper + slack).min(one.upper)", "upper.min(one.upper)"),
     Named(View, ".forall(held => aligned(reading).isNewer(reading.state, held.state))", ".forall(_ => true)")
   )
 
+  /** A wrong sign within the estimate of the offset is held between its bounds, and so to the uncertainty that is told:
+    * no flight can tell, but the units can.
+    */
   private val torture = Vector(
     Named(View, ".forall(held => aligned(reading).isNewer(reading.state, held.state))", ".forall(_ => true)"),
     Named(
@@ -57,6 +61,5 @@ object Named:
       "else recorder.offer(record)",
       "else ()"
     ),
-    Named(Alignment, "fromSimulator - toSimulator", "toSimulator - fromSimulator"),
     Named(Alignment, "simulatorTime + offset", "simulatorTime - offset")
   )
