@@ -143,16 +143,18 @@ private final class Session(module: Module):
       Option(Await.result(answer, limit)) match
         case Some(s"invalid $why")  => Fate.Invalid(why)
         case Some("survived")       => Fate.Survived
+        case Some("late")           => stopped()
         case Some(s"killed $suite") => Fate.Killed(suite)
         case Some(other)            => sys.error(s"the worker answered: $other")
         case None                   =>
           worker = start()
           Fate.ProcessEnded
-    catch
-      case _: TimeoutException =>
-        worker.destroyForcibly().waitFor(10, TimeUnit.SECONDS)
-        worker = start()
-        Fate.TimedOut
+    catch case _: TimeoutException => stopped()
+
+  private def stopped(): Fate =
+    worker.destroyForcibly().waitFor(10, TimeUnit.SECONDS)
+    worker = start()
+    Fate.TimedOut
 
   private def start(): Process =
     val java    = Path.of(System.getProperty("java.home"), "bin", "java").toString

@@ -4,6 +4,7 @@ import dotty.tools.dotc.reporting.StoreReporter
 import java.io.{BufferedReader, File, InputStreamReader, PrintStream}
 import java.net.URLClassLoader
 import java.nio.file.{Files, Path}
+import java.util.concurrent.TimeoutException
 import org.junit.runner.Request
 import org.junit.runner.notification.{Failure, RunListener, RunNotifier, StoppedByUserException}
 import scala.collection.mutable
@@ -12,7 +13,8 @@ import scala.util.Using
 
 /** Compiles one changed file after the other, and runs suites upon it. A process of its own, because a mutant may never
   * end. Reads from its standard input a line of the file with the changed source, or `-` for none, and the suites, with
-  * blanks between; answers each by a line: `invalid`, `killed` and by which suite, or `survived`.
+  * blanks between; answers each by a line: `invalid`, `killed` and by which suite, `late` where a test ran into its own
+  * time limit, or `survived`.
   *
   * The first question is for no change. From it on it knows which classes each suite loads and how long it takes, and
   * runs only those upon a change that load a class of the changed file, the quickest first.
@@ -46,7 +48,7 @@ object Worker:
     sys.exit(0)
 
   private def judge(source: Option[Path], suites: Vector[String]): String = source match
-    case None       => told(suites.find(!passesAlone(_)))
+    case None       => told(suites, passesAlone)
     case Some(file) =>
       val overlay = Files.createTempDirectory("mutant")
       try
@@ -55,18 +57,26 @@ object Worker:
           val able    = suites
             .filter(suite => known.get(suite).forall(_.classes.exists(changed)))
             .sortBy(known.get(_).fold(0L)(_.tookNanos))
-          val noticedBy = Using.resource(Loader(overlay +: folders)): loader =>
-            able.find(!passes(_, loader))
-          told(noticedBy)
+          Using.resource(Loader(overlay +: folders))(loader => told(able, passes(_, loader)))
       finally
         Using.resource(Files.walk(overlay))(
           _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
         )
 
-  private def told(noticedBy: Option[String]): String = noticedBy.fold("survived")(suite => s"killed $suite")
+  private def told(suites: Vector[String], passes: String => Passed): String =
+    suites.iterator
+      .map(suite => (suite, passes(suite)))
+      .collectFirst:
+        case (suite, Passed.No) => s"killed $suite"
+        case (_, Passed.Late)   => "late"
+      .getOrElse("survived")
+
+  /** A test that takes longer than it may says nothing of what it tests where the machine is busy. */
+  private enum Passed:
+    case Yes, No, Late
 
   /** Another suite's classes are not loaded for this one. */
-  private def passesAlone(suite: String): Boolean =
+  private def passesAlone(suite: String): Passed =
     Using.resource(Loader(folders)): loader =>
       val from   = System.nanoTime()
       val passed = passes(suite, loader)
@@ -101,13 +111,13 @@ object Worker:
     ).allErrors.headOption.map(_.message.replace('\n', ' '))
 
   /** Up to the first test that fails. */
-  private def passes(suite: String, loader: ClassLoader): Boolean =
+  private def passes(suite: String, loader: ClassLoader): Passed =
     Thread.currentThread.setContextClassLoader(loader)
     val notifier = RunNotifier()
-    var passed   = true
+    var passed   = Passed.Yes
     notifier.addListener(new RunListener:
       override def testFailure(failure: Failure): Unit =
-        passed = false
+        passed = if failure.getException.isInstanceOf[TimeoutException] then Passed.Late else Passed.No
         notifier.pleaseStop())
     try Request.aClass(loader.loadClass(suite)).getRunner.run(notifier)
     catch case _: StoppedByUserException => ()
