@@ -98,7 +98,11 @@ final class BudgetCommand(using scenarios: Scenarios)
   private def toleranceOf(options: BudgetOptions): Either[String, Tolerance] =
     (options.tolerance, options.within) match
       case (None, Some(within)) =>
-        Either.cond(within > 0, Tolerance.Within(within), s"--within: expected more than 0, came $within")
+        Either.cond(
+          within > 0 && within.isFinite,
+          Tolerance.Within(within),
+          s"--within: expected a number above 0, came $within"
+        )
       case (share, None) =>
         val percent = share.getOrElse(5.0)
         Either.cond(

@@ -25,11 +25,11 @@ final case class ViewOptions(
 ):
   /** Serves `shows` while `body` runs, if that is wanted. */
   def serving[A](shows: Shows)(body: => Either[String, A]): Either[String, A] =
-    if !view.value then body
-    else
-      val port = viewPort.getOrElse(ViewServer.DefaultPort)
-      if port < 0 || port > 65535 then Left(s"--view-port: expected 0 to 65535, came $port")
-      else
+    val port = viewPort.getOrElse(ViewServer.DefaultPort)
+    mistake match
+      case Some(line)          => Left(line)
+      case _ if !view.value    => body
+      case _                   =>
         // Flights come first: viewers have a processor while nobody else wants it.
         val threads = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-view"))
         val token   = Token.drawn()
@@ -57,5 +57,20 @@ final case class ViewOptions(
             finally Edge.await(server.close()): Unit
         finally threads.shutdown()
 
+  /** What would be ignored, or could never be. */
+  private[cli] def mistake: Option[String] =
+    def alone(name: String, given: Boolean) = Option.when(given && !view.value)(s"$name: expected with --view")
+    alone("--view-port", viewPort.isDefined)
+      .orElse(alone("--view-origin", viewOrigin.nonEmpty))
+      .orElse(viewPort.filter(port => port < 0 || port > 65535).map(port =>
+        s"--view-port: expected 0 to 65535, came $port"
+      ))
+      .orElse(viewOrigin.find(!_.matches(ViewOptions.Site)).map(came =>
+        s"--view-origin: expected a site as browsers name it, for example https://app.foxglove.dev, came '$came'"
+      ))
+
 object ViewOptions:
+  /** Scheme, host, and a port where it is not the scheme's own. */
+  private val Site = "[a-z][a-z0-9+.-]*://[^/\\s]+"
+
   given ParserForClass[ViewOptions] = ParserForClass[ViewOptions]

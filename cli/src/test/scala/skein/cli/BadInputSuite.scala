@@ -33,6 +33,10 @@ class BadInputSuite extends munit.FunSuite:
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 
+  test("a tolerance without end holds for everything, and is refused"):
+    for value <- Seq("Infinity", "NaN", "0", "-1") do
+      assertRefused(BudgetCommand(), Seq("--within", value), "--within: expected a number above 0, came")
+
   folder.test(
     "a configuration that is a folder, is missing, is nested too deeply or has unknown keys is refused"
   ): path =>

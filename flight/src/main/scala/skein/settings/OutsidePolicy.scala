@@ -4,7 +4,8 @@ import java.io.IOException
 import java.net.UnixDomainSocketAddress
 import java.nio.ByteBuffer
 import java.nio.channels.{SelectionKey, Selector, SocketChannel}
-import scala.util.Try
+import scala.concurrent.{blocking, Await, Future, TimeoutException}
+import scala.util.{Failure, Success, Try}
 import skein.policy.*
 import skein.units.{Clock, Instant, Span}
 
@@ -17,8 +18,9 @@ import skein.units.{Clock, Instant, Span}
   * flight in virtual time stands still meanwhile, so equal answers make equal flights.
   *
   * Where there is no number, the decision fails: by the policy's own word, by a number that is not finite, by anything
-  * else than an answer, or because none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last
-  * two nobody is asked again, and every later decision fails at once.
+  * else than one answer, or because none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last
+  * two nobody is asked again, and every later decision fails at once: an answer that nobody asked for would be taken for
+  * that to the next question, and all that follow would be late by one.
   *
   * @param mostTurnRadPerS
   *   of a pursuer
@@ -45,6 +47,7 @@ object OutsidePolicy:
   val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val MostText = 1 << 16
+  private val Ended    = "its process has ended"
 
   /** The policy of a process that answers now.
     *
@@ -57,11 +60,19 @@ object OutsidePolicy:
     case s"unix:$role:$path" =>
       for
         known      <- PolicyFile.role(role).left.map(mistake => s"$text: $mistake")
-        connection <- Try(Connection(path, answerWithin)).toEither.left.map(reason =>
-          s"expected a policy behind the socket $path: ${reason.getMessage}"
+        connection <- connected(path, answerWithin).left.map(reason =>
+          s"expected a policy behind the socket $path: $reason"
         )
       yield PolicyFile.ofDefaults(known, family(known, connection))
     case _ => Left(s"expected unix:ROLE:PATH, came '$text'")
+
+  /** To connect blocks for as long as the other side's line of those who wait is full. */
+  private def connected(path: String, within: Span): Either[String, Connection] =
+    val connecting = Future(blocking(Connection(path, within)))(using scala.concurrent.ExecutionContext.global)
+    Try(Await.result(connecting, within.toDuration)) match
+      case Success(connection)          => Right(connection)
+      case Failure(_: TimeoutException) => Left(s"it accepts nobody within ${within.toMillis.round} ms")
+      case Failure(reason)              => Left(reason.getMessage)
 
   /** Whether another process decides. */
   def decides(file: PolicyFile): Boolean = file.family.name == Name
@@ -115,6 +126,10 @@ object OutsidePolicy:
       val until    = Clock.system.now() + answerWithin
       val question = ByteBuffer.allocate(4 * seen.length)
       for number <- seen do question.putFloat(number): Unit
+      channel.read(ByteBuffer.allocate(1)) match
+        case 0          => ()
+        case n if n < 0 => throw IOException(Ended)
+        case _          => throw IOException("expected one answer to a question, came more")
       channel.write(question.flip()): Unit
       received(1, until).get match
         case 0 =>
@@ -134,5 +149,5 @@ object OutsidePolicy:
         if leftMs <= 0 || selector.select(leftMs) == 0 then
           throw IOException(s"expected an answer within ${answerWithin.toMillis.round} ms, came none")
         selector.selectedKeys.clear()
-        if channel.read(buffer) < 0 then throw IOException("its process has ended")
+        if channel.read(buffer) < 0 then throw IOException(Ended)
       buffer.flip()

@@ -1,6 +1,9 @@
 package skein.settings
 
 import java.io.IOException
+import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
+import java.nio.channels.ServerSocketChannel
+import java.nio.file.Files
 import scala.util.{Try, Using}
 import skein.policy.PlanarObservation
 import skein.units.Span
@@ -66,6 +69,36 @@ class OutsidePolicySuite extends munit.FunSuite:
           1, 1, 0, 0, 0, 0, 0.1
         )).getMessage.startsWith("the policy: "))
       assertEquals(peer.asked, 1)
+
+  test("an answer that nobody asked for is not taken for that to the next question"):
+    assertEquals(
+      decided(Peer.number(0.5f) ++ Peer.number(-1), Peer.number(0), Peer.number(0)),
+      Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, came more"))
+    )
+
+  test("a process that ends between two questions has ended, and is not asked again"):
+    val path = Files.createTempDirectory("skein-policy").resolve("policy")
+    Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
+      listener.bind(UnixDomainSocketAddress.of(path)): Unit
+      val policy = OutsidePolicy.reach(s"unix:pursuer:$path").fold(fail(_), identity).policy
+      listener.accept().close()
+      for _ <- 1 to 2 do
+        val reason = intercept[IOException](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
+        assertEquals(reason, "the policy: its process has ended")
+
+  test("who accepts nobody is not waited for longer than for an answer"):
+    val path = Files.createTempDirectory("skein-policy").resolve("policy")
+    Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
+      listener.bind(UnixDomainSocketAddress.of(path), 1): Unit
+      // The first ones wait in line.
+      val refused = Iterator
+        .continually(OutsidePolicy.reach(s"unix:pursuer:$path", Span.ofMillis(500)))
+        .take(10)
+        .collectFirst { case Left(reason) => reason }
+      assertEquals(
+        refused,
+        Some(s"expected a policy behind the socket $path: it accepts nobody within 500 ms")
+      )
 
   test("an answer that is not complete in time is none, and there is no second question"):
     for part <- Seq(Array.empty[Byte], Array[Byte](0, 0)) do
