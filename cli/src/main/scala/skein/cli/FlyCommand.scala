@@ -57,6 +57,7 @@ final class FlyCommand(using Scenarios)
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
       )
       _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
+      _     <- options.view.mistake.toLeft(())
       out   <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       flown <- clock match
@@ -74,6 +75,8 @@ final class FlyCommand(using Scenarios)
                 Option.when(options.view.view.value)(OnShow(shows))
               ))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
+        case ClockKind.Virtual if options.view.view.value =>
+          Left("--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE")
         case ClockKind.Virtual if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
         case ClockKind.Virtual =>

@@ -29,6 +29,7 @@ final class ReplayCommand(using Scenarios)
         (),
         "expected recordings, came none: ./skein replay FILE…"
       )
+      _ <- options.view.mistake.toLeft(())
       _ <- if options.view.view.value then play(options) else replayAll(options.files.value)
     yield ()
 

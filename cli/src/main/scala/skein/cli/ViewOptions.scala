@@ -59,7 +59,7 @@ final case class ViewOptions(
 
   /** What would be ignored, or could never be. */
   private[cli] def mistake: Option[String] =
-    def alone(name: String, given: Boolean) = Option.when(given && !view.value)(s"$name: expected with --view")
+    def alone(name: String, is: Boolean) = Option.when(is && !view.value)(s"$name: expected with --view")
     alone("--view-port", viewPort.isDefined)
       .orElse(alone("--view-origin", viewOrigin.nonEmpty))
       .orElse(viewPort.filter(port => port < 0 || port > 65535).map(port =>
