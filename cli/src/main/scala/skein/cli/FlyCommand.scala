@@ -76,7 +76,9 @@ final class FlyCommand(using Scenarios)
               ))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
         case ClockKind.Virtual if options.view.view.value =>
-          Left("--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE")
+          Left(
+            "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
+          )
         case ClockKind.Virtual if simulator.isEmpty =>
           nothingToOverwrite(settings.plans, out).flatMap(_ => flyVirtual(settings, out)).map(Flown(_, None))
         case ClockKind.Virtual =>

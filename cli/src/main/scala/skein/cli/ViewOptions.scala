@@ -27,9 +27,9 @@ final case class ViewOptions(
   def serving[A](shows: Shows)(body: => Either[String, A]): Either[String, A] =
     val port = viewPort.getOrElse(ViewServer.DefaultPort)
     mistake match
-      case Some(line)          => Left(line)
-      case _ if !view.value    => body
-      case _                   =>
+      case Some(line)       => Left(line)
+      case _ if !view.value => body
+      case _                =>
         // Flights come first: viewers have a processor while nobody else wants it.
         val threads = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-view"))
         val token   = Token.drawn()

@@ -34,13 +34,17 @@ class BadInputSuite extends munit.FunSuite:
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
 
   folder.test("a view that could not be looked at is told before the flight"): path =>
-    val out = path.resolve("out")
+    val out                                           = path.resolve("out")
     def refused(expected: String)(arguments: String*) =
       assertRefused(FlyCommand(), arguments ++ Seq("--out", out.toString), expected)
     refused("--view-port: expected with --view")("--view-port", "9000")
     refused("--view-port: expected 0 to 65535, came 65536")("--view", "--view-port", "65536")
     refused("./skein replay --view FILE")("--view", "--clock", "virtual")
-    assertRefused(ReplayCommand(), Seq("--view-port", "9000", "x.duckdb"), "--view-port: expected with --view")
+    assertRefused(
+      ReplayCommand(),
+      Seq("--view-port", "9000", "x.duckdb"),
+      "--view-port: expected with --view"
+    )
 
   test("a tolerance without end holds for everything, and is refused"):
     for value <- Seq("Infinity", "NaN", "0", "-1") do

@@ -68,7 +68,8 @@ object OutsidePolicy:
 
   /** To connect blocks for as long as the other side's line of those who wait is full. */
   private def connected(path: String, within: Span): Either[String, Connection] =
-    val connecting = Future(blocking(Connection(path, within)))(using scala.concurrent.ExecutionContext.global)
+    val connecting =
+      Future(blocking(Connection(path, within)))(using scala.concurrent.ExecutionContext.global)
     Try(Await.result(connecting, within.toDuration)) match
       case Success(connection)          => Right(connection)
       case Failure(_: TimeoutException) => Left(s"it accepts nobody within ${within.toMillis.round} ms")
