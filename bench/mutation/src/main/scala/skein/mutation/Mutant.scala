@@ -94,7 +94,7 @@ object Mutant:
     Rule(raw"(?<![\w)\]])(!)(?=[\w(])".r, _ => Seq("")),
     Rule(raw"\bif (.+?) then".r, condition => Seq(s"!($condition)")),
     Rule(raw"\bcase .* if (.+) =>".r, condition => Seq(s"!($condition)")),
-    Rule(raw"(?<![\w.])(\d[\d_]*L?)(?![\w.])".r, number => Seq(plusOne(number))),
+    Rule(raw"(?<![\w.])(?<!\de-)(\d[\d_]*L?)(?![\w.])".r, number => Seq(plusOne(number))),
     Rule(
       raw"(?<![\w.])(\d[\d_]*\.\d+(?:[eE]-?\d+)?|\d+[eE]-?\d+)(?![\w.])".r,
       number => Seq(s"(2 * $number + 1)")
