@@ -38,7 +38,11 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
     agent("Pursuer", 10, 10, LookAtTheOther)
   ))
 
-  private def fly(kind: LoopKind, scenario: Fleet = both): Recording = VirtualTime
+  private def fly(
+      kind: LoopKind,
+      scenario: Fleet = both,
+      settings: LoopSettings = LoopSettings()
+  ): Recording = VirtualTime
     .run(seed = 3): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -46,7 +50,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       val world              = FarQuadrotors(scenario, LatencyProfile.vpn, 3, clock)
       val heading            = Samples.heading.copy(flight = Samples.heading.flight.copy(loop = kind.label))
       val recorder           = MemoryRecorder(heading)
-      val team               = Team(scenario, world.crafts, clock, recorder, LoopSettings())
+      val team               = Team(scenario, world.crafts, clock, recorder, settings)
       Flight.start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder).outcome.map(_ =>
         recorder.recording
       )
@@ -81,6 +85,13 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       predictions.map(one => (one.decider, one.vehicle)).toSet,
       Set("Evader", "Pursuer").map(name => (name, name))
     )
+
+  test("as published it is decided at every view and paced then; else paced first, and all that is decided is sent"):
+    val published       = LoopSettings().asPublished
+    def flown(is: Boolean) = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))
+    def unsent(recording: Recording) = recording.decisions.size - recording.commands.size
+    val (decided, paced) = (unsent(flown(is = true)), unsent(flown(is = false)))
+    assert(decided > 100 && paced < 10, s"not sent: $decided of the ones, $paced of the others")
 
   test("a vehicle may fly alone"):
     val alone     = Fleet(Vector(both.agents.head))
