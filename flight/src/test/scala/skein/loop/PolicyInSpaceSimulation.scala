@@ -86,11 +86,13 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       Set("Evader", "Pursuer").map(name => (name, name))
     )
 
-  test("as published it is decided at every view and paced then; else paced first, and all that is decided is sent"):
-    val published       = LoopSettings().asPublished
-    def flown(is: Boolean) = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))
+  test(
+    "as published it is decided at every view and paced then; else paced first, and all that is decided is sent"
+  ):
+    val published                    = LoopSettings().asPublished
+    def flown(is: Boolean)           = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))
     def unsent(recording: Recording) = recording.decisions.size - recording.commands.size
-    val (decided, paced) = (unsent(flown(is = true)), unsent(flown(is = false)))
+    val (decided, paced)             = (unsent(flown(is = true)), unsent(flown(is = false)))
     assert(decided > 100 && paced < 10, s"not sent: $decided of the ones, $paced of the others")
 
   test("a vehicle may fly alone"):
