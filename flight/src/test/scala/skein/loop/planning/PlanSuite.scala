@@ -71,3 +71,11 @@ class PlanSuite extends munit.FunSuite:
   test("where nothing was ever searched, that is for ever"):
     val answers = planned(CountedPlanWorkers(1, 0), ticks = 2).map(_._2.unsearchedS)
     assertEquals(answers, Seq.fill(2)(Vector(Double.PositiveInfinity)))
+
+  test("there are as many searches as a problem has room for, and at least one"):
+    def made(count: Int): Seq[() => PlanWorkers] =
+      Seq(() => CountedPlanWorkers(count, slices = 1), () => ThreadedPlanWorkers(count))
+    for make <- Seq(1, PlanProblem.MostSearches).flatMap(made) do make().close()
+    for make <- Seq(0, PlanProblem.MostSearches + 1).flatMap(made) do
+      intercept[IllegalArgumentException](make()): Unit
+    intercept[IllegalArgumentException](CountedPlanWorkers(1, slices = -1)): Unit
