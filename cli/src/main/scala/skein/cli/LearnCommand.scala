@@ -274,25 +274,10 @@ object LearnCommand:
       Scenarios
   ): Either[String, Tally] =
     val conditions = question.conditions
-    val options    = FlightOptions(
-      loop = Seq(conditions.loop),
-      link = Seq(question.link),
-      duration = Some(s"${conditions.durationS}s"),
-      period = Some(s"${conditions.periodMs}ms"),
-      seed = Some(question.seed),
-      scenario = Some("duel"),
-      set = Nil,
-      vehicles = None,
-      policy = Seq(policy),
-      pairs = None,
-      asPaper = Flag(false),
-      asPublished = Flag(false),
-      altitude = Some(conditions.altitudeM),
-      predictor = None,
-      movesInFlight = None,
-      deadline = None,
-      fallback = None,
-      config = None
+    val options    = ParserForClass[FlightOptions].constructOrThrow(
+      Seq("--scenario", "duel", "--loop", conditions.loop, "--link", question.link, "--policy", policy) ++
+        Seq("--duration", s"${conditions.durationS}s", "--period", s"${conditions.periodMs}ms") ++
+        Seq("--altitude", conditions.altitudeM.toString, "--seed", question.seed.toString)
     )
     for
       settings <- options.settings
