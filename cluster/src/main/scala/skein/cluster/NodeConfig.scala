@@ -46,6 +46,8 @@ private[cluster] object NodeConfig:
           transport = tcp
           canonical.hostname = ${ConfigUtil.quoteString(listen.host)}
           canonical.port = ${listen.port}
+          # On a machine that has much else to do, 3 s are not enough.
+          bind.bind-timeout = 30 s
           advanced {
             maximum-frame-size = $MostFrame b
             buffer-pool-size = 16
