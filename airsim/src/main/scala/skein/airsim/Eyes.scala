@@ -2,13 +2,13 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.ImageRequest
-import skein.rpc.{Answer, CallOptions, Lane, MessageReader, RpcError, WhenFull}
+import skein.rpc.{Answer, CallOptions, Channel, MessageReader, RpcError, WhenFull}
 import skein.signal.Stamped
 import skein.units.*
 import upack.{Bool, Msg, Str}
 import upickle.default.writeMsg
 
-/** Cameras and LIDARs of one vehicle. Pictures and scans come on connections of their own ([[Lane.Bulk]]), so nothing that
+/** Cameras and LIDARs of one vehicle. Pictures and scans come on connections of their own ([[Channel.Bulk]]), so nothing that
   * flies the vehicle waits for them, and are stamped with their exposure. A question is refused while
   * [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as often as wanted, keeps the
   * newest and counts what it skips.
@@ -19,7 +19,8 @@ import upickle.default.writeMsg
 final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originNed: Vector3):
   private given ExecutionContext = ExecutionContext.parasitic
 
-  private val options = CallOptions(client.timeout, Lane.Bulk, idempotent = true, whenFull = WhenFull.Refuse)
+  private val options =
+    CallOptions(client.timeout, Channel.Bulk, idempotent = true, whenFull = WhenFull.Refuse)
 
   /** Several pictures of one moment, in the order of the shots. */
   def images(shots: Seq[Shot]): Future[Either[RpcError, Stamped[Vector[Image]]]] =

@@ -2,7 +2,7 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.rpc.{CallOptions, Lane, RpcError}
+import skein.rpc.{CallOptions, Channel, RpcError}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import upack.{Bool, Float32, Float64, Int32, Msg, Str}
@@ -29,7 +29,7 @@ final class Multirotor(
 
   private val once   = CallOptions(client.timeout)
   private val getter = once.copy(idempotent = true)
-  private val sensor = getter.copy(lane = Lane.Sensors)
+  private val sensor = getter.copy(channel = Channel.Sensors)
 
   /** Its cameras and LIDARs. */
   val eyes: Eyes = Eyes(client, name, originNed)

@@ -16,7 +16,7 @@ final case class Answer[+A](value: A, sentAt: Instant, receivedAt: Instant):
 
   def roundTrip: Span = receivedAt.since(sentAt)
 
-/** One call on its way through a lane. The lane's thread alone changes it. */
+/** One call on its way through a channel. The channel's thread alone changes it. */
 private[rpc] final class Call(
     val method: String,
     val params: Seq[Msg],
@@ -26,7 +26,7 @@ private[rpc] final class Call(
   val outcome: Promise[Either[RpcError, Answer[Msg | Received]]] = Promise()
   val deadline: Instant                                          = calledAt + options.timeout
 
-  /** Order of arrival in its lane. */
+  /** Order of arrival in its channel. */
   var sequence: Long = -1
 
   /** The connection it is assigned to, or -1. */

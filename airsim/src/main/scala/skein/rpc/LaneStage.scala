@@ -15,7 +15,7 @@ import skein.link.{Address, Transport}
 import skein.units.*
 import upack.Msg
 
-/** The way into a running lane; from any thread. */
+/** The way into a running channel; from any thread. */
 private[rpc] trait LaneInput:
   def submit(call: Call): Unit
 
@@ -23,17 +23,17 @@ private[rpc] trait LaneInput:
   def withdraw(call: Call): Unit
   def close(): Future[Done]
 
-/** One lane with all its connections in a single stage, hence on one thread at a time: a call costs one hop to that
-  * thread, calls made meanwhile leave in one write, and every decision is [[LaneState]]'s. The connections run fused
+/** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one hop to that
+  * thread, calls made meanwhile leave in one write, and every decision is [[ChannelState]]'s. The connections run fused
   * inside this stage.
   *
-  * '''Emits when''' nothing; it has no ports. Requests go to the lane's connections.
+  * '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
   * '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
   * '''Completes when''' closed through its [[LaneInput]].
   * '''Cancels when''' never.
   */
 private[rpc] final class LaneStage(
-    lane: Lane,
+    channel: Channel,
     transport: Transport,
     address: Address,
     clock: Clock,
@@ -50,10 +50,10 @@ private[rpc] final class LaneStage(
     val logic = Logic()
     (logic, logic)
 
-  private final class Logic extends TimerGraphStageLogic(shape) with LaneInput with LaneEffects:
-    private val random      = Random(seed)
-    private val state       = LaneState(lane, address, settings, counters, () => random.nextDouble(), this)
-    private val connections = Array.tabulate(settings.connections(lane))(Connection(_))
+  private final class Logic extends TimerGraphStageLogic(shape) with LaneInput with ChannelEffects:
+    private val random = Random(seed)
+    private val state  = ChannelState(channel, address, settings, counters, () => random.nextDouble(), this)
+    private val connections = Array.tabulate(settings.connections(channel))(Connection(_))
     private var started     = false
     private var armedFor    = Option.empty[Instant]
 
@@ -93,7 +93,7 @@ private[rpc] final class LaneStage(
 
     private def reject(call: Call, error: RpcError): Unit =
       counters.failed(error)
-      observe(RpcEvent.Failed(call.method, lane, error))
+      observe(RpcEvent.Failed(call.method, channel, error))
       end(call, Left(error))
 
     // Effects
@@ -196,9 +196,9 @@ private[rpc] final class LaneStage(
 
     /** One attempt to open a connection, and the connection if it succeeds. */
     private final class Attempt(connection: Connection):
-      private val requests = SubSourceOutlet[ByteString](s"$lane-requests")
-      private val replies  = SubSinkInlet[ByteString](s"$lane-replies")
-      private val framer   = Framer(settings.limits(lane))
+      private val requests = SubSourceOutlet[ByteString](s"$channel-requests")
+      private val replies  = SubSinkInlet[ByteString](s"$channel-replies")
+      private val framer   = Framer(settings.limits(channel))
       private val holding  = holdings.Holding()
       private var up       = false
       private var over     = false
@@ -262,7 +262,8 @@ private[rpc] final class LaneStage(
           framer.next() match
             case Framed.Complete(frame) =>
               begun = None
-              (if lane == Lane.Bulk then Message.fromServerUnread(frame) else Message.fromServer(frame)) match
+              (if channel == Channel.Bulk then Message.fromServerUnread(frame)
+               else Message.fromServer(frame)) match
                 case reply: Message.Reply =>
                   if connection.received(reply, now) then strays = 0 else strays += 1
                 case Message.Ignored(what)     => stray(what)

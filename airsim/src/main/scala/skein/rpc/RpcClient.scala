@@ -22,7 +22,7 @@ import upickle.default.Reader
   * @param seed
   *   of the jitter in the pauses between attempts to connect
   * @param observer
-  *   told of every event; called on the lanes' threads, so it must be quick, safe to call from both at once, and
+  *   told of every event; called on the channels' threads, so it must be quick, safe to call from both at once, and
   *   throw nothing
   */
 final class RpcClient(
@@ -38,9 +38,9 @@ final class RpcClient(
 
   private val counters = RpcCounters()
   private val holdings = settings.newHoldings()
-  private val control  = start(Lane.Control)
-  private val bulk     = start(Lane.Bulk)
-  private val sensors  = start(Lane.Sensors)
+  private val control  = start(Channel.Control)
+  private val bulk     = start(Channel.Bulk)
+  private val sensors  = start(Channel.Sensors)
 
   /** Calls `method` and gives its result as it came. */
   def call(
@@ -72,13 +72,13 @@ final class RpcClient(
           catch case NonFatal(e) => Left(RpcError.Malformed(method, s"not readable as MessagePack: $e"))
     ))
 
-  /** Calls `method` on [[Lane.Bulk]], for what is large, and reads its result straight from the bytes of its message. They
+  /** Calls `method` on [[Channel.Bulk]], for what is large, and reads its result straight from the bytes of its message. They
     * are copied once, from the transport's segments; binary that `read` gives out is a part of them.
     */
   def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
       read: MessageReader => A
   ): Future[Either[RpcError, Answer[A]]] =
-    submit(method, params, options.copy(lane = Lane.Bulk)).map(_.flatMap(answer =>
+    submit(method, params, options.copy(channel = Channel.Bulk)).map(_.flatMap(answer =>
       answer.value match
         case received: Received =>
           MessageReader.read(received)(read).map(value => answer.copy(value = value)).left.map(
@@ -95,12 +95,12 @@ final class RpcClient(
   ): Future[Either[RpcError, Answer[Msg | Received]]] =
     val call = Call(method, params, options, clock.now())
     counters.called.increment()
-    val lane = options.lane match
-      case Lane.Control => control
-      case Lane.Sensors => sensors
-      case Lane.Bulk    => bulk
-    lane.submit(call)
-    options.withdrawn.foreach(_.onComplete(_ => lane.withdraw(call)))
+    val channel = options.channel match
+      case Channel.Control => control
+      case Channel.Sensors => sensors
+      case Channel.Bulk    => bulk
+    channel.submit(call)
+    options.withdrawn.foreach(_.onComplete(_ => channel.withdraw(call)))
     call.outcome.future
 
   /** Like [[callStamped]], with the result read as an `A`. */
@@ -140,9 +140,19 @@ final class RpcClient(
         try Right(readAs(trace = true))
         catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
 
-  private def start(lane: Lane): LaneInput =
+  private def start(channel: Channel): LaneInput =
     val stage =
-      LaneStage(lane, transport, address, clock, settings, seed + lane.ordinal, counters, holdings, observer)
+      LaneStage(
+        channel,
+        transport,
+        address,
+        clock,
+        settings,
+        seed + channel.ordinal,
+        counters,
+        holdings,
+        observer
+      )
     RunnableGraph.fromGraph(stage).run()
 
 object RpcClient:

@@ -52,7 +52,7 @@ object RpcServer:
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
-    val places   = Places(limits.connections, limits.silence)
+    val places   = ConnectionSlots(limits.connections, limits.silence)
     val stop     = KillSwitches.shared("rpc-server")
     val told     = AtomicInteger()
 

@@ -3,8 +3,8 @@ package skein.rpc
 import scala.concurrent.Future
 import skein.units.*
 
-/** Which connections a call uses. Each lane has its own, so a large reply never delays a small one. */
-enum Lane:
+/** Which connections a call uses. Each channel has its own, so a large reply never delays a small one. */
+enum Channel:
   /** Small and urgent: readings and commands. */
   case Control
 
@@ -19,7 +19,7 @@ enum WhenFull:
   /** It fails at once with [[RpcError.Overloaded]]. */
   case Refuse
 
-  /** It waits in the lane's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]]. */
+  /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]]. */
   case Wait
 
 /** How one call is made.
@@ -35,27 +35,27 @@ enum WhenFull:
   */
 final case class CallOptions(
     timeout: Span = Span.ofSeconds(5),
-    lane: Lane = Lane.Control,
+    channel: Channel = Channel.Control,
     idempotent: Boolean = false,
     key: Option[Int] = None,
     whenFull: WhenFull = WhenFull.Refuse,
     withdrawn: Option[Future[?]] = None
 )
 
-/** The bounds of a client. Windows and queue hold for each lane by itself.
+/** The bounds of a client. Windows and queue hold for each channel by itself.
   *
   * @param controlConnections
-  *   connections of [[Lane.Control]], opened with its first call; the paper's pool has 5
+  *   connections of [[Channel.Control]], opened with its first call; the paper's pool has 5
   * @param sensorConnections
-  *   connections of [[Lane.Sensors]], opened with its first call
+  *   connections of [[Channel.Sensors]], opened with its first call
   * @param bulkConnections
-  *   connections of [[Lane.Bulk]], opened with its first call
+  *   connections of [[Channel.Bulk]], opened with its first call
   * @param windowPerConnection
   *   most calls sent and not yet ended on one connection
   * @param windowInAll
-  *   most calls sent and not yet ended on all connections of a lane
+  *   most calls sent and not yet ended on all connections of a channel
   * @param queue
-  *   most calls of a lane that wait, for a place or for a connection being opened
+  *   most calls of a channel that wait, for a place or for a connection being opened
   * @param resends
   *   how often one idempotent call is sent again at most
   * @param rememberedIds
@@ -69,9 +69,9 @@ final case class CallOptions(
   *   most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a connection whose message
   *   finds no room is closed as malformed
   * @param limits
-  *   of one message on [[Lane.Control]] and [[Lane.Sensors]]
+  *   of one message on [[Channel.Control]] and [[Channel.Sensors]]
   * @param bulkLimits
-  *   of one message on [[Lane.Bulk]]
+  *   of one message on [[Channel.Bulk]]
   */
 final case class RpcSettings(
     controlConnections: Int = 5,
@@ -97,12 +97,12 @@ final case class RpcSettings(
 
   private[rpc] def newHoldings(): Holdings = Holdings(each = 1 << 20, common = openBytes)
 
-  def limits(lane: Lane): FrameLimits = if lane == Lane.Bulk then bulkLimits else limits
+  def limits(channel: Channel): FrameLimits = if channel == Channel.Bulk then bulkLimits else limits
 
-  def connections(lane: Lane): Int = lane match
-    case Lane.Control => controlConnections
-    case Lane.Sensors => sensorConnections
-    case Lane.Bulk    => bulkConnections
+  def connections(channel: Channel): Int = channel match
+    case Channel.Control => controlConnections
+    case Channel.Sensors => sensorConnections
+    case Channel.Bulk    => bulkConnections
 
 /** Pauses between attempts to connect: doubling from `first` to at most `longest`, each shortened at random by up to
   * the fraction `jitter`, so that clients do not return in step.

@@ -39,7 +39,7 @@ final case class RpcStats(
   def pending: Long =
     called - answered - refused - timedOut - lost - malformed - overloaded - cancelled - unreachable
 
-/** The running counts behind [[RpcStats]]; written by both lanes, read by anyone. */
+/** The running counts behind [[RpcStats]]; written by both channels, read by anyone. */
 private[rpc] final class RpcCounters:
   val called, sent, answered, refused, timedOut, lost, malformed, overloaded, cancelled, unreachable,
       sentAgain, late, unexpected, ignored, skipped, connected, disconnected = LongAdder()

@@ -30,7 +30,7 @@ private[rpc] final class ServerConnection(
     counters: ServerCounters,
     holdings: Holdings,
     turns: Holdings,
-    places: Places,
+    places: ConnectionSlots,
     observe: ServerEvent => Unit
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import ServerConnection.*
@@ -41,7 +41,7 @@ private[rpc] final class ServerConnection(
   override val shape: FlowShape[ByteString, ByteString] = FlowShape(in, out)
 
   override def createLogic(inherited: Attributes): GraphStageLogic =
-    new TimerGraphStageLogic(shape) with InHandler with OutHandler with Places.Guest:
+    new TimerGraphStageLogic(shape) with InHandler with OutHandler with ConnectionSlots.Guest:
       private val framer    = Framer(limits.frame)
       private val writer    = MessageWriter()
       private val patience  = Patience(limits)

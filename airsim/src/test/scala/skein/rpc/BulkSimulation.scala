@@ -83,7 +83,7 @@ class BulkSimulation extends munit.FunSuite:
           wrong   <- client.callBulk("seven", Seq())(_.string())
           refused <- client.callBulk("no", Seq())(_.string())
           right   <- client.callBulk("seven", Seq())(_.int())
-          tree    <- client.call("seven", Seq(), CallOptions(lane = Lane.Bulk))
+          tree    <- client.call("seven", Seq(), CallOptions(channel = Channel.Bulk))
           stats = client.stats
           _ <- client.close()
           _ <- server.close()

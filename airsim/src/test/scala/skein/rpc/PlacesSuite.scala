@@ -3,12 +3,12 @@ package skein.rpc
 import skein.units.*
 
 class PlacesSuite extends munit.FunSuite:
-  private final class Guest(val silentFor: Span) extends Places.Guest:
+  private final class Guest(val silentFor: Span) extends ConnectionSlots.Guest:
     var left          = false
     def leave(): Unit = left = true
 
-  private def full(silences: Int*): (Places, Seq[Guest]) =
-    val places = Places(silences.size, Span.ofSeconds(5))
+  private def full(silences: Int*): (ConnectionSlots, Seq[Guest]) =
+    val places = ConnectionSlots(silences.size, Span.ofSeconds(5))
     val guests = silences.map(seconds => Guest(Span.ofSeconds(seconds)))
     for (guest, i) <- guests.zipWithIndex do
       assert(places.admit())

@@ -64,11 +64,11 @@ class RpcLiveSuite extends munit.FunSuite:
           assertEquals(answers, (1 to 10_000).toVector)
           assertEquals(client.stats.answered, 10_000L)
 
-  test("eight megabytes come back as they were sent, on the bulk lane"):
+  test("eight megabytes come back as they were sent, on the bulk channel"):
     val image = Array.tabulate(8 << 20)(i => (i * 31).toByte)
     withPair: (_, client) =>
       client
-        .call("echo", Seq(Binary(image)), CallOptions(lane = Lane.Bulk))
+        .call("echo", Seq(Binary(image)), CallOptions(channel = Channel.Bulk))
         .map:
           case Right(Binary(back)) => assert(java.util.Arrays.equals(back, image))
           case other               => fail(s"$other")

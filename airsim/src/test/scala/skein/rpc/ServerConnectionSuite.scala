@@ -21,7 +21,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val holdings = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns    = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters = ServerCounters(holdings)
-    val places   = Places(limits.connections, limits.silence)
+    val places   = ConnectionSlots(limits.connections, limits.silence)
 
     private def handler(request: RpcRequest): Future[Either[String, Msg]] = request.method match
       case "now"   => Future.successful(Right(Int32(1)))

@@ -18,9 +18,9 @@ class ServerLimitsSuite extends munit.FunSuite:
     val holdings       = Holdings(limits.heldBytesPerConnection, limits.heldBytesInCommon)
     val turns          = Holdings(limits.inFlightAssured, limits.inFlightInCommon)
     val counters       = ServerCounters(holdings)
-    val guests         = java.util.concurrent.ConcurrentLinkedQueue[Places.Guest]()
-    private val places = new Places(limits.connections, limits.silence):
-      override def entered(connection: Long, guest: Places.Guest): Unit =
+    val guests         = java.util.concurrent.ConcurrentLinkedQueue[ConnectionSlots.Guest]()
+    private val places = new ConnectionSlots(limits.connections, limits.silence):
+      override def entered(connection: Long, guest: ConnectionSlots.Guest): Unit =
         val _ = guests.add(guest)
     val events           = LinkedBlockingQueue[ServerEvent]()
     val never            = Promise[Either[String, Msg]]()

@@ -10,7 +10,7 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 import scala.jdk.CollectionConverters.*
-import skein.flight.{FlightRigs, WarmUp}
+import skein.flight.{FlightAssembler, WarmUp}
 import skein.link.*
 import skein.loop.LoopKind
 import skein.record.MemoryRecorder
@@ -49,13 +49,16 @@ object FrameworkLatency:
     if warmUp > 0 then
       val rehearsed = Await.result(WarmUp.rehearse(settings, TcpTransport(), Clock.system), Duration.Inf)
       println(rehearsed.map(decisions => s"and by $decisions decisions over loopback"))
-    val plan     = settings.plans.head
-    val observed = ObservedTransport(TcpTransport(), Clock.system)
-    val rigs     = FlightRigs(observed, Clock.system, settings, simulator = None)
-    val recorder = MemoryRecorder(rigs.heading(plan, "real"))
-    val planning = PlanBench.endlessly(threads = args.lift(2).fold(0)(_.toInt))
-    val outcome  =
-      rigs.start(plan, recorder).flatMap(_.fold(reason => Future.failed(RuntimeException(reason)), _.landed))
+    val plan      = settings.plans.head
+    val observed  = ObservedTransport(TcpTransport(), Clock.system)
+    val assembler = FlightAssembler(observed, Clock.system, settings, simulator = None)
+    val recorder  = MemoryRecorder(assembler.heading(plan, "real"))
+    val planning  = PlanBench.endlessly(threads = args.lift(2).fold(0)(_.toInt))
+    val outcome   =
+      assembler.start(
+        plan,
+        recorder
+      ).flatMap(_.fold(reason => Future.failed(RuntimeException(reason)), _.landed))
     println(Await.result(outcome, Duration.Inf).outcome)
     for planned <- planning do
       val candidates = planned.finish().flatMap(_.plans).map(_.candidates).sum

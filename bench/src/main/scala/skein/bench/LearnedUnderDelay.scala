@@ -3,7 +3,7 @@ package skein.bench
 import java.nio.file.{Files, Path}
 import mainargs.ParserForClass
 import skein.cli.{LearnCommand, LearnOptions, Main}
-import skein.optimise.Tally
+import skein.optimise.RunningStats
 import skein.plot.*
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.Scenarios
@@ -22,7 +22,7 @@ object LearnedUnderDelay:
 
   private val flown = Vector("paused" -> "none", "stream" -> "vpn", "predictive" -> "vpn")
 
-  private final case class Row(policy: String, loop: String, link: String, distance: Tally)
+  private final case class Row(policy: String, loop: String, link: String, distance: RunningStats)
 
   def main(args: Array[String]): Unit =
     val folder  = Path.of(args.headOption.getOrElse("learned/under-delay"))
@@ -113,8 +113,8 @@ object LearnedUnderDelay:
         Shape.Text(
           Point(panel.left - 10, y + 4),
           s"${row.loop} over ${row.link}: ${row.policy}",
-          Ink.labelSize,
-          Ink.labelColour,
+          Theme.labelSize,
+          Theme.labelColour,
           Anchor.End
         ),
         Shape.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),

@@ -133,7 +133,7 @@ final class RpcLoopback(using system: ActorSystem):
     val good     = LongAdder()
     val running  = AtomicInteger(outstanding)
     val finished = Promise[Unit]()
-    val options  = CallOptions(lane = Lane.Bulk)
+    val options  = CallOptions(channel = Channel.Bulk)
 
     def next(): Unit =
       if System.nanoTime() >= until then

@@ -30,8 +30,8 @@ object BudgetFigure:
       grid.width,
       62,
       Vector(
-        Shape.Text(Point(62, 18), title, Ink.titleSize, Ink.titleColour, bold = true),
-        Shape.Text(Point(62, 33), maps.head.vehicles, Ink.tickSize, Ink.labelColour)
+        Shape.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
+        Shape.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
       ) ++
         Legend(
           62,
@@ -73,7 +73,7 @@ object BudgetFigure:
         val at = panel.at(x, y)
         Vector(
           Shape.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
-          Shape.Text(at.moved(8, 4), link.name, Ink.labelSize, mark, bold = true)
+          Shape.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
         )
     Drawing(
       panel.right + 110,

@@ -2,7 +2,7 @@ package skein.budget
 
 import java.util.Locale
 import skein.optimise.LatencyBudget.Bound
-import skein.optimise.{LatencyBudget, Tally}
+import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 import upickle.default.{ReadWriter, macroRW, write}
 
@@ -71,7 +71,7 @@ final case class BudgetMap(
   private def signed(value: Double): String = String.format(Locale.ROOT, "%+.1f", value)
 
 /** A link by name, and what the policy came to over it. */
-final case class BudgetMark(name: String, roundTrip: LatencyDistribution, tally: Tally)
+final case class BudgetMark(name: String, roundTrip: LatencyDistribution, tally: RunningStats)
 
 /** In what latencies are told: of the whole way there and back, or of one direction. */
 enum Legs(val text: String, val perRoundTrip: Double):

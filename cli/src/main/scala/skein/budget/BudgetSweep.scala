@@ -1,6 +1,6 @@
 package skein.budget
 
-import skein.optimise.{LatencyBudget, Tally}
+import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 
 /** Flies something over links of many latencies and jitters, and once over none while the world waits.
@@ -22,7 +22,7 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
   def engine: String = swept.engine(known)
 
   /** Over a link with these round trips. */
-  def over(roundTrip: LatencyDistribution): Either[String, Tally] =
+  def over(roundTrip: LatencyDistribution): Either[String, RunningStats] =
     swept.tallies(Vector(roundTrip), episodes, _ => (), () => false).map(_.head)
 
   /** The whole map, row by row.
@@ -37,12 +37,12 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
   def map(
       onProgress: Long => Unit,
       isCancelled: () => Boolean,
-      onRow: Vector[Vector[Option[Tally]]] => Unit = _ => ()
+      onRow: Vector[Vector[Option[RunningStats]]] => Unit = _ => ()
   ): Either[String, LatencyBudget] =
     for
       truth <- swept.truth
       per   <- tolerance.per(truth).left.map(mistake => s"${swept.formula}: $mistake")
-      rows  <- links.foldLeft[Either[String, Vector[Vector[Option[Tally]]]]](Right(Vector.empty)):
+      rows  <- links.foldLeft[Either[String, Vector[Vector[Option[RunningStats]]]]](Right(Vector.empty)):
         (before, row) =>
           before.flatMap: above =>
             val flown = above.flatten.flatten.size.toLong * episodes
@@ -59,8 +59,8 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
 
   private def spread(
       row: Vector[Option[LatencyDistribution]],
-      tallies: Vector[Tally]
-  ): Vector[Option[Tally]] =
+      tallies: Vector[RunningStats]
+  ): Vector[Option[RunningStats]] =
     val next = tallies.iterator
     row.map(_.map(_ => next.next()))
 

@@ -6,7 +6,7 @@ import skein.flight.VirtualFlights
 import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
-import skein.optimise.{Tally, TeamEvaluator, WeightedSum}
+import skein.optimise.{RunningStats, TeamEvaluator, WeightedSum}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
 import skein.search.{Conditions, TeamQuestion}
 import skein.signal.{LatencyDistribution, LatencyProfile}
@@ -108,8 +108,8 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
       episodes: Int,
       onProgress: Long => Unit,
       isCancelled: () => Boolean
-  ): Either[String, Vector[Tally]] =
-    links.zipWithIndex.foldLeft[Either[String, Vector[Tally]]](Right(Vector.empty)):
+  ): Either[String, Vector[RunningStats]] =
+    links.zipWithIndex.foldLeft[Either[String, Vector[RunningStats]]](Right(Vector.empty)):
       case (before, (link, number)) =>
         before.flatMap: all =>
           onProgress(number.toLong * episodes)
@@ -146,7 +146,7 @@ final class FlownSwept private (
       episodes: Int,
       onProgress: Long => Unit,
       isCancelled: () => Boolean
-  ): Either[String, Vector[Tally]] =
+  ): Either[String, Vector[RunningStats]] =
     val pool = Executors.newFixedThreadPool(question.threads)
     val done = AtomicLong()
     try
@@ -159,7 +159,7 @@ final class FlownSwept private (
               onProgress(done.incrementAndGet())
               came
       val (missing, flown) = flying.map(_.map(_.get).partitionMap(identity)).unzip
-      missing.flatten.headOption.toLeft(flown.map(values => Tally.of(values.size)(values)))
+      missing.flatten.headOption.toLeft(flown.map(values => RunningStats.of(values.size)(values)))
     finally pool.shutdown()
 
 object FlownSwept:

@@ -2,7 +2,7 @@ package skein.budget
 
 import skein.forward.DelayTable
 import skein.lanes.DuelWorlds
-import skein.optimise.{Objective, Tally}
+import skein.optimise.{Objective, RunningStats}
 import skein.policy.{Policy, Role}
 import skein.search.{Conditions, Effort}
 import skein.settings.PolicyFile
@@ -50,7 +50,7 @@ trait Swept(
       episodes: Int,
       onProgress: Long => Unit,
       isCancelled: () => Boolean
-  ): Either[String, Vector[Tally]]
+  ): Either[String, Vector[RunningStats]]
 
 object Swept:
   val Stopped = "stopped before the map was whole"
@@ -94,13 +94,13 @@ final class DuelSwept(
       episodes: Int,
       onProgress: Long => Unit,
       isCancelled: () => Boolean
-  ): Either[String, Vector[Tally]] =
+  ): Either[String, Vector[RunningStats]] =
     val worlds   = Worlds(links.map(DelayTable.of), episodes)
     val outcomes = batch.fly(worlds, objective.captureRadiusM, done => onProgress(done), isCancelled)
     Either.cond(
       outcomes.flown == worlds.size,
       Vector.tabulate(links.size): link =>
-        Tally.of(episodes)(episode =>
+        RunningStats.of(episodes)(episode =>
           objective.value(outcomes, link * episodes + episode, policy.role, durationS)
         ),
       Swept.Stopped

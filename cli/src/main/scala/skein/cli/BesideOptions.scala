@@ -4,7 +4,7 @@ import java.nio.file.Path
 import java.util.concurrent.ConcurrentLinkedQueue
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.record.{ClockKind, Heading, McapRecording, McapRowSink, PostgresRowSink, RowSink}
+import skein.record.{ClockKind, RecordingHeader, McapRecording, McapRowSink, PostgresRowSink, RowSink}
 import skein.settings.FlightPlan
 
 /** Where flights are recorded besides their DuckDB files. */
@@ -26,7 +26,11 @@ final case class BesideOptions(
   private def isPostgres(one: String) = one.startsWith("postgres://") || one.startsWith("postgresql://")
   private def wantsMcap               = record.contains("mcap")
 
-  private def sinksOf(plan: FlightPlan, folder: Path, heading: Heading): Seq[Either[String, RowSink]] =
+  private def sinksOf(
+      plan: FlightPlan,
+      folder: Path,
+      heading: RecordingHeader
+  ): Seq[Either[String, RowSink]] =
     record.distinct.map:
       case "mcap" => McapRowSink.open(fileOf(plan, folder), heading).left.map(_.message)
       case url    => PostgresRowSink.open(url, heading).left.map("--record: " + _)
@@ -52,7 +56,7 @@ object BesideOptions:
     private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
 
     /** For a flight that begins. */
-    def open(plan: FlightPlan, heading: Heading): Either[String, Vector[RowSink]] =
+    def open(plan: FlightPlan, heading: RecordingHeader): Either[String, Vector[RowSink]] =
       val (wrong, sinks) = options.sinksOf(plan, folder, heading).partitionMap(identity)
       if wrong.isEmpty then
         sinks.foreach(sink => opened.add((plan.id, sink)))

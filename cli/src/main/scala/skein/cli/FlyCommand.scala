@@ -7,7 +7,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Future, Promise}
-import skein.flight.{FlightRigs, Landed, LiveFlights, ProgressBoard, VirtualFlights, WarmUp}
+import skein.flight.{FlightAssembler, FlightResult, LiveFlights, ProgressBoard, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
 import skein.loop.Outcome
 import skein.measure.FlightSet
@@ -105,8 +105,8 @@ final class FlyCommand(using Scenarios)
   /** @param grounded
     *   why the flights that are not among those that landed were not flown, if any was not
     */
-  private case class Flown(landed: Vector[Landed], grounded: Option[String]):
-    def and(more: Either[String, Vector[Landed]]): Flown =
+  private case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
+    def and(more: Either[String, Vector[FlightResult]]): Flown =
       more.fold(
         reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
         twins => copy(landed ++ twins)
@@ -138,17 +138,17 @@ final class FlyCommand(using Scenarios)
       sinks: BesideOptions.Sinks
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
-    val rigs                  = FlightRigs(TcpTransport(), Clock.system, settings, simulator, tell = tell)
+    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator, tell = tell)
     try
       if simulator.isEmpty then
-        flyTogether(rigs, settings.plans, settings, out, shown, sinks).map(Flown(_, None))
-      else flyInTurn(rigs, settings, out, shown, sinks)
+        flyTogether(assembler, settings.plans, settings, out, shown, sinks).map(Flown(_, None))
+      else flyInTurn(assembler, settings, out, shown, sinks)
     finally
       val _ = Edge.await(system.terminate())
 
   /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
   private def flyInTurn(
-      rigs: FlightRigs,
+      assembler: FlightAssembler,
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
@@ -160,7 +160,7 @@ final class FlyCommand(using Scenarios)
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
       else
         Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(rigs, Vector(plan), settings, out, shown, sinks) match
+        flyTogether(assembler, Vector(plan), settings, out, shown, sinks) match
           case Left(reason)  => before.copy(grounded = Some(reason))
           case Right(landed) => before.copy(landed = before.landed ++ landed)
     flown.grounded match
@@ -168,13 +168,13 @@ final class FlyCommand(using Scenarios)
       case _                                    => Right(flown)
 
   private def flyTogether(
-      rigs: FlightRigs,
+      assembler: FlightAssembler,
       plans: Vector[FlightPlan],
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
       sinks: BesideOptions.Sinks
-  )(using system: ActorSystem): Either[String, Vector[Landed]] =
+  )(using system: ActorSystem): Either[String, Vector[FlightResult]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()
     def abandon() = abandoned.trySuccess(Left(s"${plans.head.id}: ended from outside before it began")): Unit
@@ -182,7 +182,7 @@ final class FlyCommand(using Scenarios)
       .untilInterrupted(() => abandon()):
         Edge.await(Future.firstCompletedOf(Seq(
           LiveFlights.start(
-            rigs,
+            assembler,
             plans,
             out,
             heading => shown.fold((_: Record) => ())(_.observe(heading)),
@@ -206,11 +206,11 @@ final class FlyCommand(using Scenarios)
 
   /** Virtual twins of the flights that were flown to their end. */
   private def flyTwins(
-      landed: Vector[Landed],
+      landed: Vector[FlightResult],
       settings: FlySettings,
       count: Int,
       out: Path
-  ): Either[String, Vector[Landed]] =
+  ): Either[String, Vector[FlightResult]] =
     val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
@@ -220,7 +220,7 @@ final class FlyCommand(using Scenarios)
       )
       VirtualFlights.fly(settings, twins, out)((_, _) => ())
 
-  private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[Landed]] =
+  private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[FlightResult]] =
     VirtualFlights.fly(settings, settings.plans, out)((landed, contents) =>
       Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
     )
@@ -233,7 +233,7 @@ final class FlyCommand(using Scenarios)
   /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot be shown or
     * written, all that went wrong is told.
     */
-  private def report(landed: Vector[Landed], out: Path, shown: Shown): Either[String, Unit] =
+  private def report(landed: Vector[FlightResult], out: Path, shown: Shown): Either[String, Unit] =
     val told =
       Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n")).flatMap: flights =>
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
@@ -253,10 +253,10 @@ final class FlyCommand(using Scenarios)
     Either.cond(
       idle.isEmpty,
       (),
-      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightRigs.askTimeout.toMillis.round} ms?"
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightAssembler.askTimeout.toMillis.round} ms?"
     )
 
-  private def allWell(landed: Vector[Landed]): Either[String, Unit] =
+  private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
       val ended = flight.outcome match
         case Outcome.Failed(reason)              => Some(reason)

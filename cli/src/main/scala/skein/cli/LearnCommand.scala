@@ -7,7 +7,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
 import skein.lanes.DuelBatch
 import skein.learn.LearnerSettings
-import skein.optimise.Tally
+import skein.optimise.RunningStats
 import skein.policy.NeuralShape
 import skein.report.Section
 import skein.scenario.Scenarios
@@ -201,7 +201,7 @@ final class LearnCommand(using Scenarios)
       policy: Path,
       flights: Int,
       shown: Shown
-  ): Either[String, Option[Tally]] =
+  ): Either[String, Option[RunningStats]] =
     val paper = SearchQuestion.paperOpponent(setup.role).text
     if setup.question.opponent != paper then
       shown.say(
@@ -272,7 +272,7 @@ object LearnCommand:
     */
   private[skein] def flown(question: LearnQuestion, policy: String, flights: Int)(using
       Scenarios
-  ): Either[String, Tally] =
+  ): Either[String, RunningStats] =
     val conditions = question.conditions
     val options    = ParserForClass[FlightOptions].constructOrThrow(
       Seq("--scenario", "duel", "--loop", conditions.loop, "--link", question.link, "--policy", policy) ++
@@ -287,4 +287,4 @@ object LearnCommand:
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
       distances = landed.flatMap(_.distance).flatMap(_.lastTenSeconds).map(_.mean)
-    yield Tally.of(distances.size)(distances)
+    yield RunningStats.of(distances.size)(distances)

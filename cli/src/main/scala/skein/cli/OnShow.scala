@@ -5,7 +5,7 @@ import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.ExecutionContext
 import skein.flight.LiveFlights
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
-import skein.record.{Heading, Record, Topic}
+import skein.record.{RecordingHeader, Record, Topic}
 import skein.units.Span
 import skein.view.{Control, Feed, Gauge, LiveShow, Shows}
 
@@ -15,7 +15,7 @@ private[cli] final class OnShow(shows: Shows):
   private val flown  = AtomicReference(Option.empty[LiveFlights])
 
   /** What is shown of a flight that begins. */
-  def observe(heading: Heading): Record => Unit =
+  def observe(heading: RecordingHeader): Record => Unit =
     val feed  = Feed()
     val gauge = GraphGauge()
     graphs.put(heading.flight.id, gauge): Unit

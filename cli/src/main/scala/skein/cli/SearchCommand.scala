@@ -72,9 +72,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      shows = Shows()
-      task  = TaskShow("search")
-      _     = shows.add(task)
+      shows                     = Shows()
+      task                      = TaskShow("search")
+      _                         = shows.add(task)
       _ <- options.view.serving(shows):
         question match
           case duel: SearchQuestion =>

@@ -1,7 +1,7 @@
 package skein.cli
 
 import skein.budget.BudgetAxes
-import skein.optimise.{SearchState, Tally}
+import skein.optimise.{SearchState, RunningStats}
 import skein.search.Landscape
 import skein.view.TaskShow
 import skein.view.TaskShow.Axis
@@ -47,7 +47,7 @@ private[cli] final class BudgetOnShow(
 ):
   def flown(episodes: Long): Unit = show.progress(title, episodes, expected, "episodes", "")
 
-  def rows(known: Vector[Vector[Option[Tally]]]): Unit = show.landscape(
+  def rows(known: Vector[Vector[Option[RunningStats]]]): Unit = show.landscape(
     s"$measured, $title",
     Axis("mean round trip, ms", axes.meansMs),
     Axis("jitter, ms", axes.jittersMs),

@@ -4,7 +4,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
 import skein.settings.NamedScene
 import skein.scenario.{Scenario, Scenarios}
-import skein.torture.{Ordeal, Torture, Verdict}
+import skein.torture.{FaultPlan, Torture, Verdict}
 import skein.units.*
 
 /** Options of `./skein torture`. */
@@ -41,8 +41,8 @@ final class TortureCommand(using scenarios: Scenarios)
       duration <- Span
         .parse(options.duration)
         .filterOrElse(
-          _ >= Ordeal.Shortest,
-          s"expected ${Ordeal.Shortest.toSeconds} s or more, came ${options.duration}"
+          _ >= FaultPlan.Shortest,
+          s"expected ${FaultPlan.Shortest.toSeconds} s or more, came ${options.duration}"
         )
         .left
         .map(mistake => s"--duration: $mistake")
@@ -75,7 +75,7 @@ final class TortureCommand(using scenarios: Scenarios)
         for
           verdict <- failed
           line    <- verdict.violations.toVector
-        yield Vector(verdict.ordeal.seed.toString, line)
+        yield Vector(verdict.faultPlan.seed.toString, line)
       )
     )
   )
@@ -106,10 +106,10 @@ final class TortureCommand(using scenarios: Scenarios)
           flown += 1
           if !verdict.isClean then
             failed :+= verdict
-            shown.say(verdict.ordeal.toString)
+            shown.say(verdict.faultPlan.toString)
             verdict.violations.foreach(line => shown.say(s"  $line"))
             shown.say(
-              s"  again: ./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
+              s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
                   ""
                 )(name => s" --scenario $name")}${options.scene.fold("")(name => s" --scene $name")}"
             )

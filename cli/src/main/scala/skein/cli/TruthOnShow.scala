@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.duration.DurationInt
-import skein.record.{Flight, Heading, Reading, Vehicle}
+import skein.record.{Flight, RecordingHeader, Reading, Vehicle}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -29,7 +29,7 @@ private[cli] object TruthOnShow:
           feed.offer(Reading(number, name, Stamped(kinematics, truth.at, now, now)))
     )
 
-  private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = Heading(
+  private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = RecordingHeader(
     Flight(
       "simulator",
       "none",

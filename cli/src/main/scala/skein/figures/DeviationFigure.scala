@@ -40,8 +40,8 @@ object DeviationFigure:
       Shape.Text(
         Point(middle, panel.bottom + 38),
         Looks.link(link),
-        Ink.labelSize,
-        Ink.labelColour,
+        Theme.labelSize,
+        Theme.labelColour,
         Anchor.Middle
       )
     val truth = Shape.line(
@@ -73,15 +73,15 @@ object DeviationFigure:
       Shape.Text(
         Point(x, panel.bottom + 13),
         deviation.name,
-        Ink.tickSize - 1,
-        Ink.labelColour,
+        Theme.tickSize - 1,
+        Theme.labelColour,
         Anchor.Middle
       ),
       Shape.Text(
         Point(x, panel.bottom + 24),
         s"${Numbers.signed(100 * share.mean)} %",
-        Ink.tickSize - 1,
-        Ink.tickColour,
+        Theme.tickSize - 1,
+        Theme.tickColour,
         Anchor.Middle
       )
     ) ++ ring

@@ -48,8 +48,8 @@ object DistanceFigure:
     val heading = Shape.Text(
       Point(stripsLeft, panel.top - 10),
       "last 10 s: ours ●, paper ◆",
-      Ink.tickSize,
-      Ink.labelColour
+      Theme.tickSize,
+      Theme.labelColour
     )
     val title = panel.title(Looks.link(link))
     Drawing(

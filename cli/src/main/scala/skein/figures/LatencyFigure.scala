@@ -61,7 +61,7 @@ object LatencyFigure:
       s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
     val titles = Vector(
       panel.title(Looks.link(link)).moved(0, -14),
-      Shape.Text(Point(panel.left, panel.top - 9), facts, Ink.tickSize, Ink.labelColour)
+      Shape.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize, Theme.labelColour)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
 
@@ -83,8 +83,8 @@ object LatencyFigure:
         Shape.Text(
           Point(x, panel.top + 9),
           s"${(p * 100).round} %",
-          Ink.tickSize - 1,
-          Ink.labelColour,
+          Theme.tickSize - 1,
+          Theme.labelColour,
           Anchor.Middle
         )
       )

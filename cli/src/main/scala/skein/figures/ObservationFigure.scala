@@ -42,20 +42,20 @@ object ObservationFigure:
       drawn :+ Shape.Text(
         Point(middle, panel.bottom + 13),
         summary.flight.loop,
-        Ink.tickSize - 1,
-        Ink.labelColour,
+        Theme.tickSize - 1,
+        Theme.labelColour,
         Anchor.Middle
       )
     val links = flights.zip(lefts).groupBy(_._1.flight.link).toVector.flatMap: (link, members) =>
       val from = panel.left + members.map(_._2).min
       val to   = panel.left + members.map((summary, left) => left + widthOf(summary)).max
       Vector(
-        Shape.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Ink.axisLine),
+        Shape.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Theme.axisLine),
         Shape.Text(
           Point((from + to) / 2, panel.bottom + 30),
           Looks.link(link),
-          Ink.tickSize,
-          Ink.labelColour,
+          Theme.tickSize,
+          Theme.labelColour,
           Anchor.Middle
         )
       )

@@ -157,8 +157,8 @@ object ScenarioFigure:
   private def legend(flown: ScenarioFlights): Seq[Legend.Item] =
     val anyBroken = flown.flights.exists(_.result.violations.nonEmpty)
     roles(flown.scenario) ++ Seq(
-      disc("start", 2.8, Some(Stroke(Ink.labelColour, 1.2)), Some(Looks.halo)),
-      disc("end", 3, None, Some(Ink.labelColour))
+      disc("start", 2.8, Some(Stroke(Theme.labelColour, 1.2)), Some(Looks.halo)),
+      disc("end", 3, None, Some(Theme.labelColour))
     ) ++ Option.when(anyBroken)(disc("a limit broken", 5, Some(Stroke(red, 1.2)), None))
 
   private def roles(scenario: Scenario): Seq[Legend.Item] =

@@ -36,7 +36,7 @@ object SightFigure:
         at = Point(0, 16),
         s"${flight.name}, ${Looks.link(flight.flight.link)}",
         12,
-        Ink.labelColour,
+        Theme.labelColour,
         bold = true
       )
       val cells = seen.decisive.map: (name, sight) =>
@@ -70,7 +70,7 @@ object SightFigure:
               Stroke(red, 1.6)
             )
           ) ++ told(name, sight).zipWithIndex.map((line, index) =>
-            Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Ink.labelColour)
+            Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
           )
         )
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))

@@ -58,8 +58,8 @@ object TrajectoryFigure:
           )
       ),
       Legend.line("evader", thick(Looks.evader)),
-      Legend.Item("start", 8, at => Vector(start(at.moved(4, 0), Ink.labelColour))),
-      Legend.Item("end", 8, at => Vector(end(at.moved(4, 0), Ink.labelColour)))
+      Legend.Item("start", 8, at => Vector(start(at.moved(4, 0), Theme.labelColour))),
+      Legend.Item("end", 8, at => Vector(end(at.moved(4, 0), Theme.labelColour)))
     )
 
   private def thick(colour: Colour): Stroke = Looks.line(colour, 2.2)

@@ -26,8 +26,8 @@ object TwinFigure:
     val title = Shape.Text(
       Point(46, 16),
       s"${twin.live.name}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
-      Ink.titleSize,
-      Ink.titleColour,
+      Theme.titleSize,
+      Theme.titleColour,
       bold = true
     )
     val panels = Drawing.grid(twin.compared.map(panel(flight.loop, _)), columns = twin.compared.size)
@@ -46,8 +46,8 @@ object TwinFigure:
     val title = Shape.Text(
       Point(panel.left, panel.top - 6),
       s"${compared.role}: KS ${Numbers.fixed(compared.distance, 2)}",
-      Ink.labelSize,
-      Ink.labelColour
+      Theme.labelSize,
+      Theme.labelColour
     )
     Drawing(
       panelWidth + 62,

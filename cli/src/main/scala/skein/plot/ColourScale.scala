@@ -27,10 +27,10 @@ final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
       Shape.Text(
         Point(left + width + 5, bottom - height * axis.share(tick) + 3.5),
         axis.text(tick),
-        Ink.tickSize,
-        Ink.tickColour
+        Theme.tickSize,
+        Theme.tickColour
       )
-    boxes ++ ticks :+ Shape.Text(Point(left, top - 8), label, Ink.tickSize, Ink.labelColour)
+    boxes ++ ticks :+ Shape.Text(Point(left, top - 8), label, Theme.tickSize, Theme.labelColour)
 
 object ColourScale:
   /** Matplotlib's viridis by nine of its colours: even in lightness, also for colour-blind readers. */

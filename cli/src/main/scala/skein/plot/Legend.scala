@@ -26,5 +26,5 @@ object Legend:
       items.scanLeft(left)((start, item) => start + item.width + 6 + item.label.length * letterWidth + gap)
     val shapes = items.zip(starts).flatMap: (item, start) =>
       item.mark(Point(start, middle)) :+
-        Shape.Text(Point(start + item.width + 6, middle + 4), item.label, Ink.labelSize, Ink.labelColour)
+        Shape.Text(Point(start + item.width + 6, middle + 4), item.label, Theme.labelSize, Theme.labelColour)
     Drawing(starts.last - gap / 2, height, shapes.toVector)

@@ -2,7 +2,7 @@ package skein.plot
 
 /** A rectangle of a drawing with an axis below and one at its left; turns values into points. */
 final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Double, height: Double):
-  import Ink.*
+  import Theme.*
 
   def right: Double  = left + width
   def bottom: Double = top + height
@@ -59,7 +59,7 @@ final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Doubl
     Shape.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
 
 /** The looks that all pictures share. */
-object Ink:
+object Theme:
   val tickSize  = 10.0
   val labelSize = 11.0
   val titleSize = 12.0

@@ -4,7 +4,7 @@ import java.util.concurrent.TimeoutException
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
-import skein.optimise.{Evaluator, Tally}
+import skein.optimise.{Evaluator, RunningStats}
 
 /** Whoever computes blocks, elsewhere. */
 trait Elsewhere:
@@ -29,7 +29,7 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
   /** A round at once: there are always enough workers. */
   override def sideBySide: Int = 1 << 30
 
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     talliesUnless(() => false)(candidates, episodes).get
 
   /** @throws ElsewhereFailed
@@ -38,7 +38,7 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
   override def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range
-  ): Option[Vector[Tally]] =
+  ): Option[Vector[RunningStats]] =
     val blocks    = SearchBlock.cut(judge, candidates, episodes, atMost)
     val answered  = elsewhere.compute(blocks.map(_.bytes))
     var isGivenUp = false

@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.flight.FlightRigs
+import skein.flight.FlightAssembler
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -65,7 +65,7 @@ object Conditions:
   private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =
     val settings = LoopSettings.every(period).copy(model = _ => vehicles.predictor)
     LoopTimings
-      .of(loop, settings, FlightRigs.askTimeout)
+      .of(loop, settings, FlightAssembler.askTimeout)
       .toRight(
         s"a search has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
       )

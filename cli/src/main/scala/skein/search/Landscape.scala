@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.optimise.{Evaluator, Tally}
+import skein.optimise.{Evaluator, RunningStats}
 import skein.policy.SearchSpace
 
 /** The objective around a candidate, along one or two axes of the space with the others at the candidate.
@@ -19,7 +19,7 @@ final case class Landscape(
     y: Option[Int],
     xs: Vector[Double],
     ys: Vector[Double],
-    cells: Vector[Vector[Tally]]
+    cells: Vector[Vector[RunningStats]]
 ):
 
   /** One row per cell; a header with the axes' names. */
@@ -85,5 +85,5 @@ object Landscape:
       Vector.tabulate(Probes): i =>
         best.updated(axis, space.axes(axis).least + space.axes(axis).width * i / (Probes - 1))
     val varied = evaluator.tallies(probes, episodes).map(_.mean).grouped(Probes).map: means =>
-      Tally.of(means.size)(means).sd
+      RunningStats.of(means.size)(means).sd
     axes.zip(varied.toVector).sortBy(-_._2).take(2).map(_._1).sorted

@@ -2,7 +2,7 @@ package skein.search
 
 import scala.collection.immutable.ArraySeq
 import skein.cluster.Solvers
-import skein.optimise.{Tally, ValueEvaluator}
+import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
 
@@ -12,7 +12,7 @@ import upickle.default.{ReadWriter, read as readJson, write as writeJson}
   *   what the defaults came to at the coordinator on the first episodes: a worker that comes to anything else, by a file
   *   of another content for example, does not answer the question
   */
-final case class PosedQuestion(question: SearchFile.Question, probe: Vector[Tally])
+final case class PosedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
 
 object PosedQuestion:
   import SearchFile.given

@@ -2,7 +2,7 @@ package skein.search
 
 import java.nio.{BufferUnderflowException, ByteBuffer}
 import scala.collection.immutable.ArraySeq
-import skein.optimise.{Tally, ValueEvaluator}
+import skein.optimise.{RunningStats, ValueEvaluator}
 
 /** A part of a call of an evaluator, which any process with the same question answers with the same bits: so many
   * candidates on so many episodes.
@@ -90,21 +90,21 @@ object SearchBlock:
       blocks: Vector[SearchBlock],
       answers: Vector[ArraySeq[Byte]],
       episodes: Int
-  ): Either[String, Vector[Tally]] =
+  ): Either[String, Vector[RunningStats]] =
     blocks.zip(answers).find((block, answer) => answer.length != block.expected) match
       case Some((block, answer)) =>
         Left(s"expected an answer of ${block.expected} bytes to a block, came ${answer.length}")
       case None =>
-        val tallies = Vector.newBuilder[Tally]
+        val tallies = Vector.newBuilder[RunningStats]
         var parts   = Vector.empty[Double]
         for (block, answer) <- blocks.zip(answers) do
           val in = ByteBuffer.wrap(answer.toArray)
           if block.isWhole then
-            for _ <- block.candidates do tallies += Tally(in.getInt, in.getDouble, in.getDouble)
+            for _ <- block.candidates do tallies += RunningStats(in.getInt, in.getDouble, in.getDouble)
           else
             parts ++= Vector.fill(block.episodes.size)(in.getDouble)
             if parts.size == episodes then
-              tallies += Tally.of(episodes)(parts)
+              tallies += RunningStats.of(episodes)(parts)
               parts = Vector.empty
         Right(tallies.result())
 

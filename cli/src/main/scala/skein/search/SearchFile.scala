@@ -3,7 +3,7 @@ package skein.search
 import java.io.IOException
 import java.nio.channels.FileChannel
 import java.nio.file.{Files, Path, StandardCopyOption, StandardOpenOption}
-import skein.optimise.{CmaEs, Course, Scored, SearchState, Tally}
+import skein.optimise.{CmaEs, Course, Scored, SearchState, RunningStats}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson, write as writeJson}
 
 /** A search as it stands on disk: the question, and the state it has come to. */
@@ -15,7 +15,7 @@ object SearchFile:
 
   type Question = SearchQuestion | TeamQuestion
 
-  given ReadWriter[Tally]               = ReadWriter.derived
+  given ReadWriter[RunningStats]        = ReadWriter.derived
   private given ReadWriter[Scored]      = ReadWriter.derived
   private given ReadWriter[CmaEs.State] = ReadWriter.derived
   private given ReadWriter[Course]      = ReadWriter.derived

@@ -2,7 +2,7 @@ package skein.search
 
 import java.util.Locale
 import skein.lanes.DuelBatch
-import skein.optimise.{Evaluator, SearchState, Tally}
+import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.policy.PolicyFamily
 import skein.report.Section
 import skein.settings.{PolicyFile, VehicleChoice}
@@ -16,12 +16,12 @@ final case class SearchResult(
     setup: SearchSetup,
     state: SearchState,
     policy: PolicyFile,
-    fresh: Tally,
-    paper: Tally
+    fresh: RunningStats,
+    paper: RunningStats
 ):
   import SearchResult.number
 
-  private def interval(tally: Tally): String =
+  private def interval(tally: RunningStats): String =
     s"${number(tally.mean)} ± ${number(tally.halfWidth95)}${if unit.isEmpty then "" else s" $unit"}"
 
   private def unit: String = setup.objective.unit

@@ -1,7 +1,7 @@
 package skein.search
 
 import java.util.Locale
-import skein.optimise.{Evaluator, SearchState, Tally}
+import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.report.Section
 
 /** What a search over a scenario's settings came to, measured on episodes that the search never met.
@@ -13,12 +13,12 @@ final case class TeamSearchResult(
     setup: TeamSetup,
     state: SearchState,
     best: Vector[Double],
-    fresh: Tally,
-    plain: Tally
+    fresh: RunningStats,
+    plain: RunningStats
 ):
   import TeamSearchResult.number
 
-  private def interval(tally: Tally): String =
+  private def interval(tally: RunningStats): String =
     s"${number(tally.mean)} ± ${number(tally.halfWidth95)}${
         if setup.unit.isEmpty then "" else s" ${setup.unit}"
       }"

@@ -1,7 +1,7 @@
 package skein.training
 
 import skein.lanes.DuelBatch
-import skein.optimise.Tally
+import skein.optimise.RunningStats
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
 import skein.settings.PolicyFile
@@ -17,15 +17,15 @@ final case class LearnResult(
     setup: LearnSetup,
     state: LearnState,
     policy: PolicyFile,
-    fresh: Tally,
-    paper: Tally,
-    flights: Option[Tally]
+    fresh: RunningStats,
+    paper: RunningStats,
+    flights: Option[RunningStats]
 ):
   import setup.{objective, question}
 
   /** As a table. */
   def section: Section =
-    def row(policy: String, where: String, tally: Tally, unit: String) =
+    def row(policy: String, where: String, tally: RunningStats, unit: String) =
       Vector(
         policy,
         where,

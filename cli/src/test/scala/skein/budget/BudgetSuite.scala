@@ -65,7 +65,7 @@ class BudgetSuite extends munit.FunSuite:
     LatencyBudget(
       Vector(0.0, 50.0, 100.0),
       Vector(0.0, 20.0),
-      Vector.fill(2)(bound.map(value => Some(skein.optimise.Tally(1, value, 0)))),
+      Vector.fill(2)(bound.map(value => Some(skein.optimise.RunningStats(1, value, 0)))),
       truth = 8,
       per = 8
     ),

@@ -26,7 +26,7 @@ class BlindPursuitSimulation extends munit.FunSuite:
     scenario
   )
 
-  private def fly(settings: FlySettings): VirtualLanding =
+  private def fly(settings: FlySettings): VirtualFlightResult =
     val flown = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
     assertEquals(flown.landed.outcome, Outcome.Completed)
     flown

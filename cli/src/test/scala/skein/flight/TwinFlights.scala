@@ -46,8 +46,8 @@ object TwinFlights:
   def flyLive(settings: FlySettings, plans: Vector[FlightPlan], folder: Path): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("twins")
     import system.dispatcher
-    val rigs   = FlightRigs(TcpTransport(), Clock.system, settings, simulator = None)
-    val flying = LiveFlights.start(rigs, plans, folder).flatMap:
+    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator = None)
+    val flying    = LiveFlights.start(assembler, plans, folder).flatMap:
       case Left(reason)   => Future.successful(Left(reason))
       case Right(flights) => flights.landed.map(_ => Right(()))
     try Await.result(flying, settings.duration.toDuration + Duration(60, "s"))

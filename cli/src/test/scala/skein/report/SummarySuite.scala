@@ -15,7 +15,7 @@ class SummarySuite extends munit.FunSuite:
     val state = Kinematics(Vector3(x, y, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
     Reading(0, vehicle, Stamped(state, second(time), second(time), second(time + 0.04)))
 
-  private val heading = Heading(
+  private val heading = RecordingHeader(
     Flight(
       "f",
       "stream",

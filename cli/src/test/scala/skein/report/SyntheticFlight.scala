@@ -136,9 +136,15 @@ object SyntheticFlight:
       )
     )
 
-  private def heading(loop: String, link: String, seed: Long, seconds: Int, scenario: Fleet): Heading =
+  private def heading(
+      loop: String,
+      link: String,
+      seed: Long,
+      seconds: Int,
+      scenario: Fleet
+  ): RecordingHeader =
     def vehicle(agent: Agent) = Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
-    Heading(
+    RecordingHeader(
       Flight(
         s"$loop-$link",
         loop,

@@ -42,7 +42,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
         val (north, east) = placeM(vehicle, tick / 10.0)
         val state = Kinematics(Vector3(north, east, -5), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
         Reading(tick, agent.name, Stamped(state, at, at, at))
-    Recording(Heading(flight, vehicles, settings), readings)
+    Recording(RecordingHeader(flight, vehicles, settings), readings)
 
   private def resultOf(recording: Recording): Result =
     FlightSummary.of(recording).result.getOrElse(fail("no result"))

@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.optimise.{Evaluator, Tally}
+import skein.optimise.{Evaluator, RunningStats}
 import skein.policy.{Axis, SearchSpace}
 
 class LandscapeSuite extends munit.FunSuite:
@@ -14,7 +14,7 @@ class LandscapeSuite extends munit.FunSuite:
 
   private val evaluator: Evaluator = (candidates, episodes) =>
     candidates.map: c =>
-      Tally.of(episodes.size)(_ => 10 * c(1) * c(1) + 0.01 * c(2) + c(3))
+      RunningStats.of(episodes.size)(_ => 10 * c(1) * c(1) + 0.01 * c(2) + c(3))
 
   test("of many parameters the two are drawn that matter most, the others at the best"):
     val best = Vector(0.5, 0.0, 1.0, 2.0)
@@ -28,7 +28,7 @@ class LandscapeSuite extends munit.FunSuite:
   test("one parameter gives a curve"):
     val line                = SearchSpace(Vector(Axis("x", -1, 1)))
     val parabola: Evaluator =
-      (candidates, episodes) => candidates.map(c => Tally.of(episodes.size)(_ => c(0) * c(0)))
+      (candidates, episodes) => candidates.map(c => RunningStats.of(episodes.size)(_ => c(0) * c(0)))
     val land = Landscape.of(line, Vector(0.0), parabola, 0 until 2)
     assertEquals(land.y, None)
     assertEqualsDouble(land.cells.head.map(_.mean).min, 0, 1e-12)

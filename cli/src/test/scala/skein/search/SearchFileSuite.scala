@@ -2,7 +2,7 @@ package skein.search
 
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
-import skein.optimise.{Evaluator, SearchState, Tally}
+import skein.optimise.{Evaluator, SearchState, RunningStats}
 
 class SearchFileSuite extends munit.FunSuite:
   private def question(method: String) = SearchQuestion(
@@ -62,7 +62,7 @@ class SearchFileSuite extends munit.FunSuite:
     val flying = ready.evaluator(ready.batch(1))
     var calls  = 0
     val cut    = new Evaluator:
-      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
         calls += 1
         flying.tallies(candidates, episodes)
     def run(from: SearchState, isStopped: () => Boolean) =

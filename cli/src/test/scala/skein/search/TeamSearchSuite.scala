@@ -100,7 +100,7 @@ object TeamSearchSuite:
   import skein.simd.WorldRandom
 
   /** Where all were in the last 10 s of an episode, flown by the scalar engine. */
-  private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Places] =
+  private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Positions] =
     val engagement = Engagement.of(scenario.fleet, setup.conditions.duel.durationS)
     val count      = engagement.agents.size
     val seen       = Vector.newBuilder[(Double, Double, Double)]
@@ -114,4 +114,4 @@ object TeamSearchSuite:
       .grouped(count)
       .toVector
       .takeRight(101)
-      .map(all => Places(IArray.from(all.map(_._2)), IArray.from(all.map(_._3)), IArray.fill(count)(-5.0)))
+      .map(all => Positions(IArray.from(all.map(_._2)), IArray.from(all.map(_._3)), IArray.fill(count)(-5.0)))

@@ -110,5 +110,5 @@ object Crossing:
   /** From its goal, a vehicle counts as arrived. */
   private val ArrivedM = 3.0
 
-  /** Places along the heading, from the middle of the crossing, m. */
+  /** Positions along the heading, from the middle of the crossing, m. */
   private final case class Route(headingRad: Double, startM: Double, goalM: Double)

@@ -113,7 +113,7 @@ object Series:
   /** Of a quantity that a search can judge by, too. */
   def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
     new Series(name, unit, bound, Some(quantity))(tracks =>
-      instant => quantity.of(tracks.places(instant))
+      instant => quantity.of(tracks.positions(instant))
     )
 
 /** What a quantity is held to.

@@ -4,22 +4,23 @@ import skein.policy.Racetrack
 
 /** How far the pursuers are from a ring around the evader, the first vehicle: root of the mean square, m. */
 final case class OffRing(ringM: Double) extends Quantity:
-  def of(places: Places): Double =
+  def of(positions: Positions): Double =
     var sum     = 0.0
     var pursuer = 1
-    while pursuer < places.count do
-      val off = places.distanceM(0, pursuer) - ringM
+    while pursuer < positions.count do
+      val off = positions.distanceM(0, pursuer) - ringM
       sum += off * off
       pursuer += 1
-    math.sqrt(sum / (places.count - 1))
+    math.sqrt(sum / (positions.count - 1))
 
 /** The largest angle between neighbouring vehicles as the first one sees them, degrees. */
 case object WidestGap extends Quantity:
-  def of(places: Places): Double =
-    val bearings = new Array[Double](places.count - 1)
+  def of(positions: Positions): Double =
+    val bearings = new Array[Double](positions.count - 1)
     var i        = 0
     while i < bearings.length do
-      val (north, east) = (places.northM(i + 1) - places.northM(0), places.eastM(i + 1) - places.eastM(0))
+      val (north, east) =
+        (positions.northM(i + 1) - positions.northM(0), positions.eastM(i + 1) - positions.eastM(0))
       bearings(i) = StrictMath.atan2(east, north)
       i += 1
     ascend(bearings)
@@ -44,13 +45,13 @@ case object WidestGap extends Quantity:
 
 /** Between the two vehicles nearest to one another, m. */
 case object Separation extends Quantity:
-  def of(places: Places): Double =
+  def of(positions: Positions): Double =
     var least = Double.PositiveInfinity
     var one   = 1
-    while one < places.count do
+    while one < positions.count do
       var other = 0
       while other < one do
-        least = least.min(places.distanceM(one, other))
+        least = least.min(positions.distanceM(one, other))
         other += 1
       one += 1
     least
@@ -65,8 +66,8 @@ case object Separation extends Quantity:
   */
 final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IArray[Double])
     extends Quantity:
-  def of(places: Places): Double =
-    val (north, east) = (places.northM(0), places.eastM(0))
+  def of(positions: Positions): Double =
+    val (north, east) = (positions.northM(0), positions.eastM(0))
     val heading       = circuit.headingRad(circuit.nearest(north, east))
     val (cos, sin)    = (StrictMath.cos(heading), StrictMath.sin(heading))
     var sum           = 0.0
@@ -74,7 +75,7 @@ final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IA
     while i < aheadM.length do
       val (slotNorth, slotEast) =
         (north + aheadM(i) * cos - rightM(i) * sin, east + aheadM(i) * sin + rightM(i) * cos)
-      val off = places.distanceM(i + 1, slotNorth, slotEast)
+      val off = positions.distanceM(i + 1, slotNorth, slotEast)
       sum += off * off
       i += 1
     math.sqrt(sum / aheadM.length)

@@ -1,7 +1,7 @@
 package skein.scenario
 
-/** Where all vehicles are at one moment, by their places in the scenario. World frame NED, m. */
-final case class Places(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
+/** Where all vehicles are at one moment, by their positions in the scenario. World frame NED, m. */
+final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
 
   /** Between two vehicles, in the horizontal plane, m. */
@@ -16,7 +16,7 @@ final case class Places(northM: IArray[Double], eastM: IArray[Double], downM: IA
   * whose method is arithmetic flies by lanes, as policies do (`docs/guides/formulas.md`).
   */
 trait Quantity:
-  def of(places: Places): Double
+  def of(positions: Positions): Double
 
 /** What a quantity comes to over a flight. */
 enum Reduction:

@@ -3,7 +3,7 @@ package skein.scenario
 import skein.units.*
 
 /** Where all vehicles of a flight were at equal instants of the simulator's clock, by vehicle and instant; vehicles by
-  * their places in the scenario. World frame NED, m.
+  * their positions in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],
@@ -33,9 +33,9 @@ final class Tracks private (
   def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
 
   /** Of all vehicles. */
-  def places(instant: Int): Places =
+  def positions(instant: Int): Positions =
     def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))
-    Places(now(northM), now(eastM), now(downM))
+    Positions(now(northM), now(eastM), now(downM))
 
   /** As it was read, m/s. */
   def velocityNed(vehicle: Int, instant: Int): Vector3 =
@@ -84,12 +84,12 @@ object Tracks:
     val from = tracks.map(_.from).maxOption
     val to   = tracks.map(_.to).minOption
     from.zip(to).filter(_ < _).map: (from, to) =>
-      val count  = (to.since(from).toNanos / step.toNanos + 1).toInt
-      val places = tracks.map(track => Vector.tabulate(count)(index => track.at(from + step * index)))
+      val count     = (to.since(from).toNanos / step.toNanos + 1).toInt
+      val positions = tracks.map(track => Vector.tabulate(count)(index => track.at(from + step * index)))
       Tracks(
         tracks,
         from,
-        places.map(_.map(_.x).toArray),
-        places.map(_.map(_.y).toArray),
-        places.map(_.map(_.z).toArray)
+        positions.map(_.map(_.x).toArray),
+        positions.map(_.map(_.y).toArray),
+        positions.map(_.map(_.z).toArray)
       )

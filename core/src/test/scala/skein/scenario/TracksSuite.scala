@@ -52,8 +52,8 @@ class TracksSuite extends munit.FunSuite:
     // At 1 s: 1 m and 2 m north.
     assertEqualsDouble(both.distanceM(0, 1, 25), math.sqrt(17), 1e-9)
     assertEqualsDouble(both.distanceM(0, 1, 0, 25), 0, 1e-9)
-    assertEquals(both.places(25).count, 2)
-    assertEqualsDouble(both.places(25).distanceM(1, 0), math.sqrt(17), 1e-9)
+    assertEquals(both.positions(25).count, 2)
+    assertEqualsDouble(both.positions(25).distanceM(1, 0), math.sqrt(17), 1e-9)
     assertEquals(both.altitudeM(1, 3), 10.0)
     assertEquals(both.velocityNed(1, 10), Vector3(2, 0, 0))
     assertEquals(both.first(1).instants.size, 101)
@@ -88,29 +88,29 @@ class TracksSuite extends munit.FunSuite:
     assertEqualsDouble(Reduction.Sd.of(values), math.sqrt(14 / 3.0), 1e-12)
     assertEquals((Reduction.Least.of(values), Reduction.Most.of(values)), (3.0, 8.0))
 
-  private def places(northEastM: (Double, Double)*) = Places(
+  private def positions(northEastM: (Double, Double)*) = Positions(
     IArray.from(northEastM.map(_._1)),
     IArray.from(northEastM.map(_._2)),
     IArray.fill(northEastM.size)(-5.0)
   )
 
-  test("quantities of places: off the ring, the widest gap, the nearest two"):
-    val around = places((1, 1), (1, 6), (1, -6), (-6, 1))
+  test("quantities of positions: off the ring, the widest gap, the nearest two"):
+    val around = positions((1, 1), (1, 6), (1, -6), (-6, 1))
     // 5, 7 and 7 m from the evader.
     assertEqualsDouble(OffRing(6).of(around), 1, 1e-9)
     assertEqualsDouble(OffRing(5).of(around), math.sqrt(8 / 3.0), 1e-9)
     assertEqualsDouble(WidestGap.of(around), 180, 1e-9)
-    assertEqualsDouble(WidestGap.of(places((0, 0), (5, 0), (5, 5), (0, 5))), 270, 1e-9)
-    assertEqualsDouble(WidestGap.of(places((0, 0), (0, 5), (-5, 0), (0, -5), (5, 0))), 90, 1e-9)
+    assertEqualsDouble(WidestGap.of(positions((0, 0), (5, 0), (5, 5), (0, 5))), 270, 1e-9)
+    assertEqualsDouble(WidestGap.of(positions((0, 0), (0, 5), (-5, 0), (0, -5), (5, 0))), 90, 1e-9)
     assertEqualsDouble(Separation.of(around), 5, 1e-9)
-    assertEqualsDouble(Separation.of(places((0, 0), (9, 0), (40, 0), (43, 4))), 5, 1e-9)
+    assertEqualsDouble(Separation.of(positions((0, 0), (9, 0), (40, 0), (43, 4))), 5, 1e-9)
 
   test("slots turn with the leader: on the way back, ahead is south and right is west"):
     val circuit = Formation(straightM = 50, radiusM = 20).circuit
     val slots   = OffSlots(circuit, IArray(-4.0, -4.0), IArray(4.0, -4.0))
-    assertEqualsDouble(slots.of(places((25, 0), (21, 4), (21, -4))), 0, 1e-9)
-    assertEqualsDouble(slots.of(places((25, 40), (29, 36), (29, 44))), 0, 1e-9)
-    assertEqualsDouble(slots.of(places((25, 40), (29, 36), (32, 44))), math.sqrt(4.5), 1e-9)
+    assertEqualsDouble(slots.of(positions((25, 0), (21, 4), (21, -4))), 0, 1e-9)
+    assertEqualsDouble(slots.of(positions((25, 40), (29, 36), (29, 44))), 0, 1e-9)
+    assertEqualsDouble(slots.of(positions((25, 40), (29, 36), (32, 44))), math.sqrt(4.5), 1e-9)
 
   test("a series over time: when it was most, how long it was low, and its root of the mean square"):
     val flight = tracks(flying("One", 0, 10, 1), flying("Two", 0, 10, -1))

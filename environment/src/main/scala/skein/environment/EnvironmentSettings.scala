@@ -1,7 +1,7 @@
 package skein.environment
 
 import scala.jdk.CollectionConverters.*
-import skein.flight.FlightRigs
+import skein.flight.FlightAssembler
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -70,7 +70,7 @@ final case class EnvironmentSettings(
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
       timing <- LoopTimings
-        .of(kind, loopSettings, FlightRigs.askTimeout)
+        .of(kind, loopSettings, FlightAssembler.askTimeout)
         .toRight(
           s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
         )

@@ -6,18 +6,18 @@ import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.loop.RunningGraph
-import skein.record.{DuckDbRecorder, Heading, ObservedRecorder, Record, RowSink}
+import skein.record.{DuckDbRecorder, RecordingHeader, ObservedRecorder, Record, RowSink}
 import skein.settings.FlightPlan
 
 /** Flights in real time, side by side, each with a recording of its own in `folder`. */
-final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSystem):
+final class LiveFlights private (assembler: Vector[FlightAssembly])(using system: ActorSystem):
   import system.dispatcher
 
   /** Completes when all have ended and their recordings are closed. */
-  val landed: Future[Vector[Landed]] = Future.sequence(rigs.map(_.landed))
+  val landed: Future[Vector[FlightResult]] = Future.sequence(assembler.map(_.landed))
 
   /** Ends all flights now; vehicles hover. */
-  def stop(): Unit = rigs.foreach(_.flight.stop())
+  def stop(): Unit = assembler.foreach(_.flight.stop())
 
   /** Ends one flight now; its vehicles hover.
     *
@@ -40,12 +40,13 @@ final class LiveFlights private (rigs: Vector[FlightRig])(using system: ActorSys
     */
   def continue(id: String, who: String): Unit = of(id).foreach(_.continue(who))
 
-  private def of(id: String) = rigs.find(_.plan.id == id)
+  private def of(id: String) = assembler.find(_.plan.id == id)
 
   /** The graphs as they run, by the flights' names. */
-  def graphs: Vector[(id: String, graph: RunningGraph)] = rigs.map(rig => (rig.plan.id, rig.graph))
+  def graphs: Vector[(id: String, graph: RunningGraph)] =
+    assembler.map(assembly => (assembly.plan.id, assembly.graph))
 
-  def progress: Vector[Progress] = rigs.map(_.progress)
+  def progress: Vector[Progress] = assembler.map(_.progress)
 
 object LiveFlights:
 
@@ -59,17 +60,17 @@ object LiveFlights:
     *   or why they cannot be flown; those that had started were stopped again
     */
   def start(
-      rigs: FlightRigs,
+      assembler: FlightAssembler,
       plans: Vector[FlightPlan],
       folder: Path,
-      observe: Heading => Record => Unit = _ => _ => (),
-      beside: (FlightPlan, Heading) => Either[String, Vector[RowSink]] = (_, _) => Right(Vector.empty)
+      observe: RecordingHeader => Record => Unit = _ => _ => (),
+      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]] = (_, _) => Right(Vector.empty)
   )(using system: ActorSystem): Future[Either[String, LiveFlights]] =
     import system.dispatcher
     Future
-      .sequence(plans.map(start(rigs, _, folder, observe, beside)))
+      .sequence(plans.map(start(assembler, _, folder, observe, beside)))
       .flatMap: started =>
-        val flying = started.collect { case Right(rig) => rig }
+        val flying = started.collect { case Right(assembly) => assembly }
         started.collectFirst { case Left(reason) => reason } match
           case None         => Future.successful(Right(LiveFlights(flying)))
           case Some(reason) =>
@@ -77,18 +78,18 @@ object LiveFlights:
             Future
               .sequence(flying.map(_.landed))
               .map: _ =>
-                flying.foreach(rig => unmade(rig.plan.file(folder)))
+                flying.foreach(assembly => unmade(assembly.plan.file(folder)))
                 Left(reason)
 
   private def start(
-      rigs: FlightRigs,
+      assembler: FlightAssembler,
       plan: FlightPlan,
       folder: Path,
-      observe: Heading => Record => Unit,
-      beside: (FlightPlan, Heading) => Either[String, Vector[RowSink]]
-  )(using system: ActorSystem): Future[Either[String, FlightRig]] =
+      observe: RecordingHeader => Record => Unit,
+      beside: (FlightPlan, RecordingHeader) => Either[String, Vector[RowSink]]
+  )(using system: ActorSystem): Future[Either[String, FlightAssembly]] =
     import system.dispatcher
-    val heading = rigs.heading(plan, clockKind = "real")
+    val heading = assembler.heading(plan, clockKind = "real")
     val opened  = beside(plan, heading) match
       case Left(reason) => Future.successful(Left(reason))
       case Right(sinks) =>
@@ -97,7 +98,7 @@ object LiveFlights:
       .flatMap:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
-          rigs
+          assembler
             .start(plan, ObservedRecorder(recorder, observe(heading)))
             .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
             .flatMap:

@@ -35,7 +35,7 @@ final case class PortFlight(
     simulator: String = "own"
 ):
   /** What its recording begins with. */
-  def heading: Heading = Heading(
+  def heading: RecordingHeader = RecordingHeader(
     FlightRow(
       id,
       loop.label,
@@ -46,7 +46,7 @@ final case class PortFlight(
       clockKind.label,
       simulator,
       scenario.title,
-      FlightRigs.version,
+      FlightAssembler.version,
       clock.now()
     ),
     scenario.agents.map(Vehicle.of),
@@ -73,7 +73,7 @@ final case class PortFlight(
     val landed =
       for
         outcome <- flight.outcome
-        _ = recorder.offer(FlightRig.ending(outcome, clock.now()))
+        _ = recorder.offer(FlightAssembly.ending(outcome, clock.now()))
         written <- recorder.close()
       yield (outcome, written)
     PortFlight.UnderWay(flight, landed)

@@ -29,8 +29,8 @@ object VirtualFlights:
     *   or which of them could not be flown, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
-      onLanded: (Landed, Digest) => Unit
-  ): Either[String, Vector[Landed]] =
+      onLanded: (FlightResult, Digest) => Unit
+  ): Either[String, Vector[FlightResult]] =
     val (missing, landed) = inParallel(settings, plans): flown =>
       val landed = flown.landed.copy(written = flown.recorder.writeTo(flown.landed.plan.file(folder)))
       onLanded(landed, flown.recorder.digest)
@@ -44,7 +44,7 @@ object VirtualFlights:
     *   one for each plan, in their order
     */
   def inParallel[A](settings: FlySettings, plans: Vector[FlightPlan])(
-      use: VirtualLanding => A
+      use: VirtualFlightResult => A
   ): Vector[Either[NotFlown, A]] =
     eachInParallel(plans)(plan => fly(settings, plan).map(use))
 
@@ -67,20 +67,21 @@ object VirtualFlights:
     * @return
     *   how it ended and what was recorded, or why it could not be flown
     */
-  def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualLanding] =
+  def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
     VirtualTime
       .run(plan.seed): system =>
         given ActorSystem = system
         import system.dispatcher
-        val clock    = Clock.ofNanos(VirtualTime.clock(system))
-        val network  = MemoryNetwork(NetworkPlan(), plan.seed, clock)
-        val rigs     = FlightRigs(network.host("localhost"), clock, settings, simulator = None, workers)
-        val recorder = MemoryRecorder(rigs.heading(plan, clockKind = "virtual"))
-        rigs
+        val clock     = Clock.ofNanos(VirtualTime.clock(system))
+        val network   = MemoryNetwork(NetworkPlan(), plan.seed, clock)
+        val assembler = FlightAssembler(network.host("localhost"), clock, settings, simulator = None, workers)
+        val recorder  = MemoryRecorder(assembler.heading(plan, clockKind = "virtual"))
+        assembler
           .start(plan, recorder)
           .flatMap:
-            case Left(reason) => Future.successful(Left(reason))
-            case Right(rig)   => rig.landed.map(landed => Right(VirtualLanding(landed, recorder)))
+            case Left(reason)    => Future.successful(Left(reason))
+            case Right(assembly) =>
+              assembly.landed.map(landed => Right(VirtualFlightResult(landed, recorder)))
       .value
 
   /** What one flight of a scenario comes to, by itself. Flies on the calling thread.
@@ -118,7 +119,7 @@ object VirtualFlights:
     CountedPlanWorkers(planning.searches, planning.slices)
 
 /** A flight in virtual time and all that was recorded of it. */
-final case class VirtualLanding(landed: Landed, recorder: MemoryRecorder)
+final case class VirtualFlightResult(landed: FlightResult, recorder: MemoryRecorder)
 
 /** A flight in virtual time that could not be flown to its end, or not be used. */
 final case class NotFlown(plan: FlightPlan, reason: String):

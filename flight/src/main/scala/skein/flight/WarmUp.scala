@@ -79,8 +79,8 @@ object WarmUp:
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)
     )
-    val plans = alone.plans
-    val rigs  = FlightRigs(
+    val plans     = alone.plans
+    val assembler = FlightAssembler(
       transport,
       clock,
       alone.copy(scenario = alone.scenario.crowded(RehearsalVehicles / plans.size)),
@@ -88,12 +88,12 @@ object WarmUp:
     )
     Future
       .traverse(plans): plan =>
-        val recorder = MemoryRecorder(rigs.heading(plan, "real"))
-        rigs
+        val recorder = MemoryRecorder(assembler.heading(plan, "real"))
+        assembler
           .start(plan, recorder)
           .flatMap:
-            case Left(reason) => Future.successful(Left(reason))
-            case Right(rig)   => rig.landed.map(_.outcome).map:
+            case Left(reason)    => Future.successful(Left(reason))
+            case Right(assembly) => assembly.landed.map(_.outcome).map:
                 case Outcome.Failed(reason) => Left(reason)
                 case _                      => Right(recorder.recording.decisions.size)
           .map(_.left.map(reason => s"${plan.id}, to warm up: $reason"))

@@ -293,9 +293,9 @@ final class Team(
       policy: (Memory, (TeamView, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
     type Seen = (TeamView, Instant)
-    val otherwise = instead.fold(Otherwise.Hold()): fallback =>
+    val otherwise = instead.fold(OnOverrun.Hold()): fallback =>
       val decider = Decider(fleet, vehicle, fallback)
-      Otherwise.Ask((memory: Memory, seen: Seen) =>
+      OnOverrun.Ask((memory: Memory, seen: Seen) =>
         decider.decide(memory, seen._1, seen._2)
       )
     requests(vehicle)
@@ -303,8 +303,8 @@ final class Team(
         policy(memory, seen)
       ))
       .map:
-        case Timely.Decided(decision)     => Some(decision)
-        case Timely.Missed(miss, instead) =>
+        case DeadlineResult.Decided(decision)     => Some(decision)
+        case DeadlineResult.Missed(miss, instead) =>
           log.missed(vehicle, miss, instead.map(_.sequence))
           instead
       .collect { case Some(decision) => decision }

@@ -1,7 +1,7 @@
 package skein.loop
 
 import scala.util.{Failure, Success, Try}
-import skein.flow.{Miss, Steered, Verified}
+import skein.flow.{Overrun, Steered, Verified}
 import skein.loop.planning.Plan
 import skein.policy.Fleet
 import skein.port.VehicleError
@@ -20,7 +20,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     * @param instead
     *   the sequence of the decision that the fallback made, if it made one
     */
-  def missed(vehicle: Int, miss: Miss, instead: Option[Long]): Unit =
+  def missed(vehicle: Int, miss: Overrun, instead: Option[Long]): Unit =
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
     recorder.offer(
       Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)

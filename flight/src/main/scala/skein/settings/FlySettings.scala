@@ -217,7 +217,7 @@ object FlySettings:
   private given ConfigReader[PredictionModel] = parsed("predictor", PredictionModel.parse)
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
-  private given ConfigReader[Wire] = parsed("wire", Wire.parse)
+  private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
 
   private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 

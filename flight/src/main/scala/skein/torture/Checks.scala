@@ -6,11 +6,11 @@ import skein.scenario.PaperDuel
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges a flight by its [[Evidence]]. */
+/** Judges a flight by its [[FlightTrace]]. */
 object Checks:
 
   /** Everything that must not be, a line each. */
-  def violations(seen: Evidence): Vector[String] =
+  def violations(seen: FlightTrace): Vector[String] =
     Vector(
       overtaken(seen),
       outstanding(seen),
@@ -27,7 +27,7 @@ object Checks:
     ).flatten
 
   /** The moves that arrived must be among those sent, in the order in which they were sent. */
-  private def overtaken(seen: Evidence): Vector[String] =
+  private def overtaken(seen: FlightTrace): Vector[String] =
     for
       (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
       late             <- firstOutOfOrder(
@@ -44,19 +44,19 @@ object Checks:
       place = found + 1
       found < 0
 
-  private def outstanding(seen: Evidence): Vector[String] =
+  private def outstanding(seen: FlightTrace): Vector[String] =
     for (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if craft.commands.most > MostOutstanding
     yield s"$vehicle: ${craft.commands.most} commands were outstanding at once"
 
   /** While the simulator stands still no time passes between commands. */
-  private def tooFast(seen: Evidence): Vector[String] =
+  private def tooFast(seen: FlightTrace): Vector[String] =
     for
-      (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if seen.ordeal.loop != LoopKind.Paused
+      (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if seen.faultPlan.loop != LoopKind.Paused
       (one, next)      <- craft.sendings.zip(craft.sendings.drop(1)).find: (one, next) =>
         next.at.since(one.at) < seen.minCommandInterval
     yield s"$vehicle: two commands within ${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
 
-  private def unended(seen: Evidence): Vector[String] =
+  private def unended(seen: FlightTrace): Vector[String] =
     val calls =
       for
         (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
@@ -70,7 +70,7 @@ object Checks:
     )(s"the client has ${seen.stats.pending} calls that never ended")
 
   /** What began is what ended, in the client's books, the crafts' and the recording. */
-  private def unaccounted(seen: Evidence): Vector[String] =
+  private def unaccounted(seen: FlightTrace): Vector[String] =
     val called = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong +
       seen.steps.begun + seen.callsBeside
     val stats   = seen.stats
@@ -88,7 +88,7 @@ object Checks:
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
 
-  private def unrecorded(seen: Evidence): Vector[String] =
+  private def unrecorded(seen: FlightTrace): Vector[String] =
     val recording = seen.recording
     seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
       def count[A](rows: Vector[A])(of: A => Boolean) = rows.count(of)
@@ -110,17 +110,17 @@ object Checks:
       ).flatten
 
   /** A recording that failed has the beginning alone. */
-  private def isRecorded(seen: Evidence): Boolean = seen.outcome match
+  private def isRecorded(seen: FlightTrace): Boolean = seen.outcome match
     case Outcome.Failed(_) => false
     case _                 => true
 
-  private def unbounded(seen: Evidence): Vector[String] =
+  private def unbounded(seen: FlightTrace): Vector[String] =
     val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =
-      if PaperDuel.isAsPublished(seen.ordeal.scenario) then RowsPerSecond + 20 * seen.vehicles.size
+      if PaperDuel.isAsPublished(seen.faultPlan.scenario) then RowsPerSecond + 20 * seen.vehicles.size
       else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(
@@ -136,16 +136,16 @@ object Checks:
   /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that goes on. The
     * paused truth does not: it ends at the first error.
     */
-  private def outOfControl(seen: Evidence): Vector[String] =
-    val due = seen.calmFrom + Ordeal.ResumesWithin
-    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.ordeal.loop == LoopKind.Paused then
+  private def outOfControl(seen: FlightTrace): Vector[String] =
+    val due = seen.calmFrom + FaultPlan.ResumesWithin
+    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused then
       Vector.empty
     else
       seen.vehicles.flatMap: vehicle =>
         val decided = seen.recording.decisions.exists(decision =>
           isFresh(seen, decision, vehicle) && decision.decidedAt < due
         )
-        val until   = seen.endedAt.min(seen.startedAt + seen.ordeal.duration)
+        val until   = seen.endedAt.min(seen.startedAt + seen.faultPlan.duration)
         val moments =
           seen.arrivals.filter(_.vehicle == vehicle).map(_.at).filter(at => at >= seen.calmFrom && at < until)
         val gaps = (due +: moments.filter(_ > due)).zip(moments.filter(_ > due) :+ until).map((from, to) =>
@@ -153,34 +153,34 @@ object Checks:
         )
         Vector(
           Option.when(!decided)(
-            s"$vehicle: nothing was decided on a new reading within ${Ordeal.ResumesWithin.toSeconds} s of calm"
+            s"$vehicle: nothing was decided on a new reading within ${FaultPlan.ResumesWithin.toSeconds} s of calm"
           ),
           Option.when(
             !moments.exists(_ < due)
-          )(s"$vehicle: no command came within ${Ordeal.ResumesWithin.toSeconds} s of calm"),
+          )(s"$vehicle: no command came within ${FaultPlan.ResumesWithin.toSeconds} s of calm"),
           gaps.find(_ > LongestGap).map(gap =>
             s"$vehicle: no command for ${gap.toSeconds.fixed(2)} s in calm"
           )
         ).flatten
 
-  private def isFresh(seen: Evidence, decision: Decision, vehicle: String): Boolean =
+  private def isFresh(seen: FlightTrace, decision: Decision, vehicle: String): Boolean =
     decision.vehicle == vehicle && decision.own.state.sentAt >= seen.calmFrom
 
-  private def restless(seen: Evidence): Vector[String] =
+  private def restless(seen: FlightTrace): Vector[String] =
     for (vehicle, drift) <- seen.vehicles.zip(seen.drifts) if drift.value > Hovering.value
-    yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in ${Evidence.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
+    yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in ${FlightTrace.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
 
   /** A flight that ended in trouble may have told the simulator in vain; it has tried for a while. */
-  private def standingStill(seen: Evidence): Vector[String] =
+  private def standingStill(seen: FlightTrace): Vector[String] =
     Option
-      .when(seen.leftPaused && seen.endedAt >= seen.calmFrom + Ordeal.ResumesWithin)(
+      .when(seen.leftPaused && seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin)(
         s"the simulator was left standing still (${seen.outcome})"
       )
       .toVector
 
   /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of it. */
-  private def notToldToHover(seen: Evidence): Vector[String] =
-    val heeded = seen.endedAt >= seen.calmFrom + Ordeal.ResumesWithin
+  private def notToldToHover(seen: FlightTrace): Vector[String] =
+    val heeded = seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin
     seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
       val lastMove = seen.arrivals.filter(_.vehicle == vehicle).map(_.at).maxOption
       val heard    = seen.lastHovers.get(vehicle)
@@ -192,7 +192,7 @@ object Checks:
       ).flatten
 
   /** What was offered to the recorder is what it has, and what is read back from its file, row by row. */
-  private def notInTheFile(seen: Evidence): Vector[String] =
+  private def notInTheFile(seen: FlightTrace): Vector[String] =
     val offered                                  = Recording(seen.recording.heading, seen.offered)
     def missing(where: String, found: Recording) = Option.when(found != offered)(
       s"${Recorded.rows(offered)} rows were offered to the recorder, ${Recorded.rows(found)} are $where" +
@@ -202,7 +202,7 @@ object Checks:
       case Right(read) => missing("in the file", read)
       case Left(error) => Some(s"the file cannot be read: ${error.message}")
 
-  private def ms(seen: Evidence, at: Instant): String = s"${at.since(seen.startedAt).toMillis.fixed(1)} ms"
+  private def ms(seen: FlightTrace, at: Instant): String = s"${at.since(seen.startedAt).toMillis.fixed(1)} ms"
 
   /** The move that flies and the one that replaces it. */
   private val MostOutstanding = 2

@@ -10,22 +10,22 @@ import skein.units.Decimals.fixed
 /** Judges what decisions were made from: whether it was the newest that the vehicles had told, and as old as was said. */
 private[torture] object KnowledgeChecks:
 
-  def violations(seen: Evidence): Vector[String] =
+  def violations(seen: FlightTrace): Vector[String] =
     val told = seen.vehicles.zip(seen.crafts.map(_.answers)).toMap
     Vector(
       misquoted(seen, told),
-      seen.ordeal.loop match
+      seen.faultPlan.loop match
         case LoopKind.Paused     => Vector.empty
         case LoopKind.Futures    => notAtOnce(seen, told)
         case LoopKind.Sequential => notAtOnce(seen, told) ++ outdated(seen, told)
-        case _ if PaperDuel.isAsPublished(seen.ordeal.scenario) => backwards(seen)
-        case _                                                  => outdated(seen, told) ++ backwards(seen)
+        case _ if PaperDuel.isAsPublished(seen.faultPlan.scenario) => backwards(seen)
+        case _                                                     => outdated(seen, told) ++ backwards(seen)
       ,
       agesWrong(seen)
     ).flatten
 
   /** What is on record of a vehicle is what it told, under the number of its question. */
-  private def misquoted(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
+  private def misquoted(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
     val states = told.map((vehicle, answers) => vehicle -> answers.map(a => a.question -> a.state).toMap)
     seen.recording.readings
       .find(reading => !states(reading.vehicle).get(reading.sequence).contains(reading.state))
@@ -35,8 +35,8 @@ private[torture] object KnowledgeChecks:
   /** No answer that the controller had is newer than the one decided upon, but for those that came within the time that
     * a loop may take to join what belongs together.
     */
-  private def outdated(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
-    val joins = seen.ordeal.loop match
+  private def outdated(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
+    val joins = seen.faultPlan.loop match
       case LoopKind.Sequential => Span.Zero
       case LoopKind.Stream     => seen.patience
       case _                   => seen.period
@@ -49,7 +49,7 @@ private[torture] object KnowledgeChecks:
             s"${decision.decidedAt.since(newer.state.receivedAt).toMillis.fixed(1)} ms"
 
   /** Nobody decides upon something older than what it has decided upon before. */
-  private def backwards(seen: Evidence): Vector[String] =
+  private def backwards(seen: FlightTrace): Vector[String] =
     val newest = scala.collection.mutable.Map.empty[(String, String), Reading]
     firstOf(seen): (decision, used) =>
       val before = newest.put((decision.vehicle, used.vehicle), used)
@@ -60,18 +60,18 @@ private[torture] object KnowledgeChecks:
         )
 
   /** What is read together is decided upon when the last of it comes. */
-  private def notAtOnce(seen: Evidence, told: Map[String, Vector[Answer]]): Vector[String] =
+  private def notAtOnce(seen: FlightTrace, told: Map[String, Vector[Answer]]): Vector[String] =
     val moments = told(seen.vehicles.last).map(_.state.receivedAt).toSet
     seen.recording.decisions
       .find(decision => !moments(decision.decidedAt))
       .map(decision => s"${where(decision)} was made when no round of readings had come")
       .toVector
 
-  private def agesWrong(seen: Evidence): Vector[String] =
+  private def agesWrong(seen: FlightTrace): Vector[String] =
     val wrong = seen.recording.decisions.iterator.flatMap: decision =>
       val now                       = decision.decidedAt
       def arrived(reading: Reading) =
-        if seen.ordeal.loop != LoopKind.Paused then now.since(reading.state.receivedAt)
+        if seen.faultPlan.loop != LoopKind.Paused then now.since(reading.state.receivedAt)
         else if isOfTwoRuns(seen, decision) then now.since(reading.state.validAt)
         else Span.Zero
       val observed  = decision.observations
@@ -85,7 +85,7 @@ private[torture] object KnowledgeChecks:
     wrong.nextOption().toVector
 
   /** Whether the simulator was started again while the readings of one step were asked for: they are of two clocks. */
-  private def isOfTwoRuns(seen: Evidence, decision: Decision): Boolean =
+  private def isOfTwoRuns(seen: FlightTrace, decision: Decision): Boolean =
     val answers =
       for
         reading <- Seq(decision.own, decision.opponent)
@@ -95,7 +95,7 @@ private[torture] object KnowledgeChecks:
     val (first, last) = (answers.map(_.sentAt).reduce(_.min(_)), answers.map(_.receivedAt).reduce(_.max(_)))
     seen.runs.exists(run => run.from >= first && run.from <= last)
 
-  private def trueAgesWrong(seen: Evidence, decision: Decision): Seq[String] =
+  private def trueAgesWrong(seen: FlightTrace, decision: Decision): Seq[String] =
     for
       told                  <- decision.trueAge.toSeq
       offset                <- trueOffset(seen, decision).toSeq
@@ -114,8 +114,8 @@ private[torture] object KnowledgeChecks:
     * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so
     * near to the one before that no answer shows the difference.
     */
-  private def trueOffset(seen: Evidence, decision: Decision): Option[Span] =
-    if seen.ordeal.loop == LoopKind.Paused then Some(Span.Zero)
+  private def trueOffset(seen: FlightTrace, decision: Decision): Option[Span] =
+    if seen.faultPlan.loop == LoopKind.Paused then Some(Span.Zero)
     else
       val runs      = seen.runs
       val unnoticed = runs.zip(runs.drop(1)).exists: (one, next) =>
@@ -132,7 +132,7 @@ private[torture] object KnowledgeChecks:
         val used = Seq(decision.own, decision.opponent).forall(_.state.sentAt >= runs(present).from)
         Option.when(settled && used)(runs(present).clockOffset)
 
-  private def firstOf(seen: Evidence)(wrong: (Decision, Reading) => Option[String]): Vector[String] =
+  private def firstOf(seen: FlightTrace)(wrong: (Decision, Reading) => Option[String]): Vector[String] =
     seen.recording.decisions.iterator
       .flatMap(decision =>
         Iterator(decision.own, decision.opponent).flatMap(used =>

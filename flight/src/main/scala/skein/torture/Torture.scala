@@ -5,24 +5,24 @@ import skein.scenario.Scenario
 import skein.settings.NamedScene
 import skein.units.*
 
-/** How one flight stood its ordeal. */
-final case class Verdict(ordeal: Ordeal, violations: Vector[String]):
+/** How one flight stood its faultPlan. */
+final case class Verdict(faultPlan: FaultPlan, violations: Vector[String]):
   def isClean: Boolean = violations.isEmpty
 
 object Torture:
 
-  /** Flies the ordeal of one seed. A flight that cannot be flown to its end is a violation, too. */
+  /** Flies the faultPlan of one seed. A flight that cannot be flown to its end is a violation, too. */
   def of(
       seed: Long,
       duration: Span,
       scenario: Option[Scenario] = None,
       scene: Option[NamedScene] = None
   ): Verdict =
-    val drawn  = Ordeal.of(seed, duration)
-    val flown  = scenario.fold(drawn)(drawn.flying)
-    val ordeal =
+    val drawn     = FaultPlan.of(seed, duration)
+    val flown     = scenario.fold(drawn)(drawn.flying)
+    val faultPlan =
       scene.orElse(NamedScene.shipped(flown.scenario.scene)).fold(flown)(in => flown.copy(scene = in))
-    Verdict(ordeal, violations(Checks.violations(TortureFlight.fly(ordeal))))
+    Verdict(faultPlan, violations(Checks.violations(TortureFlight.fly(faultPlan))))
 
   /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
   private[torture] def violations(found: => Vector[String]): Vector[String] =

@@ -7,7 +7,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.*
-import skein.flight.{Equipped, FlightRigs}
+import skein.flight.{Equipped, FlightAssembler}
 import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
@@ -17,15 +17,15 @@ import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flies a team through an [[Ordeal]] in virtual time. Client, link, server, simulator, loop and recorder are those of a
+/** Flies a team through an [[FaultPlan]] in virtual time. Client, link, server, simulator, loop and recorder are those of a
   * live flight; what is watched or spoilt is wrapped around them.
   */
 object TortureFlight:
 
   /** Flies to the end on the calling thread. */
-  def fly(ordeal: Ordeal): Evidence =
+  def fly(faultPlan: FaultPlan): FlightTrace =
     VirtualTime
-      .run(ordeal.seed, config = silent)(system => Assembly(ordeal)(using system).fly())
+      .run(faultPlan.seed, config = silent)(system => Assembly(faultPlan)(using system).fly())
       .value
 
   private def writtenAndRead(memory: MemoryRecorder): Either[RecordError, Recording] =
@@ -41,18 +41,18 @@ object TortureFlight:
     .parseString("pekko { loglevel = OFF, stdout-loglevel = OFF }")
     .withFallback(ConfigFactory.load())
 
-  private final class Assembly(ordeal: Ordeal)(using system: ActorSystem):
+  private final class Assembly(faultPlan: FaultPlan)(using system: ActorSystem):
     import system.dispatcher
 
     private val clock    = Clock.ofNanos(VirtualTime.clock(system))
-    private val scenario = ordeal.scenario.fleet
+    private val scenario = faultPlan.scenario.fleet
     private val start    = clock.now()
     private val faults   = LinkProfile
-      .symmetric(ordeal.link)
-      .copy(faults = Faults(ordeal.faults), cutsSegments = ordeal.cutsSegments)
+      .symmetric(faultPlan.link)
+      .copy(faults = Faults(faultPlan.faults), cutsSegments = faultPlan.cutsSegments)
     private val network = MemoryNetwork(
       NetworkPlan(links = Map(("controller", "simulator") -> faults)),
-      ordeal.seed,
+      faultPlan.seed,
       clock,
       TortureFlight.connectTimeout
     )
@@ -60,34 +60,34 @@ object TortureFlight:
       VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
     )
     private val address = Address("simulator", 41451)
-    private val tap     = Wiretap(
+    private val tap     = FaultyTransport(
       network.host("simulator"),
-      ordeal.meddling,
-      spared = "operator",
-      ordeal.seed,
+      faultPlan.messageFaults,
+      spared = "supervisor",
+      faultPlan.seed,
       clock,
-      start + ordeal.calmFrom
+      start + faultPlan.calmFrom
     )
-    private val operator = Operator(
+    private val supervisor = SimulatorSupervisor(
       scenario,
       SimulatorSettings(
-        WorldSettings(world, text = WorldSettings.render(world, ordeal.scenario.equipment)),
+        WorldSettings(world, text = WorldSettings.render(world, faultPlan.scenario.equipment)),
         address,
-        scene = ordeal.scene.scene
+        scene = faultPlan.scene.scene
       ),
       tap,
-      network.host("operator"),
+      network.host("supervisor"),
       clock
     )
-    private val settings = FlightRigs.rpcSettings(ordeal.loop)
-    private val rpc      = RpcClient(network.host("controller"), address, clock, settings, ordeal.seed)
-    private val client   = AirSimClient(rpc, FlightRigs.askTimeout)
+    private val settings = FlightAssembler.rpcSettings(faultPlan.loop)
+    private val rpc      = RpcClient(network.host("controller"), address, clock, settings, faultPlan.seed)
+    private val client   = AirSimClient(rpc, FlightAssembler.askTimeout)
     private val memory   = MemoryRecorder(heading)
-    private val recorder = FaultyRecorder(memory, ordeal.disk, clock, start)
+    private val recorder = FaultyRecorder(memory, faultPlan.disk, clock, start)
 
-    def fly(): Future[Evidence] =
+    def fly(): Future[FlightTrace] =
       for
-        vehicles <- operator.start(ordeal.clockAhead)
+        vehicles <- supervisor.start(faultPlan.clockAhead)
         asked = vehicles.zipWithIndex.map((vehicle, index) =>
           Multirotor(client, vehicle.name, vehicle.originNed, index)
         )
@@ -98,17 +98,17 @@ object TortureFlight:
           )
         )
         crafts = multirotors.zip(asked).map((craft, vehicle) =>
-          WatchedVehicle(Equipped.by(ordeal.scenario, craft, vehicle), clock)
+          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle), clock)
         )
         stepper      = WatchedTime(AirSimTime(client))
         loopSettings =
-          if PaperDuel.isAsPublished(ordeal.scenario) then LoopSettings().asPublished else LoopSettings()
+          if PaperDuel.isAsPublished(faultPlan.scenario) then LoopSettings().asPublished else LoopSettings()
         team   = Team(scenario, crafts, clock, recorder, loopSettings)
         flight =
-          Flight.start(ordeal.loop, team, Some(stepper), ordeal.duration, clock, recorder)
-        _         = ordeal.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
-        restarted = Future.traverse(ordeal.restarts)(restart =>
-          at(restart.at)(operator.restart(restart))
+          Flight.start(faultPlan.loop, team, Some(stepper), faultPlan.duration, clock, recorder)
+        _ = faultPlan.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
+        restarted = Future.traverse(faultPlan.restarts)(restart =>
+          at(restart.at)(supervisor.restart(restart))
         )
         pending = system.scheduler.scheduleAtFixedRate(0.seconds, 20.millis)(() => samplePending())
         outcome <- flight.outcome
@@ -117,13 +117,13 @@ object TortureFlight:
         _      <- client.close()
         _      <- restarted
         _      <- at(restOf(endedAt))(Future.unit)
-        before <- operator.positions(vehicles)
-        _      <- after(Evidence.Watched.toDuration, system.scheduler)(Future.unit)
-        later  <- operator.positions(vehicles)
-        paused <- operator.isPaused()
-        _      <- operator.stop()
-      yield Evidence(
-        ordeal,
+        before <- supervisor.positions(vehicles)
+        _      <- after(FlightTrace.Watched.toDuration, system.scheduler)(Future.unit)
+        later  <- supervisor.positions(vehicles)
+        paused <- supervisor.isPaused()
+        _      <- supervisor.stop()
+      yield FlightTrace(
+        faultPlan,
         loopSettings.window,
         loopSettings.minCommandInterval,
         loopSettings.period,
@@ -141,8 +141,8 @@ object TortureFlight:
         rpc.stats,
         memory.recording,
         recorder.offered,
-        Option.when(ordeal.isFiled)(writtenAndRead(memory)),
-        operator.runs,
+        Option.when(faultPlan.isFiled)(writtenAndRead(memory)),
+        supervisor.runs,
         before.zip(later).map((from, to) => Metres((to - from).norm)),
         stepper.calls,
         multirotors.map(_.callsBeside).sum,
@@ -158,20 +158,20 @@ object TortureFlight:
       */
     private def restOf(endedAt: Instant): Span =
       val ended = endedAt.since(start)
-      if ended > ordeal.calmFrom + Ordeal.ResumesWithin then ended + TortureFlight.ComesToRest
-      else ended.max(ordeal.calmFrom) + LoopSettings().moveDuration + TortureFlight.ComesToRest
+      if ended > faultPlan.calmFrom + FaultPlan.ResumesWithin then ended + TortureFlight.ComesToRest
+      else ended.max(faultPlan.calmFrom) + LoopSettings().moveDuration + TortureFlight.ComesToRest
 
     private def at[A](sinceStart: Span)(action: => Future[A]): Future[A] =
       after((start + sinceStart).since(clock.now()).max(Span.Zero).toDuration, system.scheduler)(action)
 
-    private def heading = Heading(
+    private def heading = RecordingHeader(
       FlightRow(
-        s"torture-${ordeal.seed}",
-        ordeal.loop.label,
-        ordeal.link.name,
-        ordeal.seed,
+        s"torture-${faultPlan.seed}",
+        faultPlan.loop.label,
+        faultPlan.link.name,
+        faultPlan.seed,
         LoopSettings().period,
-        ordeal.duration,
+        faultPlan.duration,
         "virtual",
         "built-in",
         "torture",
@@ -183,5 +183,5 @@ object TortureFlight:
 
   private val connectTimeout = Span.ofSeconds(1)
 
-  /** From 10 m/s to a hover. A move still under way would fly on for longer than this and [[Evidence.Watched]]. */
+  /** From 10 m/s to a hover. A move still under way would fly on for longer than this and [[FlightTrace.Watched]]. */
   private val ComesToRest = Span.ofSeconds(5)

@@ -32,7 +32,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     *   the text of the progress line 2 s after that
     */
   private final case class Flown(
-      landed: Landed,
+      landed: FlightResult,
       recording: Recording,
       told: Vector[(Span, String)],
       wentWrong: Span,
@@ -77,7 +77,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       var told    = Vector.empty[(Instant, String)]
       for
         server <- SimulatorServer.start(world, Stalling(network.host("simulator"), clock, () => gate), clock)
-        rigs = FlightRigs(
+        assembler = FlightAssembler(
           network.host("controller"),
           clock,
           settings(loop),
@@ -85,10 +85,10 @@ class FailureTellingSimulation extends munit.FunSuite:
           tell = line => told :+= (clock.now(), line)
         )
         plan   = settings(loop).plans.head
-        memory = MemoryRecorder(rigs.heading(plan, "virtual"))
+        memory = MemoryRecorder(assembler.heading(plan, "virtual"))
 
         faulty = Late(memory, clock, Option.when(disk)(wentWrong))
-        rig <- rigs.start(plan, faulty).map(_.fold(fail(_), identity))
+        assembly <- assembler.start(plan, faulty).map(_.fold(fail(_), identity))
         startedAt = clock.now()
         _         = faulty.startedAt = Some(startedAt)
         _     <- after(wentWrong.toDuration)(Future.unit)
@@ -97,8 +97,8 @@ class FailureTellingSimulation extends munit.FunSuite:
           after(pause.toDuration)(SimulatorServer.start(world, network.host("simulator"), clock)).map(Some(_))
         _ = gate = stall.map(clock.now() + _)
         _ <- after(Span.ofSeconds(2).toDuration)(Future.unit)
-        seen = rig.progress.text
-        landed <- rig.landed
+        seen = assembly.progress.text
+        landed <- assembly.landed
         _      <- if dies then Future.unit else server.close()
         _      <- again.fold(Future.unit)(_.close().map(_ => ()))
       yield Flown(

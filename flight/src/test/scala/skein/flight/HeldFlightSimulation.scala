@@ -36,32 +36,32 @@ class HeldFlightSimulation extends munit.FunSuite:
       .run(plan.seed): system =>
         given ActorSystem = system
         import system.dispatcher
-        val clock = Clock.ofNanos(VirtualTime.clock(system))
-        val host  = MemoryNetwork(NetworkPlan(), plan.seed, clock).host("localhost")
-        val rigs  = FlightRigs(
+        val clock     = Clock.ofNanos(VirtualTime.clock(system))
+        val host      = MemoryNetwork(NetworkPlan(), plan.seed, clock).host("localhost")
+        val assembler = FlightAssembler(
           host,
           clock,
           settings,
           simulator = None,
           workers = planning => CountedPlanWorkers(planning.searches, planning.slices)
         )
-        val recorder = MemoryRecorder(rigs.heading(plan, clockKind = "real"))
-        rigs
+        val recorder = MemoryRecorder(assembler.heading(plan, clockKind = "real"))
+        assembler
           .start(plan, recorder)
           .flatMap:
-            case Left(reason) => Future.failed(IllegalStateException(reason))
-            case Right(rig)   =>
+            case Left(reason)    => Future.failed(IllegalStateException(reason))
+            case Right(assembly) =>
               def after(span: Span)(act: => Unit) =
                 system.scheduler.scheduleOnce(span.toDuration)(act): Unit
               def pause() =
-                rig.pause("by the test")
-                rig.pause("again, which is nothing new")
+                assembly.pause("by the test")
+                assembly.pause("again, which is nothing new")
               // The paused loop waits for nothing but the simulator, and is over at once.
               val at = Span.ofSeconds(if loop == LoopKind.Paused then 0 else 3)
               if loop == LoopKind.Paused then pause() else after(at)(pause())
-              after(at + Span.ofSeconds(5))(if stopping then rig.stop("by the test")
-              else rig.continue("by the test"))
-              rig.landed.map(landed => (landed.outcome, recorder))
+              after(at + Span.ofSeconds(5))(if stopping then assembly.stop("by the test")
+              else assembly.continue("by the test"))
+              assembly.landed.map(landed => (landed.outcome, recorder))
       .value
 
   for loop <- LoopKind.values do

@@ -51,11 +51,12 @@ class MavlinkFlightLiveSuite extends munit.FunSuite:
       10.seconds
     )
     try
-      val rigs     = FlightRigs(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", port)))
+      val assembler =
+        FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", port)))
       val plan     = settings.plans.head
-      val recorder = MemoryRecorder(rigs.heading(plan, "real"))
-      val rig      = Await.result(rigs.start(plan, recorder), 3.minutes).fold(fail(_), identity)
-      val landed   = Await.result(rig.landed, 1.minute)
+      val recorder = MemoryRecorder(assembler.heading(plan, "real"))
+      val assembly = Await.result(assembler.start(plan, recorder), 3.minutes).fold(fail(_), identity)
+      val landed   = Await.result(assembly.landed, 1.minute)
       assertEquals(landed.outcome, Outcome.Completed)
       assert(recorder.recording.decisions.size > 60, s"${recorder.recording.decisions.size} decisions")
     finally
@@ -70,7 +71,7 @@ class MavlinkFlightLiveSuite extends munit.FunSuite:
       seed = 1,
       wire = Wire.Mavlink
     )
-    val rigs = FlightRigs(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", 9)))
-    val plan = settings.plans.head
-    val why  = Await.result(rigs.start(plan, MemoryRecorder(rigs.heading(plan, "real"))), 1.minute)
+    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", 9)))
+    val plan      = settings.plans.head
+    val why = Await.result(assembler.start(plan, MemoryRecorder(assembler.heading(plan, "real"))), 1.minute)
     assert(why.left.exists(_.contains("expected MAVLink systems 1, 2")), why.toString)

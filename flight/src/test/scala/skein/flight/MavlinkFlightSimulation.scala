@@ -7,7 +7,7 @@ import skein.units.*
 
 /** The duel over MAVLink, in virtual time, beside the same one over AirSim's wire. */
 class MavlinkFlightSimulation extends munit.FunSuite:
-  private def flown(wire: Wire, link: String): VirtualLanding =
+  private def flown(wire: Wire, link: String): VirtualFlightResult =
     val settings = FlySettings(
       List(LoopKind.Stream),
       List(LatencyProfile.parse(link, Left(_)).toOption.get),

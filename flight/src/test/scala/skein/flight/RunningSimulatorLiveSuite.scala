@@ -42,21 +42,21 @@ class RunningSimulatorLiveSuite extends munit.FunSuite:
         Address("127.0.0.1", 0),
         speed = 5
       )
-    def fly(rigs: FlightRigs, before: Vector[Recording]): Future[Vector[Recording]] =
+    def fly(assembler: FlightAssembler, before: Vector[Recording]): Future[Vector[Recording]] =
       if before.size == settings.plans.size then Future.successful(before)
       else
         val plan     = settings.plans(before.size)
-        val recorder = MemoryRecorder(rigs.heading(plan, "real"))
+        val recorder = MemoryRecorder(assembler.heading(plan, "real"))
         for
-          rig    <- rigs.start(plan, recorder).map(_.fold(fail(_), identity))
-          landed <- rig.landed
+          assembly <- assembler.start(plan, recorder).map(_.fold(fail(_), identity))
+          landed   <- assembly.landed
           _ = assertEquals(landed.outcome, Outcome.Completed)
-          all <- fly(rigs, before :+ recorder.recording)
+          all <- fly(assembler, before :+ recorder.recording)
         yield all
     val flown =
       for
         server <- SimulatorServer.start(world, transport, Clock.system)
-        flown  <- fly(FlightRigs(transport, Clock.system, settings, Some(server.address)), Vector.empty)
+        flown  <- fly(FlightAssembler(transport, Clock.system, settings, Some(server.address)), Vector.empty)
         _      <- server.close()
       yield flown
     flown.map: recordings =>

@@ -65,26 +65,26 @@ class RunningSimulatorSimulation extends munit.FunSuite:
         onStart: () => Unit = () => ()
     ): Future[Either[String, Vector[Recording]]] =
       server.flatMap: server =>
-        val rigs = FlightRigs(network, clock, settings, Some(server.address))
+        val assembler = FlightAssembler(network, clock, settings, Some(server.address))
         settings.plans.foldLeft(Future.successful[Either[String, Vector[Recording]]](Right(Vector.empty))):
           (before, plan) =>
             before.flatMap:
               case Left(reason)      => Future.successful(Left(reason))
-              case Right(recordings) => fly(rigs, plan, onStart).map(_.map(recordings :+ _))
+              case Right(recordings) => fly(assembler, plan, onStart).map(_.map(recordings :+ _))
 
     private def fly(
-        rigs: FlightRigs,
+        assembler: FlightAssembler,
         plan: FlightPlan,
         onStart: () => Unit
     ): Future[Either[String, Recording]] =
-      val recorder = MemoryRecorder(rigs.heading(plan, "virtual"))
-      rigs
+      val recorder = MemoryRecorder(assembler.heading(plan, "virtual"))
+      assembler
         .start(plan, recorder)
         .flatMap:
-          case Left(reason) => Future.successful(Left(s"${plan.id}: $reason"))
-          case Right(rig)   =>
+          case Left(reason)    => Future.successful(Left(s"${plan.id}: $reason"))
+          case Right(assembly) =>
             onStart()
-            rig.landed.map(landed =>
+            assembly.landed.map(landed =>
               Either.cond(
                 landed.outcome == Outcome.Completed,
                 recorder.recording,

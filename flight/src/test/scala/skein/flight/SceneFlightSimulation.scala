@@ -17,10 +17,10 @@ class SceneFlightSimulation extends munit.FunSuite:
   private def settings(loop: LoopKind, duration: Span) =
     FlySettings(List(loop), List(LatencyProfile.vpn), duration, Span.ofMillis(100), seed = 1)
 
-  private def fly(settings: FlySettings): VirtualLanding =
+  private def fly(settings: FlySettings): VirtualFlightResult =
     VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
 
-  private def contacts(flown: VirtualLanding) =
+  private def contacts(flown: VirtualFlightResult) =
     flown.recorder.recording.events.filter(_.kind == EventKind.Contact)
 
   test("a duel among trees touches them: every contact is on record, and the scene is, too"):

@@ -48,7 +48,12 @@ class SensorLiveSuite extends munit.FunSuite:
     for
       server <- SimulatorServer.start(world, TcpTransport(), Clock.system)
       client =
-        AirSimClient(RpcClient(TcpTransport(), server.address, Clock.system, FlightRigs.rpcSettings(kind)))
+        AirSimClient(RpcClient(
+          TcpTransport(),
+          server.address,
+          Clock.system,
+          FlightAssembler.rpcSettings(kind)
+        ))
       ready <-
         Preparation(client, Clock.system).place(fleet).map(_.fold(fail(_), identity))
       ports = ready.map(AirSimVehicle(_, _ => ()))

@@ -57,18 +57,18 @@ object TappedFlight:
       .run(plan.seed): system =>
         given ActorSystem = system
         import system.dispatcher
-        val clock    = Clock.ofNanos(VirtualTime.clock(system))
-        val began    = clock.now()
-        val tap      = MoveTap(MemoryNetwork(NetworkPlan(), plan.seed, clock).host("localhost"), clock)
-        val rigs     = FlightRigs(tap, clock, settings, simulator = None)
-        val recorder = MemoryRecorder(rigs.heading(plan, clockKind = "virtual"))
-        rigs
+        val clock     = Clock.ofNanos(VirtualTime.clock(system))
+        val began     = clock.now()
+        val tap       = MoveTap(MemoryNetwork(NetworkPlan(), plan.seed, clock).host("localhost"), clock)
+        val assembler = FlightAssembler(tap, clock, settings, simulator = None)
+        val recorder  = MemoryRecorder(assembler.heading(plan, clockKind = "virtual"))
+        assembler
           .start(plan, recorder)
           .flatMap:
-            case Left(reason) => Future.failed(IllegalStateException(reason))
-            case Right(rig)   =>
+            case Left(reason)    => Future.failed(IllegalStateException(reason))
+            case Right(assembly) =>
               val startedAt = clock.now()
-              rig.landed.map(_ =>
+              assembly.landed.map(_ =>
                 TappedFlight(recorder.recording, startedAt, startedAt.since(began), tap.arrivals)
               )
       .value

@@ -44,7 +44,7 @@ class FailedFlightSuite extends munit.FunSuite:
         hovering = true
         counted(craft.hover())
 
-  private final case class Landed(outcome: Outcome, crafts: Vector[Counted], recording: Recording)
+  private final case class FlightResult(outcome: Outcome, crafts: Vector[Counted], recording: Recording)
 
   /** Both vehicles decide some 20 times, then the pursuer's policy throws. */
   private def fly(
@@ -52,7 +52,7 @@ class FailedFlightSuite extends munit.FunSuite:
       error: => Throwable,
       lostHovers: Int = 0,
       link: LatencyProfile = LatencyProfile.vpn
-  ): Landed = VirtualTime
+  ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -71,7 +71,7 @@ class FailedFlightSuite extends munit.FunSuite:
       Flight
         .start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder)
         .outcome
-        .map(Landed(_, crafts, recorder.recording))
+        .map(FlightResult(_, crafts, recorder.recording))
     .value
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do

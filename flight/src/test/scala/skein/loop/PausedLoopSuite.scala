@@ -57,7 +57,7 @@ class PausedLoopSuite extends munit.FunSuite:
       steps += 1
       if steps == failing then Future.successful(lost) else stepper.continueFor(span)
 
-  private final case class Landed(
+  private final case class FlightResult(
       outcome: Outcome,
       paused: Boolean,
       hovering: Vector[Boolean],
@@ -71,7 +71,7 @@ class PausedLoopSuite extends munit.FunSuite:
       failingStep: Int = 0,
       failedHovers: Int = 0,
       failedResumes: Int = 0
-  ): Landed = VirtualTime
+  ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -87,7 +87,7 @@ class PausedLoopSuite extends munit.FunSuite:
         .outcome
         .map: outcome =>
           val recording = recorder.recording
-          Landed(
+          FlightResult(
             outcome,
             stepper.paused,
             crafts.map(_.hovering),
@@ -97,7 +97,7 @@ class PausedLoopSuite extends munit.FunSuite:
           )
     .value
 
-  private def isReleased(landed: Landed): Unit =
+  private def isReleased(landed: FlightResult): Unit =
     assert(!landed.paused, s"the simulator was left standing still: $landed")
     assertEquals(landed.hovering, Vector(true, true), landed.toString)
     assert(!landed.toldWhilePaused, s"to hover was commanded before the simulator ran again: $landed")

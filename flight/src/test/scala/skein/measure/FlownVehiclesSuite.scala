@@ -12,7 +12,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
   private val ms    = Span.ofMillis
   private val start = Instant.Epoch + Span.ofSeconds(2000)
 
-  private def heading(loop: String) = Heading(
+  private def heading(loop: String) = RecordingHeader(
     Flight("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
     Seq(
       Vehicle("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),

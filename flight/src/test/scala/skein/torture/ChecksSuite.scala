@@ -6,24 +6,24 @@ import skein.scenario.PaperDuel
 import skein.signal.Stamped
 import skein.units.*
 
-/** The checks find what they are there to find: a clean flight's evidence is forged in one thing at a time. */
+/** The checks find what they are there to find: a clean flight's trace is forged in one thing at a time. */
 class ChecksSuite extends munit.FunSuite:
 
   private val clean = TortureFlight.fly(
-    Ordeal
+    FaultPlan
       .of(10, Span.ofSeconds(8))
       .copy(
         loop = LoopKind.Stream,
         scenario = PaperDuel(),
         faults = Vector.empty,
-        meddling = Meddling.None,
+        messageFaults = MessageFaults.None,
         restarts = Vector.empty,
         disk = Disk.Sound,
         stopAt = None
       )
   )
 
-  private def found(forged: Evidence): String = Checks.violations(forged).mkString("\n")
+  private def found(forged: FlightTrace): String = Checks.violations(forged).mkString("\n")
 
   test("a flight in which nothing goes wrong is clean"):
     assertEquals(Checks.violations(clean), Vector.empty)
@@ -129,12 +129,12 @@ class ChecksSuite extends munit.FunSuite:
     val rows   = Recorded.rows(clean.recording)
     val flown  = Span.ofSeconds(rows / (2 * 325.0) - 1)
     val dense  = clean.copy(endedAt = clean.startedAt + flown)
-    val tapped = dense.copy(ordeal = clean.ordeal.copy(scenario = PaperDuel(asPublished = true)))
+    val tapped = dense.copy(faultPlan = clean.faultPlan.copy(scenario = PaperDuel(asPublished = true)))
     assert(found(dense).contains("are many for this flight"))
     assert(!found(tapped).contains("are many for this flight"), found(tapped))
 
   test("control that does not come back in calm: no decision upon something new, no command"):
-    val due = clean.calmFrom + Ordeal.ResumesWithin
+    val due = clean.calmFrom + FaultPlan.ResumesWithin
     val old = clean.recording.copy(decisions =
       clean.recording.decisions.filterNot(decision =>
         decision.own.state.sentAt >= clean.calmFrom && decision.decidedAt < due
@@ -149,7 +149,7 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(silent).contains("Evader: no command came within 3"))
     assert(!found(silent.copy(outcome = Outcome.Stopped)).contains("no command came within"))
     assert(!found(silent.copy(endedAt = due - Span.ofMillis(1))).contains("no command came within"))
-    val paused = silent.copy(ordeal = clean.ordeal.copy(loop = LoopKind.Paused))
+    val paused = silent.copy(faultPlan = clean.faultPlan.copy(loop = LoopKind.Paused))
     assert(!found(paused).contains("no command came within"))
 
   test("a simulator that is left standing still by a flight that had time to let it run"):
@@ -183,7 +183,7 @@ class ChecksSuite extends munit.FunSuite:
       Vector(Metres(0.1), Metres(18))
     )).contains("Pursuer flies on after the end: 18.0 m in 4 s"))
 
-  private def withDecision(number: Int)(change: Decision => Decision): Evidence =
+  private def withDecision(number: Int)(change: Decision => Decision): FlightTrace =
     val decisions = clean.recording.decisions
     val recording = clean.recording.copy(decisions = decisions.updated(number, change(decisions(number))))
     clean.copy(recording = recording)
@@ -194,9 +194,9 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(withDecision(60)(_.copy(own = older))).contains("and had the newer"))
 
   test("a decision upon a reading that is older than what was decided upon before"):
-    val published = clean.ordeal.copy(scenario = PaperDuel(asPublished = true))
+    val published = clean.faultPlan.copy(scenario = PaperDuel(asPublished = true))
     val older     = clean.recording.decisions(20).own
-    val forged    = withDecision(60)(_.copy(own = older)).copy(ordeal = published)
+    val forged    = withDecision(60)(_.copy(own = older)).copy(faultPlan = published)
     assert(found(forged).contains("after the newer"))
 
   test(

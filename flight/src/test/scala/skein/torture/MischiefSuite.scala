@@ -10,29 +10,29 @@ import skein.units.*
 class MischiefSuite extends munit.FunSuite:
   override val munitTimeout: Duration = 3.minutes
 
-  private def flown(meddling: Meddling): Evidence =
-    val ordeal = Ordeal
+  private def flown(messageFaults: MessageFaults): FlightTrace =
+    val faultPlan = FaultPlan
       .of(11, Span.ofSeconds(8))
       .copy(
         loop = LoopKind.Stream,
         scenario = PaperDuel(),
         faults = Vector.empty,
-        meddling = meddling,
+        messageFaults = messageFaults,
         restarts = Vector.empty,
         disk = Disk.Sound,
         stopAt = None
       )
-    val seen = TortureFlight.fly(ordeal)
-    assertEquals(Checks.violations(seen), Vector.empty, meddling.toString)
+    val seen = TortureFlight.fly(faultPlan)
+    assertEquals(Checks.violations(seen), Vector.empty, messageFaults.toString)
     assertEquals(seen.outcome, Outcome.Completed)
     seen
 
-  private def troubles(seen: Evidence) =
+  private def troubles(seen: FlightTrace) =
     seen.recording.events.filter(event =>
       Set(EventKind.Refused, EventKind.TimedOut, EventKind.Disconnected)(event.kind)
     )
 
-  private lazy val calm = flown(Meddling.None)
+  private lazy val calm = flown(MessageFaults.None)
 
   test("without any, every call is answered on the two connections that it takes"):
     val stats = calm.stats
@@ -47,49 +47,50 @@ class MischiefSuite extends munit.FunSuite:
       calm.mostPending.toString
     )
 
-  private def mischief(what: String, meddling: Meddling)(shows: Evidence => Boolean): Unit = test(what):
-    val seen = flown(meddling)
-    assert(shows(seen), seen.stats.toString)
-    val last = troubles(seen).map(_.at).maxOption.getOrElse(seen.startedAt)
-    assert(
-      last < seen.calmFrom + Ordeal.ResumesWithin,
-      s"trouble ${last.since(seen.calmFrom).toSeconds} s into the calm"
-    )
+  private def mischief(what: String, messageFaults: MessageFaults)(shows: FlightTrace => Boolean): Unit =
+    test(what):
+      val seen = flown(messageFaults)
+      assert(shows(seen), seen.stats.toString)
+      val last = troubles(seen).map(_.at).maxOption.getOrElse(seen.startedAt)
+      assert(
+        last < seen.calmFrom + FaultPlan.ResumesWithin,
+        s"trouble ${last.since(seen.calmFrom).toSeconds} s into the calm"
+      )
 
   mischief(
     "late answers are overtaken, and come when nobody waits",
-    Meddling(late = 0.3, lateBy = Span.ofSeconds(1.5))
+    MessageFaults(late = 0.3, lateBy = Span.ofSeconds(1.5))
   ): seen =>
     seen.stats.timedOut > 0 && seen.stats.late > 0
 
   mischief(
     "an answer that comes twice is known at the second time, one in five as is meant",
-    Meddling(doubled = 0.2)
+    MessageFaults(doubled = 0.2)
   ): seen =>
     val answered =
-      seen.stats.answered * seen.calmFrom.since(seen.startedAt).toSeconds / seen.ordeal.duration.toSeconds
+      seen.stats.answered * seen.calmFrom.since(seen.startedAt).toSeconds / seen.faultPlan.duration.toSeconds
     val meant = 0.2 * answered
     (seen.stats.unexpected - meant).abs < 4 * math.sqrt(0.8 * meant) && seen.stats.timedOut == 0
 
-  mischief("strays are no answers", Meddling(stray = 0.5)): seen =>
+  mischief("strays are no answers", MessageFaults(stray = 0.5)): seen =>
     seen.stats.unexpected + seen.stats.ignored > 10 && seen.stats.ignored > 0 && seen.stats.unexpected > 0
 
-  mischief("garbage ends its connection, and another is made", Meddling(garbage = 0.05)): seen =>
+  mischief("garbage ends its connection, and another is made", MessageFaults(garbage = 0.05)): seen =>
     seen.stats.disconnected > 0 && seen.stats.connected > calm.stats.connected
 
-  mischief("a move under an unknown name is refused", Meddling(refused = 0.4)): seen =>
+  mischief("a move under an unknown name is refused", MessageFaults(refused = 0.4)): seen =>
     seen.stats.refused > 0 && seen.arrivals.size < seen.crafts.map(_.sendings.size).sum
 
-  mischief("a lost answer is missed after its time", Meddling(lost = 0.2)): seen =>
+  mischief("a lost answer is missed after its time", MessageFaults(lost = 0.2)): seen =>
     seen.stats.timedOut > 0 && seen.stats.late == 0 && seen.stats.disconnected == 0
 
-  mischief("an answer of another type is an error on record, not a reading", Meddling(nonsense = 0.3)):
+  mischief("an answer of another type is an error on record, not a reading", MessageFaults(nonsense = 0.3)):
     seen =>
       seen.recording.readings.size < seen.crafts.map(_.reads.begun).sum && seen.stats.timedOut == 0
 
   test("all seeds asked for are flown, each once, with several at once"):
     var told = Vector.empty[Long]
-    Torture.all(Iterator(1L, 2L, 3L, 4L), Ordeal.Shortest, threads = 2)(verdict =>
-      told :+= verdict.ordeal.seed
+    Torture.all(Iterator(1L, 2L, 3L, 4L), FaultPlan.Shortest, threads = 2)(verdict =>
+      told :+= verdict.faultPlan.seed
     )
     assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L))

@@ -28,32 +28,32 @@ class TortureSimulation extends munit.FunSuite:
       threads = Runtime.getRuntime.availableProcessors
     ): verdict =>
       if !verdict.isClean then
-        val again = s"./skein torture --first ${verdict.ordeal.seed} --seeds 1 --duration 8s"
-        failed :+= (verdict.ordeal.toString +: verdict.violations :+ again).mkString("\n  ")
+        val again = s"./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration 8s"
+        failed :+= (verdict.faultPlan.toString +: verdict.violations :+ again).mkString("\n  ")
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
 
   test("a disk that is full when the last answers come has failed the flight"):
-    val full   = Disk.Fails(duration - Span.ofMillis(8))
-    val ordeal = Ordeal.of(seed = 1, duration).copy(
+    val full      = Disk.Fails(duration - Span.ofMillis(8))
+    val faultPlan = FaultPlan.of(seed = 1, duration).copy(
       loop = LoopKind.Futures,
       link = LatencyProfile.vpn,
       faults = Vector.empty,
-      meddling = Meddling.None,
+      messageFaults = MessageFaults.None,
       restarts = Vector.empty,
       disk = full,
       stopAt = None
     )
-    val seen = TortureFlight.fly(ordeal)
+    val seen = TortureFlight.fly(faultPlan)
     assertEquals(
       seen.outcome,
       Outcome.Failed("cannot write to recording flight.duckdb: the disk is full"),
-      ordeal.toString
+      faultPlan.toString
     )
-    assertEquals(Checks.violations(seen), Vector.empty, ordeal.toString)
+    assertEquals(Checks.violations(seen), Vector.empty, faultPlan.toString)
 
   test("the same seed gives the same flight"):
     for seed <- Seq(3L, 11L) do
-      val Seq(one, other) = Seq.fill(2)(TortureFlight.fly(Ordeal.of(seed, duration)))
+      val Seq(one, other) = Seq.fill(2)(TortureFlight.fly(FaultPlan.of(seed, duration)))
       assertEquals(one.arrivals, other.arrivals, s"seed $seed")
       assertEquals(one.recording, other.recording, s"seed $seed")
       assertEquals(one.stats, other.stats, s"seed $seed")

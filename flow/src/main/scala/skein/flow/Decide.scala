@@ -28,19 +28,19 @@ object Decide:
     * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted. '''Cancels
     * when''' downstream cancels.
     */
-  def within[M, O, D](deadline: Span, otherwise: Otherwise[M, O, D], start: M)(
+  def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M)(
       policy: (M, O) => Future[(M, D)]
-  )(using system: ActorSystem): Flow[O, Timely[D], NotUsed] =
+  )(using system: ActorSystem): Flow[O, DeadlineResult[D], NotUsed] =
     import system.dispatcher
 
-    def answer(working: Future[Any], ask: => Future[(M, D)]): (Future[Any], Future[Either[Miss, (M, D)]]) =
-      if !working.isCompleted then (working, Future.successful(Left(Miss.Busy)))
+    def answer(working: Future[Any], ask: => Future[(M, D)]): (Future[Any], Future[Either[Overrun, (M, D)]]) =
+      if !working.isCompleted then (working, Future.successful(Left(Overrun.Busy)))
       else
         val asked   = Try(ask).fold(Future.failed, identity)
         val decided = asked.transform:
           case Success(decision) => Success(Right(decision))
-          case Failure(cause)    => Success(Left(Miss.Failed(cause)))
-        val late = after(deadline.toDuration, system.scheduler)(Future.successful(Left(Miss.Late)))
+          case Failure(cause)    => Success(Left(Overrun.Failed(cause)))
+        val late = after(deadline.toDuration, system.scheduler)(Future.successful(Left(Overrun.Late)))
         (asked, Future.firstCompletedOf(Seq(decided, late)))
 
     Flow[O]
@@ -58,20 +58,21 @@ object Decide:
       memory: M,
       last: Option[D],
       working: Future[Any],
-      result: Option[Timely[D]]
+      result: Option[DeadlineResult[D]]
   ):
     def next[O](
         working: Future[Any],
         observation: O,
-        answer: Either[Miss, (M, D)],
-        otherwise: Otherwise[M, O, D]
+        answer: Either[Overrun, (M, D)],
+        otherwise: OnOverrun[M, O, D]
     ): Turn[M, D] = answer match
-      case Right((memory, decision)) => Turn(memory, Some(decision), working, Some(Timely.Decided(decision)))
-      case Left(miss)                =>
+      case Right((memory, decision)) =>
+        Turn(memory, Some(decision), working, Some(DeadlineResult.Decided(decision)))
+      case Left(miss) =>
         val (kept, instead) = otherwise match
-          case Otherwise.Hold()      => (memory, None)
-          case Otherwise.Repeat()    => (memory, last)
-          case Otherwise.Ask(policy) =>
+          case OnOverrun.Hold()      => (memory, None)
+          case OnOverrun.Repeat()    => (memory, last)
+          case OnOverrun.Ask(policy) =>
             val (memory, decision) = policy(this.memory, observation)
             (memory, Some(decision))
-        Turn(kept, instead.orElse(last), working, Some(Timely.Missed(miss, instead)))
+        Turn(kept, instead.orElse(last), working, Some(DeadlineResult.Missed(miss, instead)))

@@ -14,7 +14,7 @@ class DecideSuite extends munit.FunSuite:
   /** Each decision with its time in ms, of a policy that answers observation n with 10 n and how
     * many decisions came before, after its delay; a negative one makes it throw.
     */
-  private def decided(otherwise: Otherwise[Int, Int, Int], delaysMs: Int*): Seq[(Long, Timely[Int])] =
+  private def decided(otherwise: OnOverrun[Int, Int, Int], delaysMs: Int*): Seq[(Long, DeadlineResult[Int])] =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem                                  = system
       val clock                                          = Clock.ofNanos(VirtualTime.clock(system))
@@ -32,37 +32,37 @@ class DecideSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     .value
 
-  import Timely.*
+  import DeadlineResult.*
 
   test("a policy that answers in time decides"):
-    assertEquals(decided(Otherwise.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
+    assertEquals(decided(OnOverrun.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
 
   test("a late policy is not waited for, nor asked again until it has answered; its late answer is not used"):
     assertEquals(
-      decided(Otherwise.Hold(), 10, 250, 10, 10, 10),
+      decided(OnOverrun.Hold(), 10, 250, 10, 10, 10),
       Seq(
         10L  -> Decided(0),
-        140L -> Missed(Miss.Late, None),
-        200L -> Missed(Miss.Busy, None),
-        300L -> Missed(Miss.Busy, None),
+        140L -> Missed(Overrun.Late, None),
+        200L -> Missed(Overrun.Busy, None),
+        300L -> Missed(Overrun.Busy, None),
         410L -> Decided(41)
       )
     )
 
   test("the last decision is repeated; before the first there is none"):
     assertEquals(
-      decided(Otherwise.Repeat(), 50, 10, 50, 10).map(_._2),
-      Seq(Missed(Miss.Late, None), Decided(10), Missed(Miss.Late, Some(10)), Decided(31))
+      decided(OnOverrun.Repeat(), 50, 10, 50, 10).map(_._2),
+      Seq(Missed(Overrun.Late, None), Decided(10), Missed(Overrun.Late, Some(10)), Decided(31))
     )
 
   test("the other policy decides on the observation that was missed, with the same memory"):
     assertEquals(
-      decided(Otherwise.Ask((count, n) => (count + 1, -n)), 10, 150, 10, 10).map(_._2),
-      Seq(Decided(0), Missed(Miss.Late, Some(-1)), Missed(Miss.Busy, Some(-2)), Decided(33))
+      decided(OnOverrun.Ask((count, n) => (count + 1, -n)), 10, 150, 10, 10).map(_._2),
+      Seq(Decided(0), Missed(Overrun.Late, Some(-1)), Missed(Overrun.Busy, Some(-2)), Decided(33))
     )
 
   test("a policy that fails, or throws, has missed too, and the flow goes on"):
     assertEquals(
-      decided(Otherwise.Repeat(), 10, -1, 10),
-      Seq(10L -> Decided(0), 100L -> Missed(Miss.Failed(failure), Some(0)), 210L -> Decided(21))
+      decided(OnOverrun.Repeat(), 10, -1, 10),
+      Seq(10L -> Decided(0), 100L -> Missed(Overrun.Failed(failure), Some(0)), 210L -> Decided(21))
     )

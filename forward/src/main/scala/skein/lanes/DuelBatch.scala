@@ -9,7 +9,7 @@ import skein.simd.LaneMath
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes with every model of a lag
   * and with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with these models under `stream`,
   * `sequential` and `futures` ([[LoopDuelKernel]], and [[StreamDuelKernel]] where it can). Other worlds' quadrotors fly by lanes under the scalar loops
-  * ([[QuadrotorFleet]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the
+  * ([[QuadrotorBatch]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the
   * world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
   * One call at a time.
   *
@@ -38,7 +38,7 @@ final class DuelBatch(
       case _ if plant.isLeft                             => scalar
       case (stream: LoopTiming.Stream, reduced: Reduced) =>
         StreamFlyer(duel, stream, reduced, LoopFlyer(duel, timing, model, scalar))
-      case (_, quadrotor: QuadrotorResponse) => QuadrotorFleet(duel, timing, quadrotor)
+      case (_, quadrotor: QuadrotorResponse) => QuadrotorBatch(duel, timing, quadrotor)
       case _                                 => LoopFlyer(duel, timing, model, scalar)
     val together: DuelFlyer = lanes match
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)

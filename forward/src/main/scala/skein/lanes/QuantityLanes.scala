@@ -2,7 +2,7 @@ package skein.lanes
 
 import java.util.concurrent.CopyOnWriteArrayList
 import skein.formula.{Angles, Formula, Node, Trace, Untraceable}
-import skein.scenario.{Places, Quantity}
+import skein.scenario.{Positions, Quantity}
 
 /** How quantities are computed in many worlds at once, compiled from their methods [[Quantity.of]]: several of one
   * view, together. Quantities of one form differ in numbers alone.
@@ -82,5 +82,5 @@ private[lanes] object QuantityLanes:
     quantity,
     "of",
     Seq("northM", "eastM", "downM").map(field => s"places.$field" -> vehicles).toMap,
-    Some(Seq(classOf[Places]))
+    Some(Seq(classOf[Positions]))
   )

@@ -5,7 +5,7 @@ import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
 import skein.policy.TeamPolicy
-import skein.scenario.{Places, Reduction}
+import skein.scenario.{Positions, Reduction}
 import skein.simd.LaneMath
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and quantities are
@@ -165,7 +165,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: VelocityRespons
       override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
         northM(vehicle) = x; eastM(vehicle) = y
         if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
-          val places = Places(IArray.from(northM), IArray.from(eastM), downM)
+          val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
           for (each, found) <- candidate.judged.zip(values) if each.counts(timeS) do
             found += each.quantity.of(places)
     rollout.fly(key, observer = observer): Unit

@@ -16,7 +16,7 @@ trait Evaluator:
     * @param episodes
     *   numbers of the episodes, at least one
     */
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally]
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats]
 
   /** So many candidates take no longer than one. */
   def sideBySide: Int = 1
@@ -29,7 +29,7 @@ trait Evaluator:
   def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range
-  ): Option[Vector[Tally]] =
+  ): Option[Vector[RunningStats]] =
     val all = tallies(candidates, episodes)
     Option.when(!isCancelled())(all)
 
@@ -48,14 +48,16 @@ trait ValueEvaluator extends Evaluator:
       episodes: Range
   ): Option[Vector[Array[Double]]]
 
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     talliesUnless(() => false)(candidates, episodes).get
 
   override def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
       episodes: Range
-  ): Option[Vector[Tally]] =
-    valuesUnless(isCancelled)(candidates, episodes).map(_.map(values => Tally.of(values.length)(values(_))))
+  ): Option[Vector[RunningStats]] =
+    valuesUnless(isCancelled)(candidates, episodes).map(_.map(values =>
+      RunningStats.of(values.length)(values(_))
+    ))
 
 /** Flies a family's candidates against one opponent in [[DuelBatch]].
   *
@@ -124,14 +126,14 @@ final class TrajectoryEvaluator(
 )(value: Trajectory => Double)
     extends Evaluator:
 
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     candidates.map: candidate =>
       val rollout = Rollout(duel(candidate), timing, link, model)
       val values  = episodes.map: episode =>
         val path    = Trajectory.Builder()
         val outcome = rollout.fly(WorldRandom.key(seed, 0, episode), onScore = path)
         value(path.result(outcome))
-      Tally.of(values.size)(values)
+      RunningStats.of(values.size)(values)
 
 /** An episode as it was flown: positions, m, once a period.
   *

@@ -19,7 +19,7 @@ import skein.units.*
 final case class LatencyBudget(
     meansMs: Vector[Double],
     jittersMs: Vector[Double],
-    cells: Vector[Vector[Option[Tally]]],
+    cells: Vector[Vector[Option[RunningStats]]],
     truth: Double,
     per: Double
 ):

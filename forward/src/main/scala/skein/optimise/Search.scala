@@ -4,7 +4,7 @@ import skein.policy.SearchSpace
 import skein.signal.{NormalQuantile, SplitMix64}
 
 /** A candidate and what it came to. */
-final case class Scored(candidate: Vector[Double], tally: Tally)
+final case class Scored(candidate: Vector[Double], tally: RunningStats)
 
 /** Where a search stands: a value, which can be written down and gone on from.
   *
@@ -15,7 +15,12 @@ final case class Scored(candidate: Vector[Double], tally: Tally)
   * @param flown
   *   episodes
   */
-final case class SearchState(course: Course, results: Vector[Tally], leaders: Vector[Scored], flown: Long):
+final case class SearchState(
+    course: Course,
+    results: Vector[RunningStats],
+    leaders: Vector[Scored],
+    flown: Long
+):
   def isDone: Boolean      = course == Course.Ended
   def best: Option[Scored] = leaders.headOption
 
@@ -183,7 +188,7 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
 
   private def playOff(leaders: Vector[Scored], centre: Option[Vector[Double]]): Course =
     val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
-    Course.PlayOff(0, candidates.map(Scored(_, Tally.empty)))
+    Course.PlayOff(0, candidates.map(Scored(_, RunningStats.empty)))
 
   /** Small is good; what is no number is worst. */
   private def cost(scored: Scored): Double =

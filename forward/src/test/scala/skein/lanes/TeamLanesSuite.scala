@@ -41,7 +41,7 @@ class TeamLanesSuite extends munit.FunSuite:
       all.agents.zipWithIndex.map((agent, i) => agent.copy(startY = agent.startY + 0.3 * i * i))
     )
 
-  /** Places of all vehicles at every score, by world. */
+  /** Positions of all vehicles at every score, by world. */
   private final class PlacesByWorld(count: Int) extends TimetableScores:
     val places: ArrayBuffer[Array[(Double, Double)]] = ArrayBuffer.empty
     def start(): Unit                                = places.clear()
@@ -182,7 +182,7 @@ class TeamLanesSuite extends munit.FunSuite:
 // As docs/guides/search.md has it.
 /** How far the vehicles are from their middle, on average, m. */
 case object Spread extends Quantity:
-  def of(places: Places): Double =
+  def of(places: Positions): Double =
     val (north, east) = (mean(places.northM), mean(places.eastM))
     var sum           = 0.0
     for vehicle <- 0 until places.count do sum += places.distanceM(vehicle, north, east)

@@ -18,7 +18,7 @@ class LatencyBudgetSuite extends munit.FunSuite:
   private def budget(values: Vector[Option[Double]]): LatencyBudget = LatencyBudget(
     Vector(0.0, 20.0, 40.0, 60.0),
     Vector(0.0),
-    Vector(values.map(_.map(Tally(1, _, 0)))),
+    Vector(values.map(_.map(RunningStats(1, _, 0)))),
     truth = 10,
     per = 10
   )

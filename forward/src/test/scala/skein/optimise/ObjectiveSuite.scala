@@ -70,8 +70,8 @@ class ObjectiveSuite extends munit.FunSuite:
 
   test("tallies of parts make the tally of the whole"):
     val values = Vector.tabulate(20)(i => math.sin(i) * i)
-    val whole  = Tally.of(20)(values)
-    val parts  = Tally.of(7)(values) + Tally.of(13)(i => values(i + 7))
+    val whole  = RunningStats.of(20)(values)
+    val parts  = RunningStats.of(7)(values) + RunningStats.of(13)(i => values(i + 7))
     assertEquals(parts.count, 20)
     assertEqualsDouble(parts.mean, whole.mean, 1e-12)
     assertEqualsDouble(parts.sd, whole.sd, 1e-12)

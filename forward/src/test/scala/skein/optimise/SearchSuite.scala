@@ -18,7 +18,7 @@ class SearchSuite extends munit.FunSuite:
   /** A bowl around (1, -0.5) whose episodes are noisy, all candidates alike but for a little of their own. */
   private val bowl: Evaluator = (candidates, episodes) =>
     candidates.map: c =>
-      Tally.of(episodes.size): i =>
+      RunningStats.of(episodes.size): i =>
         depth(c) + 0.1 * (SplitMix64(episodes(i) * 31L + c.hashCode).nextDouble() - 0.5)
 
   private val hill: Evaluator = (candidates, episodes) =>
@@ -84,7 +84,7 @@ class SearchSuite extends munit.FunSuite:
   test("the play-off's winner is measured on episodes on which no one was chosen"):
     val seen      = Set.newBuilder[Int]
     val evaluator = new Evaluator:
-      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
         if episodes.head >= Search.PlayOffFrom then seen ++= episodes
         bowl.tallies(candidates, episodes)
     val found = Search.run(space, SearchMethod.Random(200, 4), Direction.Minimise, 1, evaluator).head
@@ -93,7 +93,7 @@ class SearchSuite extends munit.FunSuite:
   test("a race spends most episodes on the good candidates"):
     var flown     = Map.empty[Vector[Double], Int].withDefaultValue(0)
     val evaluator = new Evaluator:
-      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[Tally] =
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
         if episodes.head < Search.PlayOffFrom then
           for c <- candidates do flown = flown.updated(c, flown(c) + episodes.size)
         bowl.tallies(candidates, episodes)

@@ -58,7 +58,7 @@ object DuckDbRecorder:
     */
   def open(
       file: Path,
-      heading: Heading,
+      heading: RecordingHeader,
       capacity: Int = defaultCapacity,
       beside: Vector[RowSink] = Vector.empty
   )(using

@@ -12,7 +12,7 @@ import skein.mcap.file.ChannelSink
   * Only until the first decision has estimated the offset between the clocks, poses are placed as if the first reading had
   * taken no time. The file can be read up to its last second should the process end.
   */
-final class McapRowSink private (channel: FileChannel, file: Path, heading: Heading) extends RowSink:
+final class McapRowSink private (channel: FileChannel, file: Path, heading: RecordingHeader) extends RowSink:
   private val mcap = new McapWriter(ChannelSink(channel), McapRecording.options)
 
   @volatile private var failed = Option.empty[String]
@@ -53,7 +53,7 @@ object McapRowSink:
   private val FlushEvery = 20
 
   /** Makes the file, which must not be there yet. */
-  def open(file: Path, heading: Heading): Either[RecordError, McapRowSink] =
+  def open(file: Path, heading: RecordingHeader): Either[RecordError, McapRowSink] =
     if Files.exists(file) then Left(RecordError.AlreadyExists(file))
     else
       try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading))

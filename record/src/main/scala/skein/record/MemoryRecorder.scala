@@ -9,7 +9,8 @@ import scala.concurrent.{Future, Promise}
   * @param capacity
   *   records it takes; one more is a failure
   */
-final class MemoryRecorder(heading: Heading, capacity: Int = MemoryRecorder.defaultCapacity) extends Recorder:
+final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecorder.defaultCapacity)
+    extends Recorder:
   private val kept   = ArrayBuffer.empty[Record]
   private var closed = false
   private val failed = Promise[RecordError]()

@@ -89,7 +89,7 @@ object PostgresRowSink:
     * @return
     *   or why not, without the password
     */
-  def open(url: String, heading: Heading): Either[String, PostgresRowSink] =
+  def open(url: String, heading: RecordingHeader): Either[String, PostgresRowSink] =
     for
       target     <- PostgresAddress.parse(url)
       connection <- attempt(target, target.connect())

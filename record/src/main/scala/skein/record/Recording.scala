@@ -2,7 +2,7 @@ package skein.record
 
 /** A recorded flight, sorted by kind; each kind in the order in which it was recorded. */
 final case class Recording(
-    heading: Heading,
+    heading: RecordingHeader,
     readings: Vector[Reading] = Vector.empty,
     decisions: Vector[Decision] = Vector.empty,
     sightings: Vector[Sighting] = Vector.empty,
@@ -21,7 +21,7 @@ final case class Recording(
 
 object Recording:
 
-  def apply(heading: Heading, records: Seq[Record]): Recording =
+  def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
       heading,
       records.collect { case reading: Reading => reading }.toVector,

@@ -45,7 +45,7 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 private[record] object RecordingFile:
 
   /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the first. */
-  def create(file: Path, heading: Heading): Either[RecordError, RecordingFile] =
+  def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
     if Files.exists(file) then Left(RecordError.AlreadyExists(file))
     else
       attempt(RecordError.CannotCreate(file, _)):

@@ -14,7 +14,7 @@ object RecordingReader:
         .attempt(RecordError.NotARecording(file, _)):
           for flight <- Table.flight.read(connection).headOption
           yield Recording(
-            Heading(flight, Table.vehicle.read(connection), Table.parameter.read(connection)),
+            RecordingHeader(flight, Table.vehicle.read(connection), Table.parameter.read(connection)),
             Table.reading.read(connection),
             Table.decision.read(connection),
             Table.sighting.read(connection),

@@ -29,7 +29,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite:
       Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
   )
 
-  private def opened(heading: Heading) = PostgresRowSink.open(url, heading).fold(fail(_), identity)
+  private def opened(heading: RecordingHeader) = PostgresRowSink.open(url, heading).fold(fail(_), identity)
 
   private def heading(id: String) = Samples.heading.copy(flight = Samples.heading.flight.copy(id = id))
 

@@ -6,7 +6,7 @@ import skein.units.*
 /** Records with a different value in every field. */
 object Samples:
 
-  val heading: Heading = Heading(
+  val heading: RecordingHeader = RecordingHeader(
     Flight(
       id = "stream-vpn",
       loop = "stream",

@@ -158,7 +158,7 @@ final class World(
   private def askPilots(): Unit =
     for (vehicle, pilot) <- pilots; setpoint <- pilot.turn(vehicles(vehicle), clock) do
       vehicles(vehicle).command(setpoint, clock)
-    pilotAt = clock + Move.Period
+    pilotAt = clock + PathFollowing.Period
 
   private def stepTo(to: Instant): Unit =
     while nextStep <= to do

@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{FlightMessage, FlightTopics, Heading, Topic}
+import skein.record.{FlightMessage, FlightTopics, RecordingHeader, Topic}
 import skein.units.{Instant, Span}
 
 /** Something besides the records that is shown of a flight, asked for now and then.
@@ -13,7 +13,7 @@ final case class Gauge(topic: Topic, every: Span, json: () => String)
 /** A flight while it flies. Its records come by `feed`.
   */
 final class LiveShow(
-    heading: Heading,
+    heading: RecordingHeader,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
     limits: Limits = Limits(),
@@ -50,7 +50,7 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
-  private def topics(heading: Heading) = FlightTopics.all(heading.vehicles.map(_.name).toVector)
+  private def topics(heading: RecordingHeader) = FlightTopics.all(heading.vehicles.map(_.name).toVector)
 
   /** Records of one turn: so that no turn lasts for long. */
   private val MostAtOnce = 8192

@@ -28,10 +28,10 @@ object Equivalent:
       "a file holds one flight"
     ),
     Equivalent("TeamPlanning.scala", "if sinceDecisionS > 0 then", ">", ">=", "over 0 it is infinite, too"),
-    Equivalent("Ordeal.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
-    Equivalent("Ordeal.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
-    Equivalent("Ordeal.scala", "random.nextDouble() < 0.6", "<", "<=", Never),
-    Equivalent("Ordeal.scala", "random.nextDouble() < p", "<", "<=", Never),
+    Equivalent("FaultPlan.scala", "added.nextDouble() < 0.3", "<", "<=", Never),
+    Equivalent("FaultPlan.scala", "added.nextDouble() < 0.1", "<", "<=", Never),
+    Equivalent("FaultPlan.scala", "random.nextDouble() < 0.6", "<", "<=", Never),
+    Equivalent("FaultPlan.scala", "random.nextDouble() < p", "<", "<=", Never),
     Equivalent("LatencySampler.scala", "random.nextDouble() < busyShare", "<", "<=", Never),
     Equivalent(
       "Quantity.scala",
@@ -54,8 +54,8 @@ object Equivalent:
       "last",
       "one measure of several flights"
     ),
-    Equivalent("Ordeal.scala", "count < 20", "+", "-", "twenty troubles in a row are as good as never drawn"),
-    Equivalent("Wiretap.scala", "Arr(Int32(1), Int32(2))", "1", "2", "any message that is no answer will do"),
+    Equivalent("FaultPlan.scala", "count < 20", "+", "-", "twenty troubles in a row are as good as never drawn"),
+    Equivalent("FaultyTransport.scala", "Arr(Int32(1), Int32(2))", "1", "2", "any message that is no answer will do"),
     Equivalent(
       "Replay.scala",
       "case (missing, _)",

@@ -11,10 +11,10 @@ import skein.vehicle.{Environment, Quadrotor}
   * how the scalar quadrotor ([[QuadrotorResponse]]) meets them too, so that only the flight itself is in floats; loops,
   * delays and policies, of any kind, are the scalar reference's. Mutable.
   */
-private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: QuadrotorResponse)
+private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: QuadrotorResponse)
     extends DuelFlyer:
-  import QuadrotorFleet.*
-  val batch: Int = QuadrotorFleet.Worlds
+  import QuadrotorBatch.*
+  val batch: Int = QuadrotorBatch.Worlds
 
   private val kernel    = QuadrotorKernel()
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
@@ -106,7 +106,7 @@ private final class QuadrotorFleet(duel: Duel, timing: LoopTiming, model: Quadro
     private def along(from: Double, speed: Double, acceleration: Double): Double =
       from + speed * sinceStep + acceleration * (sinceStep * sinceStep / 2)
 
-private object QuadrotorFleet:
+private object QuadrotorBatch:
   private val Vehicles = 2
 
   /** Worlds flown together. */

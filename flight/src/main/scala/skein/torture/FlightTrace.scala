@@ -26,7 +26,7 @@ import skein.units.*
   * @param runs
   *   of the simulator
   * @param drifts
-  *   how far each vehicle got within [[Evidence.Watched]], some time after the end
+  *   how far each vehicle got within [[FlightTrace.Watched]], some time after the end
   * @param steps
   *   calls that let the simulator's time run in steps
   * @param callsBeside
@@ -34,8 +34,8 @@ import skein.units.*
   * @param leftPaused
   *   whether the simulator stood still some time after the end
   */
-final case class Evidence(
-    ordeal: Ordeal,
+final case class FlightTrace(
+    faultPlan: FaultPlan,
     window: Int,
     minCommandInterval: Span,
     period: Span,
@@ -60,8 +60,8 @@ final case class Evidence(
     callsBeside: Int,
     leftPaused: Boolean
 ):
-  def calmFrom: Instant = startedAt + ordeal.calmFrom
+  def calmFrom: Instant = startedAt + faultPlan.calmFrom
 
-object Evidence:
+object FlightTrace:
   /** How long the vehicles are watched after the end. */
   val Watched: Span = Span.ofSeconds(4)

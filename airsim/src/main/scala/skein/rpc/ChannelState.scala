@@ -7,8 +7,8 @@ import skein.link.Address
 import skein.units.*
 import upack.{Msg, Null}
 
-/** What a [[LaneState]] has done by whoever owns the sockets. */
-private[rpc] trait LaneEffects:
+/** What a [[ChannelState]] has done by whoever owns the sockets. */
+private[rpc] trait ChannelEffects:
   /** The call now belongs to an open connection; write it as soon as possible. */
   def send(call: Call): Unit
 
@@ -20,7 +20,7 @@ private[rpc] trait LaneEffects:
 
   def observe(event: RpcEvent): Unit
 
-/** The decisions of one lane: which call goes out on which connection and when, what an answer or a loss means for
+/** The decisions of one channel: which call goes out on which connection and when, what an answer or a loss means for
   * the calls in flight. Knows no socket, clock or thread: the owner passes the time and carries out the effects.
   *
   * A call without a key goes to the open connection with the fewest calls in flight, in rotation among equals; a call
@@ -30,17 +30,17 @@ private[rpc] trait LaneEffects:
   * @param uniform
   *   random numbers in [0, 1), for the jitter of reconnecting
   */
-private[rpc] final class LaneState(
-    lane: Lane,
+private[rpc] final class ChannelState(
+    channel: Channel,
     address: Address,
     settings: RpcSettings,
     counters: RpcCounters,
     uniform: () => Double,
-    effects: LaneEffects
+    effects: ChannelEffects
 ):
-  import LaneState.*
+  import ChannelState.*
 
-  private val connections = Array.fill(settings.connections(lane))(Connection(settings.rememberedIds))
+  private val connections = Array.fill(settings.connections(channel))(Connection(settings.rememberedIds))
   private val unkeyed     = waitingLine()
   private val deadlines   = TreeSet[Call](byDeadline)
   private var waiting     = 0
@@ -72,13 +72,13 @@ private[rpc] final class LaneState(
     slot.up = true
     slot.unreachable = None
     counters.connected.increment()
-    effects.observe(RpcEvent.Connected(lane, connection))
+    effects.observe(RpcEvent.Connected(channel, connection))
     dispatch()
 
   def openFailed(connection: Int, reason: String): Unit =
     val slot = connections(connection)
     slot.unreachable = Some(reason)
-    effects.observe(RpcEvent.ConnectFailed(lane, connection, reason))
+    effects.observe(RpcEvent.ConnectFailed(channel, connection, reason))
     failWaiting(slot.keyed, reason)
     if connections.forall(_.unreachable.nonEmpty) then failWaiting(unkeyed, reason)
     retry(connection)
@@ -88,7 +88,7 @@ private[rpc] final class LaneState(
     val slot = connections(connection)
     slot.up = false
     counters.disconnected.increment()
-    effects.observe(RpcEvent.Disconnected(lane, connection, reason))
+    effects.observe(RpcEvent.Disconnected(channel, connection, reason))
     val stranded = slot.inFlight.values.toArray.sortBy(_.sequence)
     inFlight -= stranded.length
     slot.inFlight.clear()
@@ -97,7 +97,7 @@ private[rpc] final class LaneState(
       val again = call.written && call.options.idempotent && call.sends <= settings.resends
       if again then
         counters.sentAgain.increment()
-        effects.observe(RpcEvent.SentAgain(call.method, lane))
+        effects.observe(RpcEvent.SentAgain(call.method, channel))
       if again || !call.written then
         call.connection = -1
         call.written = false
@@ -123,16 +123,16 @@ private[rpc] final class LaneState(
         slot.abandoned.remove(reply.id) match
           case Some(call) =>
             counters.late.increment()
-            effects.observe(RpcEvent.LateReply(call.method, lane, connection, now.since(call.sentAt)))
+            effects.observe(RpcEvent.LateReply(call.method, channel, connection, now.since(call.sentAt)))
             true
           case None =>
             counters.unexpected.increment()
-            effects.observe(RpcEvent.UnexpectedReply(reply.id, lane, connection))
+            effects.observe(RpcEvent.UnexpectedReply(reply.id, channel, connection))
             false
 
   def ignored(connection: Int, what: String): Unit =
     counters.ignored.increment()
-    effects.observe(RpcEvent.Ignored(what, lane, connection))
+    effects.observe(RpcEvent.Ignored(what, channel, connection))
 
   /** Ends every call whose time is over. */
   def expire(now: Instant): Unit =
@@ -170,7 +170,7 @@ private[rpc] final class LaneState(
 
   private def fail(call: Call, error: RpcError): Unit =
     counters.failed(error)
-    effects.observe(RpcEvent.Failed(call.method, lane, error))
+    effects.observe(RpcEvent.Failed(call.method, channel, error))
     finish(call, Left(error))
 
   private def finish(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
@@ -183,7 +183,7 @@ private[rpc] final class LaneState(
     slot.failures += 1
     val pause = settings.backOff.pause(slot.failures, uniform())
     effects.reconnect(connection, pause)
-    effects.observe(RpcEvent.Reconnecting(lane, connection, pause))
+    effects.observe(RpcEvent.Reconnecting(channel, connection, pause))
 
   private def failWaiting(line: TreeSet[Call], reason: String): Unit =
     while !line.isEmpty do
@@ -265,7 +265,7 @@ private[rpc] final class LaneState(
     val heads = (unkeyed +: connections.map(_.keyed)).iterator.filterNot(_.isEmpty).map(_.first)
     heads.filter(placeFor(_) != NoPlace).minByOption(_.sequence)
 
-private object LaneState:
+private object ChannelState:
   private val NoPlace = -1
 
   private val byDeadline: Comparator[Call] =

@@ -13,10 +13,10 @@ import skein.units.*
   *   from here on nothing more goes wrong
   * @param faults
   *   of the link between controller and simulator
-  * @param meddling
+  * @param messageFaults
   *   what a broken peer does to messages until `calmFrom`
   * @param restarts
-  *   of the simulator; afterwards an operator prepares the vehicles again
+  *   of the simulator; afterwards an supervisor prepares the vehicles again
   * @param stopAt
   *   when somebody ends the flight before its time
   * @param clockAhead
@@ -24,7 +24,7 @@ import skein.units.*
   * @param scene
   *   what stands in the world
   */
-final case class Ordeal(
+final case class FaultPlan(
     seed: Long,
     loop: LoopKind,
     scenario: Scenario,
@@ -33,7 +33,7 @@ final case class Ordeal(
     duration: Span,
     calmFrom: Span,
     faults: Vector[TimedFault],
-    meddling: Meddling,
+    messageFaults: MessageFaults,
     restarts: Vector[Restart],
     disk: Disk,
     stopAt: Option[Span],
@@ -43,7 +43,7 @@ final case class Ordeal(
   /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to stand still
     * costs the simulator a worker for each: with many vehicles `stream` flies in their place.
     */
-  def flying(task: Scenario): Ordeal =
+  def flying(task: Scenario): FaultPlan =
     val most = loop match
       case LoopKind.Paused                        => 4
       case LoopKind.Sequential | LoopKind.Futures => 6
@@ -67,7 +67,7 @@ final case class Ordeal(
           ", "
         )
       ),
-      Option.when(meddling != Meddling.None)(meddling.toString),
+      Option.when(messageFaults != MessageFaults.None)(messageFaults.toString),
       Option.when(disk != Disk.Sound)(disk.toString),
       stopAt.map(at => s"stopped at ${at.toMillis.round} ms")
     )
@@ -90,7 +90,7 @@ final case class Ordeal(
   * @param lost
   *   an answer never comes, though its connection lives
   */
-final case class Meddling(
+final case class MessageFaults(
     late: Double = 0,
     lateBy: Span = Span.Zero,
     doubled: Double = 0,
@@ -101,8 +101,8 @@ final case class Meddling(
     lost: Double = 0
 )
 
-object Meddling:
-  val None: Meddling = Meddling()
+object MessageFaults:
+  val None: MessageFaults = MessageFaults()
 
 /** The simulator ends at `at` and is there again after `lasts`, its clock then off by `clockJump`. */
 final case class Restart(at: Span, lasts: Span, clockJump: Span)
@@ -116,7 +116,7 @@ enum Disk:
 
   case Fails(at: Span)
 
-object Ordeal:
+object FaultPlan:
   /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost on a
     * connection that lives holds control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
     */
@@ -131,16 +131,16 @@ object Ordeal:
   /** The least that a flight can last. */
   val Shortest: Span = Start + Calm + Span.ofSeconds(1)
 
-  def of(seed: Long, duration: Span): Ordeal =
+  def of(seed: Long, duration: Span): FaultPlan =
     require(
       duration >= Shortest,
       s"a flight of ${duration.toSeconds} s is too short: ${Shortest.toSeconds} s at least"
     )
-    val drawn = Draw(SplitMix64(SplitMix64.seedOf(seed, 0)), seed, duration).ordeal
+    val drawn = Draw(SplitMix64(SplitMix64.seedOf(seed, 0)), seed, duration).faultPlan
     val added = SplitMix64(SplitMix64.seedOf(seed, 1))
-    val loses = drawn.copy(meddling =
-      if added.nextDouble() < 0.3 then drawn.meddling.copy(lost = 0.2 * added.nextDouble())
-      else drawn.meddling
+    val loses = drawn.copy(messageFaults =
+      if added.nextDouble() < 0.3 then drawn.messageFaults.copy(lost = 0.2 * added.nextDouble())
+      else drawn.messageFaults
     )
     val looped =
       if added.nextDouble() < 0.1 then
@@ -152,7 +152,7 @@ object Ordeal:
     private val calmFrom = duration - Calm
     private val trouble  = calmFrom - Start
 
-    def ordeal: Ordeal =
+    def faultPlan: FaultPlan =
       val loop =
         pick(LoopKind.Stream, LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures, LoopKind.Sequential)
       val link = pick(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
@@ -161,7 +161,7 @@ object Ordeal:
       val pairs        = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
       val cutsSegments = chance(0.5)
       val asPublished  = loop == LoopKind.Stream && chance(0.2)
-      Ordeal(
+      FaultPlan(
         seed,
         loop,
         PaperDuel(pairs, asPublished),
@@ -170,7 +170,7 @@ object Ordeal:
         duration,
         calmFrom,
         several(0.6)(fault()),
-        if chance(0.6) then meddling() else Meddling.None,
+        if chance(0.6) then messageFaults() else MessageFaults.None,
         if chance(0.35) then restarts() else Vector.empty,
         disk(),
         Option.when(chance(0.1))(Start + upTo(duration - Start))
@@ -181,9 +181,9 @@ object Ordeal:
       val at    = Start + upTo(trouble - lasts)
       TimedFault(at, pick(Fault.Stall(lasts), Fault.Stall(lasts), Fault.Reset, Fault.Silence(lasts)))
 
-    private def meddling(): Meddling =
+    private def messageFaults(): MessageFaults =
       def often(most: Double) = if chance(0.5) then most * random.nextDouble() else 0.0
-      Meddling(
+      MessageFaults(
         often(0.2),
         upTo(Span.ofSeconds(1.5)),
         often(0.3),
@@ -216,5 +216,5 @@ object Ordeal:
     private def upTo(most: Span): Span     = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
     private def pick[A](choices: A*): A    = choices(random.nextInt(choices.size))
 
-  /** That the operator needs before the next thing may go wrong. */
+  /** That the supervisor needs before the next thing may go wrong. */
   private val Settling = Span.ofMillis(200)

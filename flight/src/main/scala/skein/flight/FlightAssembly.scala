@@ -22,7 +22,7 @@ import skein.units.*
 import skein.units.Decimals.fixed
 
 /** One flight put together: simulator, link, client, vehicles at their starts, loop. */
-final class FlightRig private[skein] (
+final class FlightAssembly private[skein] (
     val plan: FlightPlan,
     val flight: Flight,
     val graph: RunningGraph,
@@ -56,24 +56,24 @@ final class FlightRig private[skein] (
     Progress(plan.id, now.since(startedAt), watch.lastSeen(now), vigil.silentFor)
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
-  val landed: Future[Landed] =
+  val landed: Future[FlightResult] =
     for
       outcome <- flight.outcome
       closed  <- shutDown().transform(Success(_))
       notClosed = closed.failed.toOption.map(error => Outcome.Failed(s"it could not be closed: $error"))
       ended     = notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome)
-      _         = watch.offer(FlightRig.ending(ended, clock.now()))
+      _         = watch.offer(FlightAssembly.ending(ended, clock.now()))
       written <- watch.close()
-    yield Landed(plan, ended, written)
+    yield FlightResult(plan, ended, written)
 
-private object FlightRig:
+private object FlightAssembly:
   def ending(outcome: Outcome, at: Instant): Ending = outcome match
     case Outcome.Completed      => Ending(at, EndingKind.Completed, None)
     case Outcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
     case Outcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
 
 /** How a flight ended, and what is on record. */
-final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])
+final case class FlightResult(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])
 
 /** Puts flights together.
   *
@@ -84,12 +84,12 @@ final case class Landed(plan: FlightPlan, outcome: Outcome, written: Either[Reco
   * @param tell
   *   a line for a person, of what goes wrong in flight, as soon as it does
   */
-final class FlightRigs(
+final class FlightAssembler(
     transport: Transport,
     clock: Clock,
     settings: FlySettings,
     simulator: Option[Address],
-    workers: PlanSettings => PlanWorkers = FlightRigs.threads,
+    workers: PlanSettings => PlanWorkers = FlightAssembler.threads,
     tell: String => Unit = _ => ()
 )(using system: ActorSystem):
   import system.dispatcher
@@ -98,7 +98,7 @@ final class FlightRigs(
   private val fleet: Fleet = settings.fleet
 
   /** What a recording of this flight begins with. */
-  def heading(plan: FlightPlan, clockKind: String): Heading = Heading(
+  def heading(plan: FlightPlan, clockKind: String): RecordingHeader = RecordingHeader(
     FlightRow(
       plan.id,
       plan.loop.label,
@@ -110,7 +110,7 @@ final class FlightRigs(
       simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else ""),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
-      FlightRigs.version,
+      FlightAssembler.version,
       clock.now()
     ),
     fleet.agents.map(Vehicle.of),
@@ -122,7 +122,7 @@ final class FlightRigs(
     * @return
     *   or why it cannot be flown
     */
-  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightRig]] =
+  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightAssembly]] =
     val opened   = Opened()
     val starting =
       for
@@ -150,7 +150,7 @@ final class FlightRigs(
           watch,
           clock,
           startedAt,
-          Vigil.within(settings.period, FlightRigs.askTimeout),
+          Vigil.within(settings.period, FlightAssembler.askTimeout),
           reached.where,
           reached.isOther,
           line => tell(s"${plan.id}: $line")
@@ -170,7 +170,7 @@ final class FlightRigs(
             opened.closing(one)(_.close()): Unit
             one.run()
         vigil.over(flight)
-        Right(FlightRig(
+        Right(FlightAssembly(
           plan,
           flight,
           RunningGraph(team.meters),
@@ -203,7 +203,7 @@ final class FlightRigs(
           lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
         )
         val isPaused = plan.loop == LoopKind.Paused
-        val seen = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
+        val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
         Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, watch)
     yield Reached(
@@ -211,7 +211,7 @@ final class FlightRigs(
       Some(AirSimTime(client)),
       address.toString,
       () => client.ping(),
-      () => FlightRigs.startedAgain(vehicles, address),
+      () => FlightAssembler.startedAgain(vehicles, address),
       seeing.flatten
     )
 
@@ -235,7 +235,8 @@ final class FlightRigs(
     def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
-        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightRigs.noSteps)) else Future.unit
+        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps))
+        else Future.unit
       _                <- mavlink.prepare().map(right)
       (link, vehicles) <- mavlink.open(linked).map(right)
     yield
@@ -268,10 +269,12 @@ final class FlightRigs(
         .start(
           SimulatorSettings(
             WorldSettings(vehicles, text = WorldSettings.render(vehicles, settings.scenario.equipment)),
-            FlightRigs.anyPort,
+            FlightAssembler.anyPort,
             scene = settings.world.scene,
             mavlink =
-              Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen = Some(FlightRigs.anyPort)))
+              Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
+                Some(FlightAssembler.anyPort)
+              ))
           ),
           transport,
           clock
@@ -297,7 +300,7 @@ final class FlightRigs(
   ): Future[Unit] =
     ContactWatch
       .start(
-        AirSimClient(RpcClient(transport, address, clock), FlightRigs.askTimeout),
+        AirSimClient(RpcClient(transport, address, clock), FlightAssembler.askTimeout),
         vehicles,
         settings.period,
         clock,
@@ -319,25 +322,25 @@ final class FlightRigs(
     if plan.link == LatencyProfile.none then Future.successful(None)
     else
       val link = EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
-      LinkProxy.start(FlightRigs.anyPort, simulator, link, transport).map(Some(_))
+      LinkProxy.start(FlightAssembler.anyPort, simulator, link, transport).map(Some(_))
 
   private def fly(plan: FlightPlan, address: Address, recorder: Recorder): AirSimClient =
     val rpc = RpcClient(
       transport,
       address,
       clock,
-      FlightRigs.rpcSettings(plan.loop),
+      FlightAssembler.rpcSettings(plan.loop),
       plan.seed,
       event =>
-        FlightRigs.eventOf(event).foreach((kind, detail) =>
+        FlightAssembler.eventOf(event).foreach((kind, detail) =>
           recorder.offer(Event(clock.now(), kind, None, detail))
         )
     )
-    AirSimClient(rpc, timeout = FlightRigs.askTimeout)
+    AirSimClient(rpc, timeout = FlightAssembler.askTimeout)
 
   private case class CannotFly(reason: String) extends RuntimeException(reason)
 
-object FlightRigs:
+object FlightAssembler:
   /** The paper's, of every question. */
   val askTimeout: Span = Span.ofMillis(500)
 

@@ -1,18 +1,18 @@
 package skein.optimise
 
 /** How many values were seen, their mean, and the sum of their squared deviations from it. */
-final case class Tally(count: Int, mean: Double, squares: Double):
+final case class RunningStats(count: Int, mean: Double, squares: Double):
 
   /** Of both together (Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for computing sample
     * variances", 1979).
     */
-  def +(other: Tally): Tally =
+  def +(other: RunningStats): RunningStats =
     if count == 0 then other
     else if other.count == 0 then this
     else
       val total = count + other.count
       val apart = other.mean - mean
-      Tally(
+      RunningStats(
         total,
         mean + apart * other.count / total,
         squares + other.squares + apart * apart * count * other.count / total
@@ -24,11 +24,11 @@ final case class Tally(count: Int, mean: Double, squares: Double):
   /** The true mean lies within so much of `mean` with 95 % confidence, by the normal approximation. */
   def halfWidth95: Double = if count == 0 then Double.PositiveInfinity else 1.959964 * sd / math.sqrt(count)
 
-object Tally:
-  val empty: Tally = Tally(0, 0, 0)
+object RunningStats:
+  val empty: RunningStats = RunningStats(0, 0, 0)
 
   /** Of `count` values, by their number from 0. */
-  def of(count: Int)(value: Int => Double): Tally =
+  def of(count: Int)(value: Int => Double): RunningStats =
     var sum = 0.0
     var i   = 0
     while i < count do
@@ -41,4 +41,4 @@ object Tally:
       val off = value(i) - mean
       squares += off * off
       i += 1
-    Tally(count, mean, squares)
+    RunningStats(count, mean, squares)

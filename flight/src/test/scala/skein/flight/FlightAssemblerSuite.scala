@@ -11,7 +11,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-class FlightRigsSuite extends munit.FunSuite:
+class FlightAssemblerSuite extends munit.FunSuite:
 
   /** Listens `allowed` times and no more; counts who listens still. */
   private final class Ports(transport: Transport, allowed: Int)(using system: ActorSystem) extends Transport:
@@ -51,15 +51,15 @@ class FlightRigsSuite extends munit.FunSuite:
       .run(seed = 1): system =>
         given ActorSystem = system
         import system.dispatcher
-        val clock = Clock.ofNanos(VirtualTime.clock(system))
-        val ports = Ports(MemoryNetwork(NetworkPlan(), 1, clock).host("localhost"), allowed)
-        val rigs  = FlightRigs(ports, clock, settings, simulator = None)
-        val plan  = settings.plans.head
-        rigs
-          .start(plan, MemoryRecorder(rigs.heading(plan, "virtual")))
+        val clock     = Clock.ofNanos(VirtualTime.clock(system))
+        val ports     = Ports(MemoryNetwork(NetworkPlan(), 1, clock).host("localhost"), allowed)
+        val assembler = FlightAssembler(ports, clock, settings, simulator = None)
+        val plan      = settings.plans.head
+        assembler
+          .start(plan, MemoryRecorder(assembler.heading(plan, "virtual")))
           .flatMap:
-            case Left(reason) => Future.successful((Left(reason), ports.open))
-            case Right(rig)   => rig.landed.map(_ => (Right(()), ports.open))
+            case Left(reason)    => Future.successful((Left(reason), ports.open))
+            case Right(assembly) => assembly.landed.map(_ => (Right(()), ports.open))
       .value
 
   test("a flight that cannot start for want of a port for its link closes its simulator"):

@@ -8,8 +8,8 @@ import skein.units.*
 /** Who has one of a server's limited places. When all are taken, the connection that has been silent for the longest
   * time gives up its own, so that connections nobody uses do not lock others out. [[admit]] by one thread at a time.
   */
-private[rpc] class Places(most: Int, silence: Span):
-  private val guests = ConcurrentHashMap[Long, Places.Guest]()
+private[rpc] class ConnectionSlots(most: Int, silence: Span):
+  private val guests = ConcurrentHashMap[Long, ConnectionSlots.Guest]()
   private val taken  = AtomicInteger()
 
   /** Whether one more may come; it has a place then, until it has [[left]]. */
@@ -19,7 +19,7 @@ private[rpc] class Places(most: Int, silence: Span):
       val _ = taken.decrementAndGet()
     free
 
-  def entered(connection: Long, guest: Places.Guest): Unit =
+  def entered(connection: Long, guest: ConnectionSlots.Guest): Unit =
     val _ = guests.put(connection, guest)
 
   def left(connection: Long): Unit =
@@ -34,7 +34,7 @@ private[rpc] class Places(most: Int, silence: Span):
         true
       case _ => false
 
-private[rpc] object Places:
+private[rpc] object ConnectionSlots:
   trait Guest:
     /** For how long it has asked nothing and waited for nothing. */
     def silentFor: Span

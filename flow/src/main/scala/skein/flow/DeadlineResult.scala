@@ -1,26 +1,26 @@
 package skein.flow
 
 /** What to do when a policy has not decided in time. */
-enum Otherwise[M, -O, +D]:
+enum OnOverrun[M, -O, +D]:
   /** Command nothing: the vehicle goes on under its last command. */
-  case Hold[M]() extends Otherwise[M, Any, Nothing]
+  case Hold[M]() extends OnOverrun[M, Any, Nothing]
 
   /** Decide as the last time; before the first decision, as [[Hold]]. */
-  case Repeat[M]() extends Otherwise[M, Any, Nothing]
+  case Repeat[M]() extends OnOverrun[M, Any, Nothing]
 
   /** Ask another policy, which answers at once and shares the memory. */
-  case Ask[M, O, D](policy: (M, O) => (M, D)) extends Otherwise[M, O, D]
+  case Ask[M, O, D](policy: (M, O) => (M, D)) extends OnOverrun[M, O, D]
 
 /** How a decision came about. */
-enum Timely[+D]:
+enum DeadlineResult[+D]:
   /** The policy decided in time. */
   case Decided(decision: D)
 
   /** The policy did not, for this reason; so this is decided instead, or nothing. */
-  case Missed(reason: Miss, instead: Option[D])
+  case Missed(reason: Overrun, instead: Option[D])
 
 /** Why a policy gave no decision. */
-enum Miss:
+enum Overrun:
   /** It did not answer within the deadline. */
   case Late
 

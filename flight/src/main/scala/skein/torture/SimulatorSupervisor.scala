@@ -21,10 +21,10 @@ import skein.units.*
   */
 final case class Run(from: Instant, clockOffset: Span)
 
-/** Runs the simulator, restarts it when the [[Ordeal]] says so, and then brings the vehicles to their starts again. Has
+/** Runs the simulator, restarts it when the [[FaultPlan]] says so, and then brings the vehicles to their starts again. Has
   * a connection of its own, without faults.
   */
-final class Operator(
+final class SimulatorSupervisor(
     scenario: Fleet,
     settings: SimulatorSettings,
     simulatorHost: Transport,

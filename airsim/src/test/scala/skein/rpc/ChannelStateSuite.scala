@@ -5,19 +5,19 @@ import skein.link.Address
 import skein.units.*
 import upack.{Int32, Msg, Null, Str}
 
-class LaneStateSuite extends munit.FunSuite:
+class ChannelStateSuite extends munit.FunSuite:
 
   private val address = Address("sim", 41451)
 
-  /** A lane whose sends, ends and reconnects are only noted; time is given in milliseconds. */
-  private final class Lane(settings: RpcSettings) extends LaneEffects:
+  /** A channel whose sends, ends and reconnects are only noted; time is given in milliseconds. */
+  private final class Channel(settings: RpcSettings) extends ChannelEffects:
     val counters   = RpcCounters()
     val sent       = mutable.Buffer.empty[Call]
     val usedInTurn = mutable.Buffer.empty[Int]
     val ends       = mutable.Map.empty[String, Either[RpcError, Msg | Received]]
     val reconnects = mutable.Buffer.empty[(Int, Span)]
     val events     = mutable.Buffer.empty[RpcEvent]
-    val state      = LaneState(skein.rpc.Lane.Control, address, settings, counters, () => 0.0, this)
+    val state      = ChannelState(skein.rpc.Channel.Control, address, settings, counters, () => 0.0, this)
 
     def send(call: Call): Unit =
       call.written = true
@@ -42,14 +42,14 @@ class LaneStateSuite extends munit.FunSuite:
 
   private def ms(millis: Double): Instant = Instant.Epoch + Span.ofMillis(millis)
 
-  private def lane(
+  private def channel(
       connections: Int = 2,
       perConnection: Int = 2,
       inAll: Int = 3,
       queue: Int = 2,
       resends: Int = 1,
       remembered: Int = 2
-  ): Lane = Lane(
+  ): Channel = Channel(
     RpcSettings(
       controlConnections = connections,
       windowPerConnection = perConnection,
@@ -64,7 +64,7 @@ class LaneStateSuite extends munit.FunSuite:
   private val idempotent = CallOptions(idempotent = true)
 
   test("calls made before a connection is open wait for it and go out in order"):
-    val l = lane()
+    val l = channel()
     l.submit("a")
     l.submit("b")
     assertEquals(l.sentNames, Seq.empty)
@@ -72,7 +72,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b"))
 
   test("a call without a key goes where the fewest are in flight, in rotation among equals"):
-    val l = lane(connections = 3, inAll = 9)
+    val l = channel(connections = 3, inAll = 9)
     l.open(0, 1, 2)
     Seq("a", "b", "c", "d").foreach(l.submit(_))
     assertEquals(l.sent.map(_.connection).toSeq, Seq(0, 1, 2, 0))
@@ -81,7 +81,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.connectionOf("e"), 1)
 
   test("replies in any order reach their own calls"):
-    val l = lane()
+    val l = channel()
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))
     l.reply("c", Int32(3))
@@ -90,13 +90,13 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.ends.toMap, Map("a" -> Right(Int32(1)), "b" -> Right(Int32(2)), "c" -> Right(Int32(3))))
 
   test("ids count per connection from 0"):
-    val l = lane(connections = 1, perConnection = 9, inAll = 9)
+    val l = channel(connections = 1, perConnection = 9, inAll = 9)
     l.open(0)
     Seq("a", "b", "c").foreach(l.submit(_))
     assertEquals(l.sent.map(_.id).toSeq, Seq(0L, 1L, 2L))
 
   test("the window of all connections refuses what exceeds it, or lets it wait, and frees with each answer"):
-    val l = lane(perConnection = 9)
+    val l = channel(perConnection = 9)
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))
     l.submit("refused")
@@ -110,7 +110,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b", "c", "d"))
 
   test("the window of a connection holds a key's calls back while other keys go on"):
-    val l = lane(perConnection = 1, inAll = 9)
+    val l = channel(perConnection = 1, inAll = 9)
     l.open(0, 1)
     l.submit("a", wait.copy(key = Some(0)))
     l.submit("b", wait.copy(key = Some(0)))
@@ -125,7 +125,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "c", "b"))
 
   test("a key's calls keep their order even when a place becomes free while others wait"):
-    val l = lane(perConnection = 1, inAll = 1, queue = 9)
+    val l = channel(perConnection = 1, inAll = 1, queue = 9)
     l.open(0, 1)
     l.submit("a", wait)
     l.submit("b", wait.copy(key = Some(1)))
@@ -136,7 +136,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(Seq("b", "c").map(l.connectionOf), Seq(1, 1))
 
   test("a call times out at its deadline, its place is free at once, and its late reply is told and dropped"):
-    val l = lane(connections = 1, perConnection = 1)
+    val l = channel(connections = 1, perConnection = 1)
     l.open(0)
     l.submit("a", CallOptions(timeout = Span.ofMillis(500)))
     l.submit("b", wait)
@@ -148,14 +148,14 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b"))
     l.reply("a", at = 700)
     assertEquals(l.counters.snapshot.late, 1L)
-    assertEquals(l.events.last, RpcEvent.LateReply("a", skein.rpc.Lane.Control, 0, Span.ofMillis(700)))
+    assertEquals(l.events.last, RpcEvent.LateReply("a", skein.rpc.Channel.Control, 0, Span.ofMillis(700)))
     l.reply("a", at = 701)
     assertEquals(l.counters.snapshot.unexpected, 1L)
     l.reply("b", Str("b"))
     assertEquals(l.ends("b"), Right(Str("b")))
 
   test("time spent waiting counts towards the timeout"):
-    val l = lane()
+    val l = channel()
     l.submit("a", CallOptions(timeout = Span.ofMillis(10)))
     l.state.expire(ms(10))
     assertEquals(l.error("a"), RpcError.Timeout("a", Span.ofMillis(10)))
@@ -163,7 +163,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq.empty)
 
   test("only so many timed-out calls are remembered"):
-    val l = lane(connections = 1, perConnection = 9, inAll = 9, remembered = 2)
+    val l = channel(connections = 1, perConnection = 9, inAll = 9, remembered = 2)
     l.open(0)
     for name <- Seq("a", "b", "c") do l.submit(name)
     l.state.expire(ms(5000))
@@ -172,7 +172,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.counters.snapshot.unexpected, 1L)
 
   test("when a connection is lost its calls may have run, and only idempotent ones go out again"):
-    val l = lane(inAll = 9)
+    val l = channel(inAll = 9)
     l.open(0, 1)
     l.submit("move", CallOptions(key = Some(0)))
     l.submit("read", idempotent.copy(key = Some(0)))
@@ -186,7 +186,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.ends("read"), Right(Int32(4)))
 
   test("an idempotent call is sent again a bounded number of times"):
-    val l = lane(connections = 1, resends = 2)
+    val l = channel(connections = 1, resends = 2)
     l.open(0)
     l.submit("read", idempotent)
     for _ <- 1 to 2 do
@@ -197,21 +197,21 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.error("read"), RpcError.ConnectionLost(address, mayHaveRun = true, "reset"))
 
   test("an idempotent call without a key moves to another connection at once"):
-    val l = lane()
+    val l = channel()
     l.open(0, 1)
     l.submit("read", idempotent)
     l.state.lost(l.connectionOf("read"), "reset", malformed = false)
     assertEquals(l.usedInTurn.toSeq, Seq(0, 1))
 
   test("calls on a connection closed for malformed bytes say so"):
-    val l = lane()
+    val l = channel()
     l.open(0)
     l.submit("a")
     l.state.lost(0, "byte 0xc1", malformed = true)
     assertEquals(l.error("a"), RpcError.Malformed("a", "byte 0xc1"))
 
   test("where nothing answers, waiting calls and later ones fail at once until a connection opens"):
-    val l = lane()
+    val l = channel()
     l.submit("waiting")
     l.submit("keyed", CallOptions(key = Some(0)))
     l.state.openFailed(0, "refused")
@@ -225,7 +225,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("after"))
 
   test("attempts to connect back off, doubling up to the longest, and start anew after an answer"):
-    val l = lane(connections = 1)
+    val l = channel(connections = 1)
     for _ <- 1 to 8 do l.state.openFailed(0, "refused")
     l.open(0)
     l.state.lost(0, "accepted, then closed", malformed = false)
@@ -246,7 +246,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(backOff.pause(1000, 0.0), Span.ofMillis(300))
 
   test("closing ends every call once, waiting or in flight"):
-    val l = lane(perConnection = 1, inAll = 1)
+    val l = channel(perConnection = 1, inAll = 1)
     l.open(0)
     l.submit("flying")
     l.submit("waiting", wait)
@@ -255,7 +255,7 @@ class LaneStateSuite extends munit.FunSuite:
     assertEquals(l.error("waiting"), RpcError.Cancelled("waiting"))
 
   test("a refusal carries the peer's own text, a reply to no call changes nothing"):
-    val l = lane()
+    val l = channel()
     l.open(0)
     l.submit("a")
     l.state.replied(0, Message.Reply(99, Null, Null), ms(1))
@@ -266,7 +266,7 @@ class LaneStateSuite extends munit.FunSuite:
   test("under random faults every call ends exactly once and the counts add up"):
     for seed <- 1 to 200 do
       val random = scala.util.Random(seed)
-      val l      = lane(connections = 3, perConnection = 4, inAll = 8, queue = 5)
+      val l      = channel(connections = 3, perConnection = 4, inAll = 8, queue = 5)
       val up     = Array.fill(3)(false)
       var calls  = 0
       for step <- 0 until 400 do
@@ -302,23 +302,23 @@ class LaneStateSuite extends munit.FunSuite:
       assertEquals(l.counters.snapshot.pending, 0L, s"seed $seed")
 
   test("a call that is withdrawn ends with a timeout of its own, and its late reply is recognised"):
-    val lane = this.lane(connections = 1, perConnection = 1)
-    lane.open(0)
-    lane.submit("first", at = 0)
-    lane.submit("second", CallOptions(whenFull = WhenFull.Wait), at = 1)
-    val first = lane.sent.find(_.method == "first").get
-    lane.state.withdraw(first, ms(700))
-    assertEquals(lane.error("first"), RpcError.Timeout("first", Span.ofMillis(700)))
-    assertEquals(lane.sentNames, Seq("first", "second"))
-    lane.state.replied(0, Message.Reply(first.id, Null, Null), ms(800))
-    assertEquals(lane.counters.snapshot.late, 1L)
+    val channel = this.channel(connections = 1, perConnection = 1)
+    channel.open(0)
+    channel.submit("first", at = 0)
+    channel.submit("second", CallOptions(whenFull = WhenFull.Wait), at = 1)
+    val first = channel.sent.find(_.method == "first").get
+    channel.state.withdraw(first, ms(700))
+    assertEquals(channel.error("first"), RpcError.Timeout("first", Span.ofMillis(700)))
+    assertEquals(channel.sentNames, Seq("first", "second"))
+    channel.state.replied(0, Message.Reply(first.id, Null, Null), ms(800))
+    assertEquals(channel.counters.snapshot.late, 1L)
 
   test("a call that has ended, or waits, can be withdrawn as well"):
-    val lane = this.lane(connections = 1, perConnection = 1)
-    lane.open(0)
-    lane.submit("first", at = 0)
-    lane.submit("waiting", CallOptions(whenFull = WhenFull.Wait), at = 1)
-    val first = lane.sent.head
-    lane.reply("first", Int32(1), at = 20)
-    lane.state.withdraw(first, ms(30))
-    assertEquals(lane.ends("first"), Right(Int32(1)))
+    val channel = this.channel(connections = 1, perConnection = 1)
+    channel.open(0)
+    channel.submit("first", at = 0)
+    channel.submit("waiting", CallOptions(whenFull = WhenFull.Wait), at = 1)
+    val first = channel.sent.head
+    channel.reply("first", Int32(1), at = 20)
+    channel.state.withdraw(first, ms(30))
+    assertEquals(channel.ends("first"), Right(Int32(1)))

@@ -6,62 +6,62 @@ import skein.scenario.PaperDuel
 import skein.units.*
 
 /** What seeds draw: enough of every trouble, none of it in the calm. */
-class OrdealSuite extends munit.FunSuite:
-  private val duration = Span.ofSeconds(30)
-  private val start    = Span.ofMillis(500)
-  private val ordeals  = (1L to 4000L).map(Ordeal.of(_, duration))
+class FaultPlanSuite extends munit.FunSuite:
+  private val duration   = Span.ofSeconds(30)
+  private val start      = Span.ofMillis(500)
+  private val faultPlans = (1L to 4000L).map(FaultPlan.of(_, duration))
 
   private def often(
       what: String,
       expected: Double,
-      among: Seq[Ordeal] = ordeals
-  )(is: Ordeal => Boolean): Unit =
+      among: Seq[FaultPlan] = faultPlans
+  )(is: FaultPlan => Boolean): Unit =
     val share  = among.count(is) / among.size.toDouble
     val spread = 4 * math.sqrt(expected * (1 - expected) / among.size)
     assert((share - expected).abs <= spread, s"$what in $share of ${among.size}, not in $expected")
 
-  private def pairs(ordeal: Ordeal) = ordeal.scenario.agents.size / 2
+  private def pairs(faultPlan: FaultPlan) = faultPlan.scenario.agents.size / 2
 
-  test("the same seed and duration are the same ordeal, and another seed is another"):
-    assertEquals(Ordeal.of(7, duration), ordeals(6))
-    assertEquals(ordeals.map(_.copy(seed = 0)).distinct.size, ordeals.size)
+  test("the same seed and duration are the same faultPlan, and another seed is another"):
+    assertEquals(FaultPlan.of(7, duration), faultPlans(6))
+    assertEquals(faultPlans.map(_.copy(seed = 0)).distinct.size, faultPlans.size)
 
   test("nothing goes wrong in the first half second and in the last five, but for the disk and an early end"):
-    for ordeal <- ordeals do
-      assertEquals((ordeal.duration, ordeal.calmFrom), (duration, duration - Span.ofSeconds(5)))
-      for fault <- ordeal.faults do
+    for faultPlan <- faultPlans do
+      assertEquals((faultPlan.duration, faultPlan.calmFrom), (duration, duration - Span.ofSeconds(5)))
+      for fault <- faultPlan.faults do
         val lasts = fault.fault match
           case Fault.Stall(span)   => span
           case Fault.Silence(span) => span
           case _                   => Span.Zero
-        assert(lasts <= Span.ofSeconds(4), ordeal.toString)
-        assert(fault.at >= start && fault.at + lasts <= ordeal.calmFrom, ordeal.toString)
-      ordeal.disk match
+        assert(lasts <= Span.ofSeconds(4), faultPlan.toString)
+        assert(fault.at >= start && fault.at + lasts <= faultPlan.calmFrom, faultPlan.toString)
+      faultPlan.disk match
         case Disk.Blocks(at, lasts, capacity) =>
-          assert(at >= start && at + lasts <= ordeal.calmFrom && capacity >= 50, ordeal.toString)
-        case Disk.Fails(at) => assert(at >= start && at <= duration, ordeal.toString)
+          assert(at >= start && at + lasts <= faultPlan.calmFrom && capacity >= 50, faultPlan.toString)
+        case Disk.Fails(at) => assert(at >= start && at <= duration, faultPlan.toString)
         case Disk.Sound     => ()
-      assert(ordeal.stopAt.forall(at => at >= start && at <= duration), ordeal.toString)
+      assert(faultPlan.stopAt.forall(at => at >= start && at <= duration), faultPlan.toString)
 
-  test("restarts come one after the other, with time for the operator between them, before the calm"):
-    for ordeal <- ordeals do
-      for restart <- ordeal.restarts do
-        assert(restart.at >= start && restart.lasts <= Span.ofSeconds(3), ordeal.toString)
-        assert(restart.clockJump.toSeconds.abs <= 20, ordeal.toString)
-      for (one, next) <- ordeal.restarts.zip(ordeal.restarts.drop(1)) do
-        assert(one.at + one.lasts + Span.ofMillis(200) <= next.at, ordeal.toString)
-      for last <- ordeal.restarts.lastOption do
-        assert(last.at + last.lasts + Span.ofMillis(200) <= ordeal.calmFrom, ordeal.toString)
-    assertEquals(ordeals.map(_.restarts.size).distinct.sorted.toSeq, Seq(0, 1, 2, 3, 4, 5))
+  test("restarts come one after the other, with time for the supervisor between them, before the calm"):
+    for faultPlan <- faultPlans do
+      for restart <- faultPlan.restarts do
+        assert(restart.at >= start && restart.lasts <= Span.ofSeconds(3), faultPlan.toString)
+        assert(restart.clockJump.toSeconds.abs <= 20, faultPlan.toString)
+      for (one, next) <- faultPlan.restarts.zip(faultPlan.restarts.drop(1)) do
+        assert(one.at + one.lasts + Span.ofMillis(200) <= next.at, faultPlan.toString)
+      for last <- faultPlan.restarts.lastOption do
+        assert(last.at + last.lasts + Span.ofMillis(200) <= faultPlan.calmFrom, faultPlan.toString)
+    assertEquals(faultPlans.map(_.restarts.size).distinct.sorted.toSeq, Seq(0, 1, 2, 3, 4, 5))
 
   test("each loop, link and trouble is flown about as often as is meant"):
-    val others = ordeals.filterNot(_.loop == LoopKind.Paused)
+    val others = faultPlans.filterNot(_.loop == LoopKind.Paused)
     often("the paused truth", 0.1)(_.loop == LoopKind.Paused)
     often("streams", 0.4, others)(_.loop == LoopKind.Stream)
     for loop <- Seq(LoopKind.Predictive, LoopKind.Futures, LoopKind.Sequential) do
       often(loop.label, 0.2, others)(_.loop == loop)
-    for link <- ordeals.map(_.link.name).distinct do often(link, 0.25)(_.link.name == link)
-    assertEquals(ordeals.map(_.link.name).distinct.size, 4)
+    for link <- faultPlans.map(_.link.name).distinct do often(link, 0.25)(_.link.name == link)
+    assertEquals(faultPlans.map(_.link.name).distinct.size, 4)
     often("segments cut", 0.5)(_.cutsSegments)
     often("a fault of the link", 0.6)(_.faults.nonEmpty)
     often("two of them", 0.36)(_.faults.sizeIs >= 2)
@@ -69,13 +69,13 @@ class OrdealSuite extends munit.FunSuite:
     often(
       "a jump of the clock",
       0.5,
-      ordeals.filter(_.restarts.nonEmpty)
+      faultPlans.filter(_.restarts.nonEmpty)
     )(_.restarts.head.clockJump != Span.Zero)
     often("a sound disk", 0.85)(_.disk == Disk.Sound)
     often("a disk that fails", 0.075)(_.disk.isInstanceOf[Disk.Fails])
     often("an early end", 0.1)(_.stopAt.isDefined)
-    often("lost answers", 0.3)(_.meddling.lost > 0)
-    for (what, of) <- Seq[(String, Meddling => Double)](
+    often("lost answers", 0.3)(_.messageFaults.lost > 0)
+    for (what, of) <- Seq[(String, MessageFaults => Double)](
         "late"     -> (_.late),
         "doubled"  -> (_.doubled),
         "nonsense" -> (_.nonsense),
@@ -83,49 +83,53 @@ class OrdealSuite extends munit.FunSuite:
         "garbage"  -> (_.garbage),
         "refused"  -> (_.refused)
       )
-    do often(what, 0.3)(ordeal => of(ordeal.meddling) > 0)
+    do often(what, 0.3)(faultPlan => of(faultPlan.messageFaults) > 0)
     often("a file", 0.1)(_.isFiled)
     often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(each =>
       PaperDuel.isAsPublished(each.scenario)
     )
 
   test("mischief is bounded, so that flights still have something to show"):
-    for ordeal <- ordeals do
-      val Meddling(late, lateBy, doubled, nonsense, stray, garbage, refused, lost) = ordeal.meddling
+    for faultPlan <- faultPlans do
+      val MessageFaults(late, lateBy, doubled, nonsense, stray, garbage, refused, lost) =
+        faultPlan.messageFaults
       for (p, most) <- Seq(late -> 0.2, doubled -> 0.3, nonsense -> 0.1, stray -> 0.2, garbage -> 0.02) ++
           Seq(refused -> 0.3, lost -> 0.2)
-      do assert(p >= 0 && p <= most, ordeal.toString)
-      assert(lateBy <= Span.ofSeconds(1.5), ordeal.toString)
-    assert(ordeals.map(_.meddling.late).max > 0.19 && ordeals.map(_.meddling.lost).max > 0.19)
+      do assert(p >= 0 && p <= most, faultPlan.toString)
+      assert(lateBy <= Span.ofSeconds(1.5), faultPlan.toString)
+    assert(faultPlans.map(_.messageFaults.late).max > 0.19 && faultPlans.map(_.messageFaults.lost).max > 0.19)
 
   test("as many vehicles as a loop can serve, and not always two"):
-    for ordeal <- ordeals do
-      val most = ordeal.loop match
+    for faultPlan <- faultPlans do
+      val most = faultPlan.loop match
         case LoopKind.Paused                        => 2
         case LoopKind.Sequential | LoopKind.Futures => 3
         case _                                      => 10
-      assert(pairs(ordeal) >= 1 && pairs(ordeal) <= most, ordeal.toString)
-      assert(!PaperDuel.isAsPublished(ordeal.scenario) || ordeal.loop == LoopKind.Stream, ordeal.toString)
-    val streams = ordeals.filter(_.loop == LoopKind.Stream)
+      assert(pairs(faultPlan) >= 1 && pairs(faultPlan) <= most, faultPlan.toString)
+      assert(
+        !PaperDuel.isAsPublished(faultPlan.scenario) || faultPlan.loop == LoopKind.Stream,
+        faultPlan.toString
+      )
+    val streams = faultPlans.filter(_.loop == LoopKind.Stream)
     often("one pair", 0.6 + 0.4 / 10, streams)(pairs(_) == 1)
     assertEquals(streams.map(pairs).distinct.sorted, (1 to 10).toSeq)
 
   test("the simulator's clock is ahead or behind by up to 20 s"):
-    val ahead = ordeals.map(_.clockAhead.toSeconds)
+    val ahead = faultPlans.map(_.clockAhead.toSeconds)
     assert(ahead.forall(_.abs <= 20) && ahead.min < -19.5 && ahead.max > 19.5)
     often("ahead", 0.5)(_.clockAhead > Span.Zero)
 
   test("a flight that leaves no time for trouble is refused, and the shortest is flown"):
-    val refused = intercept[IllegalArgumentException](Ordeal.of(1, Ordeal.Shortest - Span.ofMillis(1)))
+    val refused = intercept[IllegalArgumentException](FaultPlan.of(1, FaultPlan.Shortest - Span.ofMillis(1)))
     assert(refused.getMessage.contains("6.5 s at least"), refused.getMessage)
-    for seed <- 1L to 200L do assert(Ordeal.of(seed, Ordeal.Shortest).calmFrom > start)
+    for seed <- 1L to 200L do assert(FaultPlan.of(seed, FaultPlan.Shortest).calmFrom > start)
 
   test("a line for a person names all that will happen, and nothing else"):
-    val calm = ordeals.head.copy(
+    val calm = faultPlans.head.copy(
       loop = LoopKind.Stream,
       scenario = PaperDuel(2),
       faults = Vector.empty,
-      meddling = Meddling.None,
+      messageFaults = MessageFaults.None,
       restarts = Vector.empty,
       disk = Disk.Sound,
       stopAt = None
@@ -134,7 +138,7 @@ class OrdealSuite extends munit.FunSuite:
     val all = calm.copy(
       scenario = PaperDuel(2, asPublished = true),
       faults = Vector(skein.link.TimedFault(Span.ofMillis(900), Fault.Reset)),
-      meddling = Meddling(lost = 0.1),
+      messageFaults = MessageFaults(lost = 0.1),
       restarts = Vector(Restart(Span.ofSeconds(2), Span.ofSeconds(1), Span.Zero)),
       disk = Disk.Fails(Span.ofSeconds(3)),
       stopAt = Some(Span.ofSeconds(4))

@@ -17,18 +17,18 @@ import upack.{Arr, Float64, Int32, Msg, Null, Str}
 final case class Arrival(at: Instant, vehicle: String, north: Float, east: Float)
 
 /** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of arrival, and
-  * until `calm` does to messages what the [[Meddling]] says. Connections from `spared` are left alone.
+  * until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are left alone.
   */
-final class Wiretap(
+final class FaultyTransport(
     transport: Transport,
-    meddling: Meddling,
+    messageFaults: MessageFaults,
     spared: String,
     seed: Long,
     clock: Clock,
     calm: Instant
 )(using system: ActorSystem)
     extends Transport:
-  import Wiretap.*
+  import FaultyTransport.*
   import system.dispatcher
 
   private val random     = SplitMix64(seed)
@@ -64,7 +64,7 @@ final class Wiretap(
   private def request(moves: mutable.LongMap[String], frame: Array[Byte]): ByteString =
     Message.fromClient(frame) match
       case Message.Request(id, method, params) if Moves(method) && params.nonEmpty =>
-        if meddles(meddling.refused) then renamed(method, frame)
+        if meddles(messageFaults.refused) then renamed(method, frame)
         else
           val vehicle       = textOf(params.last)
           val (north, east) = params match
@@ -90,16 +90,17 @@ final class Wiretap(
             mischief(id, ByteString.fromArrayUnsafe(frame))
           case _ => Vector(ByteString.fromArrayUnsafe(frame))
       .mapAsyncUnordered(HeldBack): frame =>
-        if meddles(meddling.late) then
-          after(upTo(meddling.lateBy).toDuration, system.scheduler)(Future.successful(frame))
+        if meddles(messageFaults.late) then
+          after(upTo(messageFaults.lateBy).toDuration, system.scheduler)(Future.successful(frame))
         else Future.successful(frame)
 
   private def mischief(id: Long, reply: ByteString): Vector[ByteString] =
-    if meddles(meddling.lost) then Vector.empty
-    else if meddles(meddling.doubled) then Vector(reply, reply)
-    else if meddles(meddling.nonsense) then Vector(encoded(Arr(Int32(1), number(id), Null, Str("nonsense"))))
-    else if meddles(meddling.garbage) then Vector(ByteString(0xc1), reply)
-    else if meddles(meddling.stray) then
+    if meddles(messageFaults.lost) then Vector.empty
+    else if meddles(messageFaults.doubled) then Vector(reply, reply)
+    else if meddles(messageFaults.nonsense) then
+      Vector(encoded(Arr(Int32(1), number(id), Null, Str("nonsense"))))
+    else if meddles(messageFaults.garbage) then Vector(ByteString(0xc1), reply)
+    else if meddles(messageFaults.stray) then
       val strays = Vector[Msg](
         Int32(7),
         Str("hello"),
@@ -114,7 +115,7 @@ final class Wiretap(
 
   private def upTo(most: Span): Span = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
 
-private object Wiretap:
+private object FaultyTransport:
   private val ByVelocity = Set("moveByVelocityZ", "moveByVelocity")
 
   /** What a vehicle is told, but for hovering. */
