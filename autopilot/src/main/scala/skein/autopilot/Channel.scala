@@ -25,6 +25,11 @@ final class Channel(val systems: Vector[Int], from: Span, mostBytes: Int = 1400)
   /** What it sends, and what of it was damaged. */
   val reader: FrameReader = FrameReader()
 
+  /** Frames from the peer with a wrong checksum, of an unknown message or of a wrong content. */
+  def damaged: Long =
+    val counts = reader.counts
+    counts.badChecksum + counts.unknown + counts.notUnderstood
+
   /** Changes how often a message is told.
     *
     * @param micros

@@ -31,7 +31,7 @@ object LearnedUnderDelay:
     val panels  = sides.map: side =>
       val rows = flownBy(side, folder, flights)
       println(
-        s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | least of 95 % | flights |"
+        s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | ± 95 % | flights |"
       )
       println("|---|---|---|---|---|---|")
       for row <- rows do

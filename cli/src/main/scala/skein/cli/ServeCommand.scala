@@ -113,7 +113,7 @@ object ServeCommand
   private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:
     private var told = Option.empty[String]
     def run(): Unit  =
-      val news = ServerNews.line(server.stats, settings.limits)
+      val news = ServerNews.line(server.stats, settings.limits, server.mavlinkStats)
       if news != told then
         told = news
         news.foreach(Console.out.println)

@@ -1,12 +1,13 @@
 package skein.cli
 
 import skein.rpc.{ServerLimits, ServerStats}
+import skein.simulator.MavlinkStats
 
 /** What a person who runs a simulator is told of clients that were refused something. */
 private[cli] object ServerNews:
 
   /** One line, or nothing as long as all is well. Equal lines mean that nothing has happened between them. */
-  def line(stats: ServerStats, limits: ServerLimits): Option[String] =
+  def line(stats: ServerStats, limits: ServerLimits, mavlink: MavlinkStats = MavlinkStats()): Option[String] =
     val counts = Seq(
       stats.turnedAway -> s"turned away because ${limits.connections} connections were open",
       stats.malformed  -> "closed for messages that were malformed or beyond a limit",
@@ -16,9 +17,15 @@ private[cli] object ServerNews:
       stats.idle       -> "closed for silence"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
     val dropped = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
-    Option.when(counts.nonEmpty || dropped.nonEmpty):
+    val byMavlink = Seq(
+      mavlink.damaged    -> "damaged frames",
+      mavlink.dropped    -> "datagrams dropped for peers too slow",
+      mavlink.turnedAway -> "peers turned away"
+    ).collect { case (count, what) if count > 0 => s"$count $what" }
+    Option.when(counts.nonEmpty || dropped.nonEmpty || byMavlink.nonEmpty):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")
-      s"${(clients ++ dropped).mkString("; ")}; at most ${mebibytes(stats.mostHeldBytes)} of " +
+      val peers   = Option.when(byMavlink.nonEmpty)(s"MAVLink: ${byMavlink.mkString(", ")}")
+      s"${(clients ++ dropped ++ peers).mkString("; ")}; at most ${mebibytes(stats.mostHeldBytes)} of " +
         s"${mebibytes(limits.heldBytes)} MiB were held for clients at any time"
 
   private def mebibytes(bytes: Long): Long = (bytes + (1 << 20) - 1) >> 20

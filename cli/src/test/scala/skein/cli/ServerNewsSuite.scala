@@ -1,12 +1,21 @@
 package skein.cli
 
 import skein.rpc.{ServerLimits, ServerStats}
+import skein.simulator.MavlinkStats
 
 class ServerNewsSuite extends munit.FunSuite:
   private val calm = ServerStats(3, 3, 0, 0, 0, 0, 0, 0, 100, 0, 100, 0, 0, 0, 0, 500, 3 << 20)
 
   test("as long as nobody is refused anything, nothing is said"):
     assertEquals(ServerNews.line(calm, ServerLimits()), None)
+
+  test("what peers of MAVLink lost is told, too"):
+    assertEquals(
+      ServerNews.line(calm, ServerLimits(), MavlinkStats(damaged = 3, dropped = 2, turnedAway = 1)).map(
+        _.takeWhile(_ != ';')
+      ),
+      Some("MAVLink: 3 damaged frames, 2 datagrams dropped for peers too slow, 1 peers turned away")
+    )
 
   test("each kind of refusal is counted and named, with the memory that was held"):
     val limits = ServerLimits(connections = 4, heldBytesPerConnection = 1 << 20, heldBytesInCommon = 2 << 20)

@@ -3,6 +3,7 @@ package skein.cluster
 import java.io.File
 import java.nio.file.{Files, Path}
 import java.security.MessageDigest
+import java.util.HexFormat
 import java.util.zip.{CRC32, ZipFile}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
@@ -25,7 +26,7 @@ object BuildId:
     )
     val digest = MessageDigest.getInstance("SHA-256")
     for (name, crc) <- classes.distinct.sorted do digest.update(s"$name $crc\n".getBytes("UTF-8"))
-    digest.digest().take(8).map(byte => f"$byte%02x").mkString
+    HexFormat.of.formatHex(digest.digest(), 0, 8)
 
   private def isClass(name: String) = name.endsWith(".class")
 

@@ -5,6 +5,7 @@ import java.net.InetAddress
 import java.nio.file.attribute.PosixFilePermissions
 import java.nio.file.{FileSystems, Files, Path}
 import java.security.SecureRandom
+import java.util.HexFormat
 import scala.util.control.NonFatal
 
 /** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host that [[Tls.of]]
@@ -124,7 +125,7 @@ object Certificates:
   private def password(file: Path): String =
     val bytes = Array.ofDim[Byte](24)
     SecureRandom().nextBytes(bytes)
-    val secret = bytes.map(byte => f"$byte%02x").mkString
+    val secret = HexFormat.of.formatHex(bytes)
     Files.writeString(file, secret)
     onlyOurs(file)
     secret

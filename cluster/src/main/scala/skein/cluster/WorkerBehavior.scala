@@ -1,5 +1,6 @@
 package skein.cluster
 
+import java.util.Locale
 import java.util.concurrent.{ArrayBlockingQueue, ExecutorService}
 import org.apache.pekko.actor.typed.scaladsl.{AbstractBehavior, ActorContext, Behaviors, TimerScheduler}
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
@@ -87,7 +88,7 @@ private[cluster] final class WorkerBehavior private (
     onEnd(how)
     Behaviors.stopped
 
-  private def summary = f"$blocks%d blocks computed in ${busy * 1e-9}%.1f s of its cores"
+  private def summary = String.format(Locale.ROOT, "%d blocks computed in %.1f s of its cores", blocks: java.lang.Long, busy * 1e-9: java.lang.Double)
 
   private def inPool(body: => Command): Unit =
     val me = context.self

@@ -2,6 +2,7 @@ package skein.flow
 
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.Attributes
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 import scala.concurrent.duration.*
@@ -121,7 +122,7 @@ class RecogniseSuite extends munit.FunSuite:
           begun += 1
           Future.successful(frame.value)
         (_ => ()))
-        .runWith(Sink.queue(1))
+        .runWith(Sink.queue(1).withAttributes(Attributes.inputBuffer(1, 1)))
       def later() = after(100.millis)(Future.successful(begun))
       for
         atFirst <- later()

@@ -78,9 +78,12 @@ private[lanes] object QuantityLanes:
       i += 1
     None
 
-  private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] = Formula.of(
-    quantity,
-    "of",
-    Seq("northM", "eastM", "downM").map(field => s"places.$field" -> vehicles).toMap,
-    Some(Seq(classOf[Positions]))
-  )
+  private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
+    // Who writes a quantity may call its argument as they like.
+    val argument = quantity.getClass.getMethod("of", classOf[Positions]).getParameters.head.getName
+    Formula.of(
+      quantity,
+      "of",
+      Seq("northM", "eastM", "downM").map(field => s"$argument.$field" -> vehicles).toMap,
+      Some(Seq(classOf[Positions]))
+    )

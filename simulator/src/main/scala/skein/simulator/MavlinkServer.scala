@@ -70,7 +70,7 @@ private[simulator] object MavlinkServer:
   private val Waiting = 256
 
   /** Fails with a [[skein.link.TransportError]]. */
-  def start(settings: MavlinkSettings, transport: Transport, peers: MavlinkPeers)(using
+  def start(settings: MavlinkSettings, transport: Transport, peers: MavlinkPeers, counters: MavlinkCounters)(using
       system: ActorSystem
   ): Future[MavlinkServer] =
     given ExecutionContext = ExecutionContext.parasitic
@@ -81,7 +81,9 @@ private[simulator] object MavlinkServer:
     def serve(systems: Vector[Int])(flow: Flow[ByteString, ByteString, ?]): Unit =
       val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
       val channel      = numbers.getAndIncrement()
-      if present.incrementAndGet() > MostPeers then queue.complete()
+      if present.incrementAndGet() > MostPeers then
+        counters.turnedAway.incrementAndGet(): Unit
+        queue.complete()
       else peers.joined(channel, systems, queue)
       out
         .via(switch.flow)

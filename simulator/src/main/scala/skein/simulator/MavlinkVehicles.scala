@@ -18,6 +18,9 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
   private val autopilots = world.vehicles.indices.map(OnBoard(_)).toVector
   private val channels   = mutable.LinkedHashMap.empty[Long, Channel]
 
+  /** By peers that have left. */
+  private var damagedBefore = 0L
+
   autopilots.foreach(one => world.attach(one.index, one))
 
   /** @param systems
@@ -27,7 +30,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
     val seen = if systems.isEmpty then autopilots.map(_.system) else systems
     channels(channel) = Channel(seen, sinceBoot)
 
-  def leave(channel: Long): Unit = channels.remove(channel): Unit
+  def leave(channel: Long): Unit = channels.remove(channel).foreach(gone => damagedBefore += gone.damaged)
 
   /** Takes in what a peer has sent, now: time was let pass before. */
   def receive(channel: Long, bytes: Array[Byte]): Unit =
@@ -55,10 +58,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
   def nextDue: Option[Instant] =
     channels.valuesIterator.flatMap(_.nextDue).minOption.map(startedAt + _)
 
-  /** Frames that came whole, and those that were damaged, unknown or missing. */
-  def counts: (whole: Long, damaged: Long) =
-    val all = channels.valuesIterator.map(_.reader.counts).toVector
-    (all.map(_.frames).sum, all.map(one => one.badChecksum + one.unknown + one.notUnderstood).sum)
+  /** Frames with a wrong checksum, of an unknown message or of a wrong content, of all peers since the start. */
+  def damaged: Long = damagedBefore + channels.valuesIterator.map(_.damaged).sum
 
   private def sinceBoot: Span = world.now.since(startedAt)
 

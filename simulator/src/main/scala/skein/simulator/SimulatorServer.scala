@@ -5,7 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.scaladsl.{Behaviors, TimerScheduler}
 import org.apache.pekko.actor.typed.{ActorRef, Behavior}
-import org.apache.pekko.stream.BoundedSourceQueue
+import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import scala.collection.mutable
@@ -34,7 +34,8 @@ final class SimulatorServer private (
     lines: CallLines[?],
     behindNanos: AtomicLong,
     broken: Future[Throwable],
-    mavlink: Option[MavlinkServer]
+    mavlink: Option[MavlinkServer],
+    counters: MavlinkCounters
 ):
 
   /** Where it listens, with the actual port. */
@@ -44,6 +45,8 @@ final class SimulatorServer private (
   def mavlinkAddress: Option[Address] = mavlink.flatMap(_.address)
 
   def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
+
+  def mavlinkStats: MavlinkStats = counters.stats
 
   /** Completes if it ends without having been closed, with the reason. */
   val failed: Future[Throwable] =
@@ -86,10 +89,12 @@ object SimulatorServer:
     val broken             = Promise[Throwable]()
     val lines              = CallLines[Call]()
     val work               = AtomicBoolean()
+    val counters           = MavlinkCounters()
     val simulator          = system.spawnAnonymous(
       Behaviors.withTimers(Running(
         Simulation(settings, clock.now(), VoxelGrid.save),
         settings.mavlink.isDefined,
+        counters,
         clock,
         lines,
         work,
@@ -121,12 +126,12 @@ object SimulatorServer:
         case None       => Future.successful(None)
         case Some(open) =>
           MavlinkServer
-            .start(open, transport, peers)
+            .start(open, transport, peers, counters)
             .map(Some(_))
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, mavlink)
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, mavlink, counters)
 
   private[simulator] enum Message:
     /** Calls wait. */
@@ -151,6 +156,7 @@ object SimulatorServer:
   final private class Running(
       simulation: Simulation,
       speaksMavlink: Boolean,
+      counters: MavlinkCounters,
       clock: Clock,
       lines: CallLines[Call],
       work: AtomicBoolean,
@@ -171,7 +177,9 @@ object SimulatorServer:
         for answer <- simulation.takeAnswers() do
           waiting.remove(answer.token).foreach(complete(_, answer.result))
         for vehicles <- mavlink; (channel, datagrams) <- vehicles.take(); out <- outs.get(channel) do
-          datagrams.foreach(bytes => out.offer(ByteString.fromArrayUnsafe(bytes)): Unit)
+          for bytes <- datagrams do
+            if out.offer(ByteString.fromArrayUnsafe(bytes)) == QueueOfferResult.Dropped then
+              counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
         val now  = clock.now()
         val told = mavlink.flatMap(_.nextDue).flatMap(simulation.comesTo)
@@ -215,7 +223,9 @@ object SimulatorServer:
         case Message.Heard(channel, bytes, done) =>
           orEnd:
             simulation.advance(clock.now())
-            mavlink.foreach(_.receive(channel, bytes))
+            for vehicles <- mavlink do
+              vehicles.receive(channel, bytes)
+              counters.damaged.set(vehicles.damaged)
             val _ = done.trySuccess(Done)
             goOn()
         case Message.Left(channel) =>

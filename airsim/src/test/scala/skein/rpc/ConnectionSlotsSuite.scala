@@ -2,7 +2,7 @@ package skein.rpc
 
 import skein.units.*
 
-class PlacesSuite extends munit.FunSuite:
+class ConnectionSlotsSuite extends munit.FunSuite:
   private final class Guest(val silentFor: Span) extends ConnectionSlots.Guest:
     var left          = false
     def leave(): Unit = left = true
