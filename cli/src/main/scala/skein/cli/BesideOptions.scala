@@ -4,13 +4,13 @@ import java.nio.file.Path
 import java.util.concurrent.ConcurrentLinkedQueue
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.record.{ClockKind, RecordingHeader, McapRecording, McapRowSink, PostgresRowSink, RowSink}
+import skein.record.{ClockKind, McapRecording, McapRowSink, PostgresRowSink, RecordingHeader, RowSink}
 import skein.settings.FlightPlan
 
 /** Where flights are recorded besides their DuckDB files. */
 final case class BesideOptions(
     @arg(doc =
-      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://USER:PASSWORD@HOST:PORT/DATABASE writes a live flight's tables there; may be given several times"
+      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://HOST/DATABASE writes a live flight's tables there; may be given several times"
     )
     record: Seq[String]
 ):

@@ -16,7 +16,7 @@ private[cli] object ServerNews:
       stats.tooSlow    -> "closed for messages or replies that took too long",
       stats.idle       -> "closed for silence"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
-    val dropped = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
+    val dropped   = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
     val byMavlink = Seq(
       mavlink.damaged    -> "damaged frames",
       mavlink.dropped    -> "datagrams dropped for peers too slow",

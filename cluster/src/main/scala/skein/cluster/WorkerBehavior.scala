@@ -88,7 +88,12 @@ private[cluster] final class WorkerBehavior private (
     onEnd(how)
     Behaviors.stopped
 
-  private def summary = String.format(Locale.ROOT, "%d blocks computed in %.1f s of its cores", blocks: java.lang.Long, busy * 1e-9: java.lang.Double)
+  private def summary = String.format(
+    Locale.ROOT,
+    "%d blocks computed in %.1f s of its cores",
+    blocks: java.lang.Long,
+    busy * 1e-9: java.lang.Double
+  )
 
   private def inPool(body: => Command): Unit =
     val me = context.self

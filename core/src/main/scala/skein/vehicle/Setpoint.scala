@@ -39,6 +39,15 @@ enum YawMode:
   /** Yaw, rad from north towards east, reached the shorter way. */
   case Angle
 
+/** What a command makes of where its vehicle is: a goal for the flight controller. A [[Setpoint]] is one that never
+  * changes.
+  */
+trait Guidance:
+  def setpoint(now: Kinematics): Setpoint
+
+  /** Time between two goals; absent where one is enough. */
+  def period: Option[Span]
+
 /** What the flight controller is to reach: per axis a mode and its goal, as AirSim's SimpleFlight keeps them. The
   * constructors in the companion bear the names of AirSim's commands.
   *

@@ -70,7 +70,12 @@ private[simulator] object MavlinkServer:
   private val Waiting = 256
 
   /** Fails with a [[skein.link.TransportError]]. */
-  def start(settings: MavlinkSettings, transport: Transport, peers: MavlinkPeers, counters: MavlinkCounters)(using
+  def start(
+      settings: MavlinkSettings,
+      transport: Transport,
+      peers: MavlinkPeers,
+      counters: MavlinkCounters
+  )(using
       system: ActorSystem
   ): Future[MavlinkServer] =
     given ExecutionContext = ExecutionContext.parasitic
