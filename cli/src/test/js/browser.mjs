@@ -29,11 +29,13 @@ const until = async expression => {
 };
 try {
   await page.goto(url);
-  if (token) { await page.waitForSelector("#token", { state: "attached" }); await page.fill("#token", token, { force: true }); }
   for (const [what, ...how] of steps) {
     if (what === "wait") await until(how[0]);
     else if (what === "ask") told[how[0]] = await page.evaluate(how[1]);
-    else if (what === "click") await page.click(how[0]);
+    else if (what === "click") {
+      if (token) await page.fill("#token", token, { force: true });
+      await page.click(how[0]);
+    }
     else if (what === "sleep") await page.waitForTimeout(how[0]);
     else if (what === "picture") await page.screenshot({ path: how[0] });
     else if (what === "seek") await page.evaluate(at => {

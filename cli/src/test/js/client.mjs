@@ -9,6 +9,13 @@ const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const WebSocket = require("ws");
 const Ajv = require("ajv");
 
+// A flight is listed when it has started.
+const listed = new URL(url.replace(/^ws/, "http")), flight = listed.pathname.split("/").pop();
+for (const end = Date.now() + 60_000; Date.now() < end; await new Promise(again => setTimeout(again, 50))) {
+  const flights = await (await fetch(new URL("/flights", listed))).json();
+  if (flights.some(one => one.id === flight)) break;
+}
+
 const schemas = new Ajv({ strict: false, validateFormats: false });
 const socket = new WebSocket(url, [protocol]);
 const client = new FoxgloveClient({ ws: socket });
