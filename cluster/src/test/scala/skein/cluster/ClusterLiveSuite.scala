@@ -3,7 +3,7 @@ package skein.cluster
 import java.net.Socket
 import java.nio.file.{Files, Path}
 import java.util.concurrent.atomic.AtomicInteger
-import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch}
+import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, Semaphore, TimeUnit}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
@@ -43,10 +43,15 @@ class ClusterLiveSuite extends munit.FunSuite:
 
   private final class Coordinating(val folder: Path, port: Int = 0, tls: Option[Tls] = None):
     val news   = ConcurrentLinkedQueue[News]()
+    val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(loopback.copy(port = port), tls, question, ledger, build = "one")(news.add(_): Unit)
+      .start(loopback.copy(port = port), tls, question, ledger, build = "one")(heard)
       .fold(fail(_), identity)
+
+    private def heard(one: News): Unit =
+      if one.isInstanceOf[News.Joined] then joined.release()
+      news.add(one): Unit
 
     def close(): Unit =
       Await.result(node.close(), 30.seconds)
@@ -85,6 +90,8 @@ class ClusterLiveSuite extends munit.FunSuite:
       val ended   = Vector("anna", "ben", "cleo").map(name =>
         worker(coordinator.node.address, name, solvers, cores = 2)._2
       )
+      // Who joins when all is done is told nothing, and tries again for as long as its patience lasts.
+      assert(coordinator.joined.tryAcquire(3, 60, TimeUnit.SECONDS), "not all have joined")
       assertEquals(computed(coordinator.node), answers)
       val solved = solvers.solved.get
       assertEquals(coordinator.node.progress.coordinator.counts.accepted, works.size.toLong)
