@@ -30,6 +30,9 @@ object PausedLoop:
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
 
+  /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs. */
+  private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
+
   /** While the simulator stands still, no time passes between question and answer. */
   private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
     read.copy(sentAt = read.validAt, receivedAt = read.validAt)
@@ -83,14 +86,14 @@ private final class PausedFlight(
       _        <- if step.number == 0 then orFail(stepper.pause()) else Future.unit
       readings <- orFail(team.readAll())
       sensed   <- orFail(team.senseAll())
-      now  = readings(0).state.validAt
+      now  = PausedLoop.newest(readings.map(_.state))
       seen = readings.foldLeft(step.view)((seen, reading) =>
         seen.withReading(reading.copy(state = PausedLoop.timeless(reading.state)))
       )
       view = sensed.foldLeft(seen)((seen, reading) =>
         seen.withSensorReading(reading.copy(values = PausedLoop.timeless(reading.values)))
       )
-      _       = verifyStep(step, now)
+      _       = verifyStep(step, readings)
       decided =
         team.vehicles.toVector.map(vehicle => team.decideAt(vehicle, step.memories(vehicle), view, now))
       _ = send(decided.map(_._2))
@@ -109,9 +112,16 @@ private final class PausedFlight(
       team.log.sent(decision, clock.now())
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
-  private def verifyStep(step: Step, now: Instant): Unit =
-    for before <- step.view.readings(0) do
-      val stepped = now.since(before.state.validAt)
+  private def verifyStep(step: Step, readings: Vector[Reading]): Unit =
+    val (now, oldest) = (PausedLoop.newest(readings.map(_.state)), readings.map(_.state.validAt).min)
+    if oldest != now then
+      team.log.note(
+        EventKind.StepDrift,
+        None,
+        s"${now.since(oldest).toMillis} ms of simulator time passed while step ${step.number} was read: it did not stand still"
+      )
+    if step.number > 0 then
+      val stepped = now.since(PausedLoop.newest(step.view.readings.flatten.map(_.state)))
       if stepped != team.settings.period then
         team.log.note(
           EventKind.StepDrift,

@@ -72,7 +72,7 @@ private[torture] object KnowledgeChecks:
       val now                       = decision.decidedAt
       def arrived(reading: Reading) =
         if seen.faultPlan.loop != LoopKind.Paused then now.since(reading.state.receivedAt)
-        else if isOfTwoRuns(seen, decision) then now.since(reading.state.validAt)
+        else if ranWhileRead(seen, decision) then now.since(reading.state.validAt)
         else Span.Zero
       val observed  = decision.observations
       val byArrival = Seq(
@@ -84,13 +84,15 @@ private[torture] object KnowledgeChecks:
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
 
-  /** Whether the simulator was started again while the readings of one step were asked for: they are of two clocks. */
-  private def isOfTwoRuns(seen: FlightTrace, decision: Decision): Boolean =
+  /** Whether the simulator was started again since the step before was read: the readings of this one are of two clocks, or
+    * of a simulator that ran while they were asked for.
+    */
+  private def ranWhileRead(seen: FlightTrace, decision: Decision): Boolean =
     val answers =
       for
         reading <- Seq(decision.own, decision.opponent)
         answer  <- seen.crafts(seen.vehicles.indexOf(reading.vehicle)).answers
-        if answer.question == reading.sequence
+        if answer.question == reading.sequence || answer.question == reading.sequence - 1
       yield answer.state
     val (first, last) = (answers.map(_.sentAt).reduce(_.min(_)), answers.map(_.receivedAt).reduce(_.max(_)))
     seen.runs.exists(run => run.from >= first && run.from <= last)
