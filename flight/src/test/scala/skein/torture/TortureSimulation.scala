@@ -17,7 +17,7 @@ class TortureSimulation extends munit.FunSuite:
   test(
     "seeds whose simulator starts again before or between the readings of one step, or while an answer is under way"
   ):
-    for seed <- Seq(1851L, 2989L, 4876L, 6961L, 8167L) do
+    for seed <- Seq(1851L, 2989L, 4876L, 6961L, 8167L, 8823L) do
       assertEquals(Torture.of(seed, Span.ofSeconds(60)).violations, Vector.empty, s"seed $seed")
 
   test(s"$seeds flights through faults of network, simulator, answers and disk break no rule"):
