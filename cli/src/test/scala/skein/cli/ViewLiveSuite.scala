@@ -102,7 +102,7 @@ class ViewLiveSuite extends munit.FunSuite:
   folder.test("in a browser a flight is seen, paused and let go on, and its recording is played and sought"):
     out =>
       val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
-      val flying = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "30s")
+      val flying = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "150s")
       val shown  =
         "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
       val seen = browse(
