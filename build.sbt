@@ -27,18 +27,14 @@ ThisBuild / scalacOptions ++= Seq(
 // by an sbt that was started to publish, `./sbtw publishLocal`.
 ThisBuild / packageDoc / publishArtifact := Publishing.isWanted
 ThisBuild / packageSrc / publishArtifact := Publishing.isWanted
+ThisBuild / Test / publishArtifact       := false // else the two above hold for tests, too
 ThisBuild / Test / fork               := true
 ThisBuild / run / fork                := true
 ThisBuild / Test / testForkedParallel := false
 ThisBuild / Test / javaOptions ++= Jvm.options
 ThisBuild / run / javaOptions ++= Jvm.options
 Global / onChangedBuildSource   := ReloadOnSourceChanges
-// Two at once, since many suites wait for sockets and clocks; those that measure time have the machine to themselves.
-Global / concurrentRestrictions := Seq(
-  Tags.limitAll(2),
-  Tags.limit(Tags.ForkedTestGroup, 2),
-  Tags.exclusive(TestGroups.Timing)
-)
+Global / concurrentRestrictions := TestGroups.restrictions
 
 // Every part on this machine, without the archives: what a project of a user's own builds from, minutes sooner.
 addCommandAlias("installLocal", "publishLocal")
@@ -66,7 +62,7 @@ lazy val core = project
 /** Forward simulation, search, identification, planning. No Pekko. */
 lazy val forward = project
   .settings(artifact("forward", "Forward simulation, search, identification, planning"))
-  .dependsOn(core).settings(Jvm.vectorModule, libraryDependencies ++= munit)
+  .dependsOn(core).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Rewrites clock readings as classes load. Java alone; the JVM is started with its jar as `-javaagent`. */
 lazy val vtimeAgent = project
@@ -149,8 +145,8 @@ lazy val offboard = project
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
 lazy val recognition = project
   .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
-  .dependsOn(airsim)
-  .settings(libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
+  .dependsOn(airsim, flight % Test)
+  .settings(underAgent, libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
 
 /** Work cut into blocks for many machines, each counted once. Depends on nothing. */
 lazy val blocks = project
@@ -181,18 +177,18 @@ lazy val flight = project
   .settings(artifact("flight", "Control loops, and flights put together"))
   .dependsOn(forward, flow, simulator, offboard, record % "compile->compile;test->test", vtime)
   .settings(underAgent)
-  .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, streamTestkit) ++ munit)
+  .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, protobuf, streamTestkit) ++ munit)
 
 /** Episodes step by step, for learners. */
 lazy val environment = project
   .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
   .dependsOn(flight)
-  .settings(libraryDependencies ++= munit)
+  .settings(testsCompute := true, libraryDependencies ++= munit)
 
 /** Learners of policies. */
 lazy val learn = project
   .settings(artifact("learn", "SAC, DDPG and PPO for policies under a loop's timing"))
-  .dependsOn(environment).settings(Jvm.vectorModule, libraryDependencies ++= munit)
+  .dependsOn(environment).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Commands and reports. */
 lazy val cli = project
@@ -202,7 +198,7 @@ lazy val cli = project
   .settings(underAgent)
   .settings(
     libraryDependencies ++= Seq(mainargs, logback, scalatags) ++ munit,
-    // No command runs models, whose library is larger than all the rest.
+    // What runs any model is larger than all the rest; who flies such a policy adds it: docs/guides/onnx.md.
     excludeDependencies += ExclusionRule(onnxruntime.organization, onnxruntime.name),
     Compile / mainClass  := Some("skein.cli.Main"),
     // What a project that ./skein new writes takes from this build.
@@ -231,7 +227,7 @@ lazy val cli = project
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
       """case " $* " in""",
-      """  " search "* | " worker "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "*)""",
+      """  " search "* | " worker "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "* | *" --learn"[\ =]*)""",
       """    addJava "--add-modules=jdk.incubator.vector"""",
       """    addJava "-XX:SharedArchiveFile=${app_home}/../skein-vector.jsa"""",
       """    exec 2> >(""",

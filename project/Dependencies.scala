@@ -27,6 +27,7 @@ object Dependencies {
   val boofcv        = ("org.boofcv"            % "boofcv-recognition"   % "1.2.2").exclude("net.sf.trove4j", "trove4j")
   // 1.29.0 ends the JVM on threads with the default stack.
   val onnxruntime   = "com.microsoft.onnxruntime" % "onnxruntime"       % "1.26.0"
+  val protobuf      = "com.google.protobuf"    % "protobuf-java"        % "4.33.1"
   val mainargs      = "com.lihaoyi"           %% "mainargs"             % "0.7.8"
   val hocon         = "com.typesafe"           % "config"               % "1.4.5"
   val pureconfig    = "com.github.pureconfig" %% "pureconfig-core"      % "0.17.8"

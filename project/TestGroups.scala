@@ -2,14 +2,32 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Which suites share a JVM, and what runs beside it. */
+/** Which suites share a JVM, how that compiles, and what runs beside it. */
 object TestGroups extends AutoPlugin {
 
   override def requires: Plugins      = JvmPlugin
   override def trigger: PluginTrigger = allRequirements
 
+  object autoImport {
+    val testsCompute = settingKey[Boolean]("whether all tests compute for so long that optimising them pays")
+  }
+  import autoImport.*
+
   /** Of suites that hold what they measure on the clock to a bound: nothing else runs meanwhile. */
-  val Timing: Tags.Tag = Tags.Tag("timing")
+  private val Timing: Tags.Tag = Tags.Tag("timing")
+
+  /** Of suites that mostly wait: for other programs, for the real clock. */
+  private val Waiting: Tags.Tag = Tags.Tag("waiting")
+
+  /** One task for each core, and two that wait beside them; what measures time has the machine to itself. */
+  val restrictions: Seq[Tags.Rule] = Seq(
+    Tags.customLimit { running =>
+      def count(tag: Tags.Tag) = running.getOrElse(tag, 0)
+      val waiting              = count(Waiting)
+      waiting <= 2 && count(Tags.All) - waiting <= 2
+    },
+    Tags.exclusive(Timing)
+  )
 
   private val timing = Set(
     "skein.link.LinkFidelityLiveSuite",
@@ -17,23 +35,66 @@ object TestGroups extends AutoPlugin {
     "skein.flight.TwinLiveSuite"
   )
 
+  private val waiting = Set(
+    "skein.flight.MavlinkFlightLiveSuite",
+    "skein.flight.RunningSimulatorLiveSuite",
+    "skein.mcap.OfficialPythonLibraryLiveSuite",
+    "skein.simulator.MavsdkLiveSuite",
+    "skein.simulator.OfficialPythonClientLiveSuite"
+  )
+
   /** These tell the compilers of their JVM to give way, for good, as is done before a live flight: on a busy machine
     * everything behind them would be interpreted. Each has a JVM of its own.
     */
   private val alone = Set(
     "skein.cli.DocumentedCommandsLiveSuite",
+    // Its viewers have a processor only while nobody else wants it: not beside two that compute.
+    "skein.cli.ViewLiveSuite",
     "skein.flight.WarmUpSimulation",
     "skein.loop.planning.BackgroundThreadLiveSuite"
   )
 
+  /** By vectors, which are slow until they are optimised, or for long. So are most simulations. */
+  private val computing = Set(
+    "skein.budget.BudgetSuite",
+    "skein.budget.ClusterSweptSuite",
+    "skein.budget.ScenarioSweptSuite",
+    "skein.cli.ClusterCommandsLiveSuite",
+    "skein.cli.LearnCommandSuite",
+    "skein.cli.SearchCommandSuite",
+    "skein.cli.TortureQuestionSuite",
+    "skein.cluster.ClusterLiveSuite",
+    "skein.loop.planning.PlanSuite",
+    "skein.loop.planning.PlanWorkersLiveSuite",
+    "skein.recognition.AprilTagsSuite",
+    "skein.search.LandscapeSuite",
+    "skein.search.SearchBlockLaws",
+    "skein.search.SearchFileSuite",
+    "skein.search.TeamSearchSuite"
+  )
+
+  private def isComputing(suite: String) = computing(suite) || suite.endsWith("Simulation")
+
   override val projectSettings: Seq[Setting[?]] = Seq(
+    testsCompute := false,
     Test / testGrouping := {
-      val fork   = Tests.SubProcess((Test / forkOptions).value)
+      val options  = (Test / forkOptions).value
+      val computes = testsCompute.value
+      def jvm(more: Seq[String]) =
+        Tests.SubProcess(options.withRunJVMOptions(options.runJVMOptions ++ more))
       val groups = (Test / definedTests).value.groupBy { suite =>
-        if (timing(suite.name)) "timing" else if (alone(suite.name)) suite.name else "others"
+        if (timing(suite.name)) "timing"
+        else if (waiting(suite.name)) "waiting"
+        else if (alone(suite.name)) suite.name
+        else if (computes || isComputing(suite.name)) "computing"
+        else "others"
       }
-      groups.toSeq.sortBy(_._1).map { case (name, suites) =>
-        new Tests.Group(name, suites, fork, if (name == "timing") Seq(Timing -> 1) else Seq.empty)
+      groups.toSeq.sortBy(_._1).map {
+        case ("timing", suites)    => new Tests.Group("timing", suites, jvm(Nil), Seq(Timing -> 1))
+        case ("waiting", suites)   => new Tests.Group("waiting", suites, jvm(Jvm.brief), Seq(Waiting -> 1))
+        case ("others", suites)    => new Tests.Group("others", suites, jvm(Jvm.brief), Nil)
+        case ("computing", suites) => new Tests.Group("computing", suites, jvm(Jvm.oneCollector), Nil)
+        case (name, suites)        => new Tests.Group(name, suites, jvm(Nil), Nil)
       }
     }
   )

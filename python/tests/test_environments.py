@@ -129,7 +129,7 @@ def test_wrong_settings_and_a_closed_environment_are_told(make):
     for settings, told in [
         ({"link": "nowhere"}, "link: "),
         ({"loop": "plan"}, "loop: expected paused, .* which plans"),
-        ({"plant": "ideal"}, "plant: the lanes fly"),
+        ({"plant": "quadrotor", "altitude_m": 3.0}, "plant: the lanes know no ground"),
         ({"learner": "nobody"}, "learner: expected pursuer or evader"),
         ({"opponent": "nobody"}, "opponent: "),
         ({"capture_radius_m": -1}, "capture_radius_m: expected"),

@@ -1,4 +1,5 @@
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -56,3 +57,19 @@ def test_a_policy_that_is_slow_or_hangs_holds_no_flight_in_real_time_up(tmp_path
     with flights.load(own) as recording:
         assert (recording["decision"].vehicle == "Pursuer").sum() >= 10
         assert recording["event"].detail.str.contains("by the fallback").sum() >= 10
+
+
+def test_a_network_goes_to_onnx_and_flies_from_there_as_it_did(tmp_path: Path):
+    conf = tmp_path / "policy.conf"
+    conf.write_text(
+        'family = "learned:"\nrole = pursuer\nparameters {\n'
+        + "".join(f"  weight-1-1-{n} = {0.125 * n}\n" for n in range(1, 10))
+        + "  bias-1-1 = 0.25\n  turnRateRadPerS = 1\n  turnRad = 0\n}\n"
+    )
+    onnx = skein.to_onnx(conf, tmp_path / "policy.onnx")
+    flown = [
+        skein.fly(link="vpn", duration_s=5, policy=policy, out=tmp_path / name)
+        for name, policy in (("conf", conf), ("onnx", onnx))
+    ]
+    one, other = (next(iter(flights.tables.values())).iloc[1].tolist() for flights in flown)
+    assert one == other

@@ -4,7 +4,7 @@
 >>> skein.spread(loop=["stream", "predictive"], link="vpn", seeds=20)       # doctest: +SKIP
 """
 
-from .commands import Flights, Found, fly, run, search, spread
+from .commands import Flights, Found, fly, run, search, spread, to_onnx
 from .errors import NotFound, SkeinError
 from .recording import Recording, load
 
@@ -19,4 +19,5 @@ __all__ = [
     "run",
     "search",
     "spread",
+    "to_onnx",
 ]

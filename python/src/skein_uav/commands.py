@@ -108,7 +108,7 @@ def fly(
     settings : mapping, optional
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
-        A policy file, as :func:`search` writes one: flown beside the scenario's own.
+        A policy file, as :func:`search` writes one, or an ONNX file of another framework: flown beside the scenario's own.
     pursuer, evader : callable, optional
         A policy written in Python, flown beside the scenario's own: from what is seen, ndarray of float32 of shape (9,),
         to a number from -1 to 1, as in :mod:`skein_uav.environments`. It is asked while flights are flown, by all of
@@ -261,6 +261,30 @@ def search(
         pd.read_csv(landscape) if landscape.exists() else None,
         folder,
     )
+
+
+def to_onnx(policy: str | os.PathLike[str], file: str | os.PathLike[str]) -> Path:
+    """Writes the network of a policy file as an ONNX file.
+
+    Parameters
+    ----------
+    policy : path
+        A policy file of a family ``neural:…`` or ``learned:…``.
+    file : path
+        The ONNX file, which is replaced.
+
+    Returns
+    -------
+    Path
+        `file`.
+
+    Raises
+    ------
+    SkeinError
+        If the policy is no network, or the file cannot be written.
+    """
+    run("policy", os.fspath(policy), onnx=os.fspath(file))
+    return Path(file)
 
 
 def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tables:

@@ -1,11 +1,12 @@
 """Environments of Gymnasium: a duel under a loop's real timing, over a link.
 
-``skein_uav/Pursuit-v0`` teaches the pursuer, ``skein_uav/Evasion-v0`` the evader; the other side flies any policy.
+In ``skein_uav/Pursuit-v0`` the learner is the pursuer, in ``skein_uav/Evasion-v0`` the evader; the other side flies any
+policy.
 
-A step is one decision of the learner, at the moment at which the loop lets it decide: what it sees was sampled some time
-ago, and what it does acts some time later. Both times are the link's.
+A step is one decision of the learner, at the moment at which the loop decides. Observations are old, and actions take
+effect later, by the delays of the link.
 
-Observation, 9 numbers (float32), in the frame whose x-axis is the own heading commanded last:
+Observation, 9 numbers (float32), in the frame whose x-axis is the learner's last commanded heading:
 
 == ================= ===== ====================================================
 0  ahead             m     where the opponent is, as the readings tell
@@ -19,10 +20,11 @@ Observation, 9 numbers (float32), in the frame whose x-axis is the own heading c
 8  opponent's age    s     of the opponent's
 == ================= ===== ====================================================
 
-Action, 1 number from -1 to 1 (what is beyond is taken for the bound): the pursuer's share of 1 rad/s to turn right by,
-the evader's share of half a turn to turn right at once.
+Action, 1 number from -1 to 1 (values beyond are clipped): for the pursuer the rate of turn to the right, as a share of
+1 rad/s; for the evader an immediate turn to the right, as a share of half a turn.
 
-Reward: of the pursuer minus the distance over 10 m, once a period, and 10 for a capture; of the evader the opposite.
+Reward of the pursuer: minus the distance divided by 10 m, once a period, and 10 for a capture. Of the
+evader: the opposite.
 """
 
 from __future__ import annotations
@@ -64,18 +66,18 @@ def action_space() -> gym.spaces.Box:
 class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     """Many duels side by side, in one of which each row of the arrays flies.
 
-    Up to 128 environments fly over one link together: what befalls their messages is the same in all of them, and they
-    begin together. Where one ends before, by a capture, its next episode begins in the loop that runs already and lasts
-    until the others'.
+    Environments are grouped by 128. Those of a group share a link: their messages meet the same delays, and they begin
+    together. An episode that ends early, by a capture, is followed by one in the same loop that lasts until the others'
+    end.
 
     Parameters
     ----------
     num_envs : int
         Environments.
     learner : {'pursuer', 'evader'}
-        Who is taught.
+        Which side learns.
     opponent : str
-        A policy file or a family's name; the paper's policy unless told.
+        A policy file or a family's name; by default the paper's policy.
     loop : {'stream', 'predictive', 'sequential', 'futures', 'paused'}
         Whose timing it is.
     link : str

@@ -17,10 +17,11 @@ from .errors import SkeinError
 class Recording(Mapping[str, pd.DataFrame]):
     """A recording: its tables by name, each read when it is asked for.
 
-    Units are the ends of the columns' names: ``Ns`` whole nanoseconds, ``Ms`` milliseconds, ``M`` metres, ``Mps``
-    metres per second, ``Rad`` radians. ``North``, ``East``, ``Down`` are the world frame. Columns that begin with
-    ``validAt`` are on the simulator's clock, all other instants on the controller's. Every table begins with ``row``,
-    the order in which the rows of the flight were accepted.
+    Names of columns end in their unit: ``Ns`` whole nanoseconds, ``Ms`` milliseconds, ``M`` metres, ``Mps``
+    metres per second, ``Rad`` radians. ``North``, ``East``, ``Down`` are the world frame. ``validAtNs``
+    (also ``ownValidAtNs`` and the like), ``actsAtNs`` and ``predictedForNs`` are on the simulator's clock, all other
+    instants on the controller's. Every table begins with ``row``, the order in which the rows of the flight were
+    accepted.
 
     Parameters
     ----------
@@ -30,7 +31,7 @@ class Recording(Mapping[str, pd.DataFrame]):
     Raises
     ------
     SkeinError
-        If it is missing, or no recording.
+        If it is missing, or not a recording.
 
     Examples
     --------

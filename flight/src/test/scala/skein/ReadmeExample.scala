@@ -17,10 +17,11 @@ object ReadmeExample:
     Sense
       .every(period)(() => drone.kinematics())(onSkip = println, onMissed = println)
       .via(Pace(period / 2, clock)(unused => println(s"too old: $unused")))
-      .via(Decide.withMemory(start = 0.0): (headingRad, seen) =>
+      .via(Decide.withMemory(start = Option.empty[Instant]): (begun, seen) =>
         println(f"${seen.roundTrip.toMillis}%.0f ms there and back, at ${seen.value.positionNed}")
-        val next = headingRad + 0.05
-        (next, Vector3(5 * math.cos(next), 5 * math.sin(next), 0)))
+        val since      = begun.getOrElse(seen.validAt)
+        val headingRad = 0.5 * seen.validAt.since(since).toSeconds
+        (Some(since), Vector3(5 * math.cos(headingRad), 5 * math.sin(headingRad), 0)))
       .via(Steer(minInterval = period / 2, clock)(
         send = velocityNed => drone.moveByVelocityZ(velocityNed, down = Metres(-20), Span.ofSeconds(10)),
         park = () => drone.hover()

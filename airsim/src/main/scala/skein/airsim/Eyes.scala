@@ -8,7 +8,7 @@ import skein.units.*
 import upack.{Bool, Msg, Str}
 import upickle.default.writeMsg
 
-/** Cameras and LIDARs of one vehicle. Pictures and scans come on connections of their own ([[Channel.Bulk]]), so nothing that
+/** Cameras and lidars of one vehicle. Images and scans come on connections of their own ([[Channel.Bulk]]), so nothing that
   * flies the vehicle waits for them, and are stamped with their exposure. A question is refused while
   * [[skein.rpc.RpcSettings.windowInAll]] of them are unanswered; `skein.flow.Frames` asks as often as wanted, keeps the
   * newest and counts what it skips.
@@ -22,7 +22,7 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
   private val options =
     CallOptions(client.timeout, Channel.Bulk, idempotent = true, whenFull = WhenFull.Refuse)
 
-  /** Several pictures of one moment, in the order of the shots. */
+  /** Several images of one moment, in the order of the shots. */
   def images(shots: Seq[Shot]): Future[Either[RpcError, Stamped[Vector[Image]]]] =
     val asked = shots.map: shot =>
       ImageRequest(
@@ -33,11 +33,11 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
       )
     ask("simGetImages", Seq(writeMsg(asked), Str(vehicle), Bool(false)))(Images.read(_, shots, originNed))
 
-  /** One picture. */
+  /** One image. */
   def image(shot: Shot): Future[Either[RpcError, Stamped[Image]]] =
     images(Seq(shot)).map(_.map(_.map(_.head)))
 
-  /** The newest scan of a LIDAR; an empty name means the first. Between two scans the older one comes again. */
+  /** The newest scan of a lidar; an empty name means the first. Between two scans the older one comes again. */
   def scan(lidar: String = ""): Future[Either[RpcError, Stamped[Scan]]] =
     ask("getLidarData", Seq(Str(lidar), Str(vehicle)))(Images.readScan(_, originNed))
 

@@ -3,7 +3,7 @@ package skein.airsim
 import skein.rpc.{Bytes, MessageReader}
 import skein.units.*
 
-/** What a picture shows, with AirSim's numbers. Cosys-AirSim has further ones. */
+/** What an image shows, with AirSim's numbers. Cosys-AirSim has further ones. */
 enum ImageKind(val number: Int):
   case Scene               extends ImageKind(0)
   case DepthPlanar         extends ImageKind(1)
@@ -16,7 +16,7 @@ enum ImageKind(val number: Int):
   case OpticalFlow         extends ImageKind(8)
   case OpticalFlowVis      extends ImageKind(9)
 
-/** How a picture's pixels come. */
+/** How an image's pixels come. */
 enum Encoding:
   /** Three bytes a pixel: blue, green, red. */
   case Raw
@@ -27,14 +27,14 @@ enum Encoding:
   /** One number a pixel, depths in m. */
   case Numbers
 
-/** One picture to be taken.
+/** One image to be taken.
   *
   * @param camera
   *   its name; `0` is the front one
   */
 final case class Shot(camera: String, kind: ImageKind = ImageKind.Scene, encoding: Encoding = Encoding.Raw)
 
-/** The pixels of a picture, in rows from the top, without gaps. */
+/** The pixels of an image, in rows from the top, without gaps. */
 enum Pixels:
   /** Blue, green, red of each pixel. */
   case Bgr(bytes: Bytes)
@@ -45,7 +45,7 @@ enum Pixels:
   /** One number a pixel. */
   case Numbers(values: Array[Float])
 
-/** A picture.
+/** An image.
   *
   * @param positionNed
   *   of the camera when it was taken, world, m
@@ -61,14 +61,14 @@ final case class Image(
     orientation: Quaternion
 )
 
-/** A LIDAR's scan.
+/** A lidar's scan.
   *
   * @param points
-  *   x, y, z of each, m, in the frame that the LIDAR's settings name: its own, or the vehicle's start's
+  *   x, y, z of each, m, in the frame that the lidar's settings name: its own, or the vehicle's start's
   * @param segmentation
-  *   what each point lies on; empty where the simulator does not tell
+  *   id of the object that each point is on; empty where the simulator does not send it
   * @param positionNed
-  *   of the LIDAR, world, m
+  *   of the lidar, world, m
   */
 final case class Scan(
     points: Array[Float],
@@ -79,12 +79,12 @@ final case class Scan(
   def size: Int = points.length / 3
 
   /** How far, in the plane, the nearest point is in each of so many equal sectors of the compass, clockwise from north, m;
-    * of points in the LIDAR's own frame.
+    * of points in the lidar's own frame.
     *
     * @param bandM
-    *   points more than this above or below are passed over
+    *   points more than this above or below do not count
     * @param farM
-    *   told where there is none
+    *   the value of a sector without points
     */
   def nearest(sectors: Int, bandM: Double, farM: Double): Array[Double] =
     import orientation.{w, x, y, z}
@@ -105,7 +105,7 @@ final case class Scan(
       at += 3
     found
 
-/** Reads pictures and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones passed over,
+/** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, further ones passed over,
   * missing ones as if they were empty. What cannot be is told by [[MessageReader]]'s error.
   */
 private[airsim] object Images:

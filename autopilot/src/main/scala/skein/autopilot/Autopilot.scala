@@ -126,9 +126,12 @@ final case class Autopilot(
       val down  =
         if above.isFinite && above > home.altitude.value + 0.1 then home.altitude.value - above
         else motion.state.positionNed.z - parameters(Parameters.TakeoffAltitude)
-      enter(FlightMode.Takeoff, motion).map(heard =>
-        heard.copy(next = heard.next.copy(anchor = motion.state.positionNed.copy(z = down)))
-      )
+      if math.abs(down) > Target.Most then
+        Left(Refusal(Result.Denied, s"takeoff: no altitude to reach: $above m"))
+      else
+        enter(FlightMode.Takeoff, motion).map(heard =>
+          heard.copy(next = heard.next.copy(anchor = motion.state.positionNed.copy(z = down)))
+        )
     case Command.Land            => enter(FlightMode.Land, motion)
     case Command.ReturnToLaunch  => enter(FlightMode.Return, motion)
     case Command.LoiterUnlimited => enter(FlightMode.Hold, motion)
@@ -156,9 +159,11 @@ final case class Autopilot(
         .map(message => Heard(this, Vector(message)))
         .toRight(Refusal(Result.Unsupported, s"message ${order.whole(0)} unsupported"))
     case Command.SetMessageInterval =>
-      val id = order.whole(0)
-      if Telemetry.intervals.contains(id) then Right(Heard(this, interval = Some((id, order.numbers(1)))))
-      else Left(Refusal(Result.Unsupported, s"message $id unsupported"))
+      val id     = order.whole(0)
+      val micros = order.numbers(1)
+      if !Telemetry.intervals.contains(id) then Left(Refusal(Result.Unsupported, s"message $id unsupported"))
+      else if !micros.isFinite then Left(Refusal(Result.Denied, s"message $id: the interval is no number"))
+      else Right(Heard(this, interval = Some((id, micros))))
     case other => Left(Refusal(Result.Unsupported, s"command $other unsupported"))
 
   private def arm(motion: Motion): Either[Refusal, Heard] =
@@ -201,15 +206,23 @@ final case class Autopilot(
           if place.y.isFinite then place.y else here.y,
           if place.z.isFinite then place.z else here.z
         )
-        val yaw = order.numbers(3)
-        enter(FlightMode.Hold, motion).map(heard =>
-          heard.copy(next =
-            heard.next.copy(
-              anchor = goal,
-              turn = if yaw.isFinite then Target.Turn.Towards(yaw) else Target.Turn.None
+        val yaw     = order.numbers(3)
+        val isAfar  = Vector(goal.x, goal.y, goal.z).exists(metres => math.abs(metres) > Target.Most)
+        val isGlobe = !(math.abs(order.numbers(4)) > 90) && !(math.abs(order.numbers(5)) > 180)
+        if isAfar || !isGlobe || math.abs(yaw) > Target.Most then
+          Left(Refusal(
+            Result.Denied,
+            s"reposition: expected a place within ${Target.Most.toInt} m and a yaw"
+          ))
+        else
+          enter(FlightMode.Hold, motion).map(heard =>
+            heard.copy(next =
+              heard.next.copy(
+                anchor = goal,
+                turn = if yaw.isFinite then Target.Turn.Towards(yaw) else Target.Turn.None
+              )
             )
           )
-        )
 
   /** Takes a mode, or says why not. */
   private def enter(wanted: FlightMode, motion: Motion): Either[Refusal, Heard] =

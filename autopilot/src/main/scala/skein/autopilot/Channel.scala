@@ -8,10 +8,17 @@ import skein.units.*
   *
   * @param systems
   *   the vehicles that it sees
+  * @param isDatagrams
+  *   whether what it sends comes in datagrams, of which each ends where it ends, and not in pieces of a stream
   * @param mostBytes
   *   of a datagram
   */
-final class Channel(val systems: Vector[Int], from: Span, mostBytes: Int = 1400):
+final class Channel(
+    val systems: Vector[Int],
+    from: Span,
+    isDatagrams: Boolean = false,
+    mostBytes: Int = 1400
+):
   private val writers = systems.map(system => system -> FrameWriter(system, Numbers.Autopilot1)).toMap
   private val every   = mutable.HashMap.empty[(Int, Int), Span]
   private val due     = mutable.HashMap.empty[(Int, Int), Span]
@@ -22,8 +29,11 @@ final class Channel(val systems: Vector[Int], from: Span, mostBytes: Int = 1400)
     every((system, id)) = interval
     due((system, id)) = from
 
-  /** What it sends, and what of it was damaged. */
-  val reader: FrameReader = FrameReader()
+  private val reader = FrameReader()
+
+  /** The frames of what it sent. */
+  def read(bytes: Array[Byte]): Vector[Frame] =
+    if isDatagrams then reader.readDatagram(bytes) else reader.read(bytes)
 
   /** Frames from the peer with a wrong checksum, of an unknown message or of a wrong content. */
   def damaged: Long =

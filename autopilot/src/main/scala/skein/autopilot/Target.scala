@@ -75,8 +75,8 @@ object Target:
       val rates   = Vector(one.bodyRollRate, one.bodyPitchRate, one.bodyYawRate).map(_.toDouble)
       val numbers = one.thrust.toDouble +: (if byRates then rates else q)
       def isTurn  = q.size == 4 && math.abs(q.map(x => x * x).sum - 1) < 0.1
-      if !numbers.forall(_.isFinite) || !(byRates || isTurn) then
-        Some(Left("SET_ATTITUDE_TARGET: no attitude"))
+      if !numbers.forall(number => math.abs(number) <= MostTurnRadPerS) || !(byRates || isTurn) then
+        Some(Left("SET_ATTITUDE_TARGET: no attitude that can be flown"))
       else
         val thrust = numbers.head.max(0).min(1)
         Some(Right(
@@ -98,7 +98,10 @@ object Target:
   private val IgnoreAttitude = 128
 
   /** No vehicle is sent farther, m, or faster, m/s. */
-  private val Most = 1e5
+  private[autopilot] val Most = 1e5
+
+  /** No vehicle turns faster. */
+  private val MostTurnRadPerS = 100.0
 
   private def moveOf(
       places: Vector[Double],

@@ -48,11 +48,10 @@ object LearnedUnderDelay:
     val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
       s"taught under $loop over $link" -> learned(folder.resolve(s"$side-$loop-$link"), side, loop, link)
     val role     = PolicyFile.role(side).fold(sys.error, identity)
-    val paper    = if role == Role.Pursuer then PolicyFamily.paperPursuer else PolicyFamily.paperEvader
     val searched = Option.when(role == Role.Pursuer)(
       "the best of lead-pursuit" -> PolicyFile(role, PolicyFamily.leadPursuit, Vector(0.5453, 0.7326, 2.996))
     )
-    val policies = ("the paper's" -> PolicyFile.ofDefaults(role, paper)) +: (searched.toVector ++ taught)
+    val policies = ("the paper's" -> PolicyFile.paperOf(role)) +: (searched.toVector ++ taught)
     for
       (loop, link)   <- flown
       (name, policy) <- policies

@@ -42,27 +42,23 @@ final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, as
     for
       truth <- swept.truth
       per   <- tolerance.per(truth).left.map(mistake => s"${swept.formula}: $mistake")
-      rows  <- links.foldLeft[Either[String, Vector[Vector[Option[RunningStats]]]]](Right(Vector.empty)):
-        (before, row) =>
-          before.flatMap: above =>
-            val flown = above.flatten.flatten.size.toLong * episodes
-            swept
-              .tallies(row.flatten, episodes, done => onProgress(flown + done), isCancelled)
-              .map: tallies =>
-                val known = above :+ spread(row, tallies)
-                onRow(known)
-                known
+      rows  <- links
+        .grouped(swept.rowsTogether)
+        .foldLeft[Either[String, Vector[Vector[Option[RunningStats]]]]](Right(Vector.empty)):
+          (before, rows) =>
+            before.flatMap: above =>
+              val flown = above.flatten.flatten.size.toLong * episodes
+              swept
+                .tallies(rows.flatten.flatten, episodes, done => onProgress(flown + done), isCancelled)
+                .map: tallies =>
+                  val next  = tallies.iterator
+                  val known = above ++ rows.map(_.map(_.map(_ => next.next())))
+                  onRow(known)
+                  known
     yield LatencyBudget(axes.meansMs, axes.jittersMs, rows, truth, per)
 
   /** Episodes of the map. */
   def expected: Long = known.size.toLong * episodes
-
-  private def spread(
-      row: Vector[Option[LatencyDistribution]],
-      tallies: Vector[RunningStats]
-  ): Vector[Option[RunningStats]] =
-    val next = tallies.iterator
-    row.map(_.map(_ => next.next()))
 
 /** Where the cells lie: round trips' means and jitters, ms, from 0 in even steps. */
 final case class BudgetAxes(meansMs: Vector[Double], jittersMs: Vector[Double])

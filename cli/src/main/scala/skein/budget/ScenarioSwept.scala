@@ -1,14 +1,13 @@
 package skein.budget
 
-import java.util.concurrent.Executors
 import java.util.concurrent.atomic.AtomicLong
-import skein.flight.VirtualFlights
+import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamEvaluator, WeightedSum}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
-import skein.search.{Conditions, TeamQuestion}
+import skein.search.{Conditions, TeamQuestion, UntilWrong}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -109,11 +108,9 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
       onProgress: Long => Unit,
       isCancelled: () => Boolean
   ): Either[String, Vector[RunningStats]] =
-    links.zipWithIndex.foldLeft[Either[String, Vector[RunningStats]]](Right(Vector.empty)):
-      case (before, (link, number)) =>
-        before.flatMap: all =>
-          onProgress(number.toLong * episodes)
-          fly(flown.timing, DelayTable.of(link), episodes, isCancelled).map(all :+ _)
+    UntilWrong.each(links.zipWithIndex): (link, number) =>
+      onProgress(number.toLong * episodes)
+      fly(flown.timing, DelayTable.of(link), episodes, isCancelled)
 
 /** Whatever its measures are: each is taken of a whole flight.
   *
@@ -147,20 +144,18 @@ final class FlownSwept private (
       onProgress: Long => Unit,
       isCancelled: () => Boolean
   ): Either[String, Vector[RunningStats]] =
-    val pool = Executors.newFixedThreadPool(question.threads)
     val done = AtomicLong()
-    try
-      val flying = links.map: link =>
-        Vector.tabulate(episodes): episode =>
-          pool.submit: () =>
-            if isCancelled() then Left(Swept.Stopped)
-            else
-              val came = value(Some(link), episode)
-              onProgress(done.incrementAndGet())
-              came
-      val (missing, flown) = flying.map(_.map(_.get).partitionMap(identity)).unzip
-      missing.flatten.headOption.toLeft(flown.map(values => RunningStats.of(values.size)(values)))
-    finally pool.shutdown()
+    val all  = links.flatMap(link => Vector.tabulate(episodes)((link, _)))
+    val came = InParallel.map(all, question.threads): (link, episode) =>
+      if isCancelled() then Left(Swept.Stopped)
+      else
+        val came = value(Some(link), episode)
+        onProgress(done.incrementAndGet())
+        came
+    val (missing, flown) = came.partitionMap(identity)
+    missing.headOption.toLeft(
+      flown.grouped(episodes).map(values => RunningStats.of(values.size)(values)).toVector
+    )
 
 object FlownSwept:
 

@@ -38,6 +38,9 @@ trait Swept(
   /** Episodes of a cell that are flown in seconds. */
   def cellEpisodes(links: Vector[LatencyDistribution]): Int
 
+  /** Rows of a map that are flown in one call. */
+  def rowsTogether: Int = 1
+
   /** Of each link, by its round trips; all links meet the same random numbers.
     *
     * @param onProgress

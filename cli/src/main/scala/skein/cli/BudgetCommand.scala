@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.budget.*
-import skein.optimise.Objective
+import skein.optimise.WeightedSum
 import skein.policy.PolicyFamily
 import skein.record.LoopKind
 import skein.scenario.Scenarios
@@ -48,12 +48,16 @@ final case class BudgetOptions(
     oneWay: Flag,
     @arg(doc = "folder for map.svg, map.png, map.csv and map.json")
     out: String = "budget",
+    cluster: ClusterOptions,
     view: ViewOptions,
     @arg(doc = "the map as JSON on standard output, as in map.json; all else goes to the error output")
     json: Flag
 )
 
-final class BudgetCommand(using scenarios: Scenarios)
+/** @param program
+  *   the class whose `main` starts the commands
+  */
+final class BudgetCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[BudgetOptions](
       "budget",
       "tells how much latency and jitter a policy or a scenario bears, and draws the map",
@@ -76,10 +80,13 @@ final class BudgetCommand(using scenarios: Scenarios)
       periods <- Arguments.all(if options.period.isEmpty then Seq("100ms") else options.period)(
         Span.parse(_).left.map("--period: " + _)
       )
-      swept <- Arguments.all(periods)(period =>
+      threads   <- options.forward.threadCount
+      cluster   <- options.cluster.checked
+      questions <- Arguments.all(periods)(period =>
         scenario(options).fold(duel(options, period))(team(options, _, period))
-      )
-      _ <- Either.cond(
+      ).map(_.toVector)
+      swept <- Arguments.all(questions)(_.swept(threads)).map(_.toVector)
+      _     <- Either.cond(
         swept.forall(_.loop != LoopKind.Paused.label),
         (),
         "--loop: the paused loop is the truth and feels no latency; expected another"
@@ -88,7 +95,15 @@ final class BudgetCommand(using scenarios: Scenarios)
       shows = Shows()
       task  = TaskShow("budget")
       _     = shows.add(task)
-      maps  <- options.view.serving(shows)(fly(options, swept.toVector, tolerance, axes, legs, task))
+      maps <- options.view.serving(shows):
+        elsewhere(
+          cluster,
+          options,
+          questions,
+          swept,
+          folder,
+          threads
+        )(fly(options, _, tolerance, axes, legs, task))
       files <- write(maps, folder)
     yield
       val shown = Shown(options.json.value)
@@ -117,41 +132,59 @@ final class BudgetCommand(using scenarios: Scenarios)
         )
       case _ => Left("--tolerance, --within: expected one of them")
 
-  private def duel(options: BudgetOptions, period: Span): Either[String, Swept] =
+  private def duel(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
     import options.forward
     for
       _ <- Either.cond(options.set.isEmpty, (), "--set: expected with --scenario, whose settings they are")
-      threads   <- forward.threadCount
-      policy    <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
-      other     <- forward.opponentOf(policy.role)
-      objective <- Objective
-        .parse(forward.objective.getOrElse("last10s"), policy.role)
-        .left
-        .map("--objective: " + _)
-      named <- forward.conditions(period)
-      flown <- named.resolved
-    yield DuelSwept(named, flown, policy, other, objective, forward.seed.getOrElse(1), threads)
+      policy <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
+      other  <- forward.opponentOf(policy.role)
+      named  <- forward.conditions(period)
+    yield BudgetQuestion.OfDuel(
+      PolicyFile.name(policy.role),
+      policy.text,
+      other.text,
+      forward.objective.getOrElse("last10s"),
+      named,
+      forward.seed.getOrElse(1)
+    )
 
-  private def team(options: BudgetOptions, name: String, period: Span): Either[String, Swept] =
+  private def team(options: BudgetOptions, name: String, period: Span): Either[String, BudgetQuestion] =
     import options.forward
     for
       _          <- ForwardOptions.ofDuels("--policy" -> options.policy)(forward)
-      threads    <- forward.threadCount
       kind       <- scenarios.kind(name).left.map("--scenario: " + _)
-      set        <- Arguments.settings(options.set)
-      scenario   <- TeamQuestion.read(kind, set.toMap).left.map("--set: " + _)
+      set        <- Arguments.settings(options.set).map(_.toMap)
+      scenario   <- TeamQuestion.read(kind, set).left.map("--set: " + _)
       conditions <- forward.conditions(period, scenario.duration)
-      swept      <- ScenarioQuestion
-        .of(
-          scenario,
-          forward.objective,
-          // Teams fly low, where the model of three parameters does not hold.
-          conditions.copy(plant = forward.plant.getOrElse("drag")),
-          forward.seed.getOrElse(1),
-          threads
-        )
-        .flatMap(_.swept(plantIsTold = forward.plant.isDefined))
-    yield swept
+    yield BudgetQuestion.OfScenario(
+      name,
+      set,
+      forward.objective,
+      // Teams fly low, where the model of three parameters does not hold.
+      conditions.copy(plant = forward.plant.getOrElse("drag")),
+      plantIsTold = forward.plant.isDefined,
+      forward.seed.getOrElse(1)
+    )
+
+  /** Flown here, or by the workers whom the options choose. */
+  private def elsewhere(
+      cluster: Option[ClusterOptions.Checked],
+      options: BudgetOptions,
+      questions: Vector[BudgetQuestion],
+      swept: Vector[Swept],
+      folder: Path,
+      threads: Int
+  )(fly: Vector[Swept] => Either[String, Vector[BudgetMap]]): Either[String, Vector[BudgetMap]] =
+    cluster.fold(fly(swept)): asked =>
+      ClusterSwept
+        .bytes(questions, swept)
+        .flatMap: question =>
+          val shown = Shown(options.json.value)
+          OutFolder.alone(folder):
+            ClusterRun.using(asked, program, Questions.budget(question), folder, threads, shown): run =>
+              fly(swept.zipWithIndex.map((one, number) =>
+                ClusterSwept(one, number, run, () => run.share, asked.block)
+              ))
 
   private def policyOf(text: String): Either[String, PolicyFile] =
     PolicyFamily.parse(text).toOption match
@@ -209,7 +242,7 @@ final class BudgetCommand(using scenarios: Scenarios)
             s"${swept.loop} every ${PolicyFile.brief(swept.periodMs)} ms",
             sweep.expected,
             axes,
-            swept.formula + (if swept.unit.isEmpty then "" else s", ${swept.unit}")
+            WeightedSum.withUnit(swept.formula, swept.unit)
           )
           budget <- sweep.map(
             done =>

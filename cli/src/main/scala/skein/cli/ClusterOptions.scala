@@ -13,7 +13,7 @@ final case class ClusterOptions(
       "HOST:PORT where workers of other machines join (./skein worker --join); the command waits for them"
     )
     cluster: Option[String],
-    @arg(doc = "episodes of the blocks that workers compute, about (default: half a second's)")
+    @arg(doc = "episodes, or flights, of the blocks that workers compute, about (default: half a second's)")
     block: Option[Int],
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String]

@@ -1,6 +1,6 @@
 package skein.cli
 
-import java.nio.file.Path
+import java.nio.file.{Files, Path}
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.{Export, McapRecording}
 
@@ -42,11 +42,19 @@ object ExportCommand
       files  <- Export.parquet(file, folder).left.map(_.message)
     yield Console.out.println(s"${files.size} tables in $text")
 
+  private def isSame(one: Path, other: Path) =
+    Files.exists(one) && Files.exists(other) && Files.isSameFile(one, other)
+
   private def mcap(file: Path, text: String): Either[String, Unit] =
     for
       _ <- Either.cond(text.nonEmpty, (), "--mcap: expected a file, came ''")
       _ <- Either.cond(
-        text != file.toString,
+        Files.isDirectory(Path.of(text).toAbsolutePath.getParent),
+        (),
+        s"--mcap: expected a file in a folder that is there, came $text"
+      )
+      _ <- Either.cond(
+        !isSame(file, Path.of(text)),
         (),
         s"--mcap: expected another file than the recording, came $text"
       )

@@ -33,7 +33,7 @@ final case class FlightOptions(
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "a policy file of the command search, or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; may be given several times"
+      "a policy file of the commands search and learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; may be given several times"
     )
     policy: Seq[String],
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")

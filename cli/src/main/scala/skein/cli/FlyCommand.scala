@@ -1,15 +1,13 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import java.time.LocalDateTime
-import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Future, Promise}
 import skein.flight.{FlightAssembler, FlightResult, LiveFlights, ProgressBoard, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
-import skein.loop.Outcome
+import skein.loop.{LoopKind, Outcome}
 import skein.measure.FlightSet
 import skein.record.{ClockKind, Record, RecordError}
 import skein.report.{Report, ReportSections}
@@ -36,6 +34,7 @@ final case class FlyOptions(
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String],
     beside: BesideOptions,
+    learning: LearnInFlight,
     view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
@@ -50,7 +49,9 @@ final class FlyCommand(using Scenarios)
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
-      settings  <- options.flights.settings
+      settings <- options.flights.settings
+      learning <- options.learning.chosen(settings)
+      plans = learning.fold(settings.plans)(settings.plansWith)
       simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
       _         <- Either.cond(
         simulator.isEmpty || settings.scene.isEmpty,
@@ -59,38 +60,43 @@ final class FlyCommand(using Scenarios)
       )
       _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
       _     <- options.view.mistake.toLeft(())
-      out   <- OutFolder.made("--out", options.out.getOrElse(defaultFolder))
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
+      _     <- Either.cond(
+        clock == ClockKind.Real || !options.view.view.value,
+        (),
+        "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
+      )
+      _ <- Either.cond(
+        clock == ClockKind.Real || simulator.isEmpty,
+        (),
+        "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
+      )
+      out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
       sinks = BesideOptions.Sinks(options.beside, out)
       flown <- clock match
         case ClockKind.Real =>
           for
-            _ <- nothingToOverwrite(settings.plans ++ settings.plans.flatMap(_.twins(options.twins)), out)
-            _ <- OpenFiles.enoughFor(settings.plans.size)
-            _ <- warmUp(settings)
+            _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(options.twins)), out)
+            _ <- OpenFiles.enoughFor(plans.size)
+            _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file)))
             shows = Shows()
             flown <-
               options.view.serving(shows, controlled = true)(flyLive(
                 settings,
+                plans,
                 simulator,
                 out,
                 Option.when(options.view.view.value)(OnShow(shows)),
                 sinks
               ))
           yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
-        case ClockKind.Virtual if options.view.view.value =>
-          Left(
-            "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
-          )
-        case ClockKind.Virtual if simulator.isEmpty =>
+        case ClockKind.Virtual =>
           for
-            _      <- nothingToOverwrite(settings.plans, out)
-            landed <- flyVirtual(settings, out)
+            _      <- nothingToOverwrite(plans, out)
+            landed <- flyVirtual(settings, plans, out)
             _      <- Arguments.all(landed)(one => options.beside.exported(one.plan, out))
           yield Flown(landed, None)
-        case ClockKind.Virtual =>
-          Left("--clock virtual flies the built-in simulator; it cannot be had with --simulator")
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
         report(flown.landed, out, Shown(options.json.value)),
@@ -115,9 +121,6 @@ final class FlyCommand(using Scenarios)
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
     plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
 
-  private def defaultFolder: String =
-    s"flights/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
-
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-warm-up")
     try
@@ -132,6 +135,7 @@ final class FlyCommand(using Scenarios)
 
   private def flyLive(
       settings: FlySettings,
+      plans: Vector[FlightPlan],
       simulator: Option[Address],
       out: Path,
       shown: Option[OnShow],
@@ -141,20 +145,25 @@ final class FlyCommand(using Scenarios)
     val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator, tell = tell)
     try
       if simulator.isEmpty then
-        flyTogether(assembler, settings.plans, settings, out, shown, sinks).map(Flown(_, None))
-      else flyInTurn(assembler, settings, out, shown, sinks)
+        flyTogether(assembler, plans, settings, out, shown, sinks).map(Flown(_, None))
+      else flyInTurn(assembler, plans, settings, out, shown, sinks)
     finally
       val _ = Edge.await(system.terminate())
 
   /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
   private def flyInTurn(
       assembler: FlightAssembler,
+      plans: Vector[FlightPlan],
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
       sinks: BesideOptions.Sinks
   )(using system: ActorSystem): Either[String, Flown] =
-    val flown = settings.plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
+    if plans.exists(_.loop == LoopKind.Paused) then
+      Console.err.println(
+        "paused: the simulator will stand still between steps, for all its clients; other --loop leave it running"
+      )
+    val flown = plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
       if before.grounded.isDefined then before
       else if Edge.isInterrupted then
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
@@ -220,8 +229,12 @@ final class FlyCommand(using Scenarios)
       )
       VirtualFlights.fly(settings, twins, out)((_, _) => ())
 
-  private def flyVirtual(settings: FlySettings, out: Path): Either[String, Vector[FlightResult]] =
-    VirtualFlights.fly(settings, settings.plans, out)((landed, contents) =>
+  private def flyVirtual(
+      settings: FlySettings,
+      plans: Vector[FlightPlan],
+      out: Path
+  ): Either[String, Vector[FlightResult]] =
+    VirtualFlights.fly(settings, plans, out)((landed, contents) =>
       Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
     )
 

@@ -3,7 +3,7 @@ package skein.cli
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
 import skein.scenario.PaperDuel
-import skein.search.{Conditions, SearchQuestion}
+import skein.search.Conditions
 import skein.settings.PolicyFile
 import skein.units.Span
 
@@ -54,8 +54,8 @@ final case class ForwardOptions(
     *   of the policy that is judged
     */
   def opponentOf(role: Role): Either[String, PolicyFile] =
-    val wanted = if role == Role.Pursuer then Role.Evader else Role.Pursuer
-    opponent.fold(Right(SearchQuestion.paperOpponent(role)))(ForwardOptions.policy("--opponent", _, wanted))
+    val other = Role.opponentOf(role)
+    opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))
 
 object ForwardOptions:
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]

@@ -47,7 +47,7 @@ object IdentifyCommand
         "expected recordings, came none: ./skein identify FILE…"
       )
       out <-
-        OutFolder.made("--out", options.out.getOrElse(Path.of(files.head).toAbsolutePath.getParent.toString))
+        OutFolder.made("--out", options.out.getOrElse(OutFolder.of(Path.of(files.head))))
       use     <- Structure.parse(options.structure).left.map("--structure: " + _)
       horizon <- Span.parse(options.horizon).left.map("--horizon: " + _)
       _       <- Either.cond(

@@ -1,8 +1,6 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import java.time.LocalDateTime
-import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
 import skein.lanes.DuelBatch
@@ -11,10 +9,10 @@ import skein.optimise.RunningStats
 import skein.policy.NeuralShape
 import skein.report.Section
 import skein.scenario.Scenarios
-import skein.search.SearchQuestion
 import skein.settings.PolicyFile
 import skein.training.*
 import skein.units.Span
+import skein.view.{Shows, TaskShow}
 
 /** Options of `./skein learn`. */
 final case class LearnOptions(
@@ -59,6 +57,7 @@ final case class LearnOptions(
     out: Option[String],
     @arg(doc = "a folder whose learning was stopped: goes on with it, and ends as if it had not been stopped")
     resume: Option[String],
+    view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -82,7 +81,13 @@ final class LearnCommand(using Scenarios)
       begun <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       setup <- question.setup
-      _     <- run(setup, folder, state, threads, flights, Shown(options.json.value))
+      shows  = Shows()
+      task   = TaskShow("learn")
+      _      = shows.add(task)
+      onShow = LearnOnShow(task, setup)
+      _ <- OutFolder.alone(folder):
+        options.view.serving(shows):
+          run(setup, folder, state, threads, flights, Shown(options.json.value), onShow)
     yield ()
 
   private type Begun = (Path, LearnQuestion, LearnState)
@@ -119,9 +124,7 @@ final class LearnCommand(using Scenarios)
     yield (Path.of(folder), file.question, file.state)
 
   private def begin(options: LearnOptions): Either[String, Begun] =
-    val folder = Path.of(options.out.getOrElse(
-      s"learned/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
-    ))
+    val folder = Path.of(options.out.getOrElse(OutFolder.dated("learned")))
     for
       question <- LearnCommand.question(options)
       _        <- question.setup.flatMap(_.task)
@@ -130,7 +133,7 @@ final class LearnCommand(using Scenarios)
         (),
         s"--out: $folder holds what was learned already; --resume $folder goes on with it"
       )
-      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
+      _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, LearnState())
 
   private def run(
@@ -139,7 +142,8 @@ final class LearnCommand(using Scenarios)
       from: LearnState,
       threads: Int,
       flights: Int,
-      shown: Shown
+      shown: Shown,
+      onShow: LearnOnShow
   ): Either[String, Unit] =
     import setup.question
     val batch = setup.batch(threads)
@@ -155,7 +159,9 @@ final class LearnCommand(using Scenarios)
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.rounds, Console.err, from.rounds)
       val learned   = LearnRun(setup, batch, Some(folder), () => System.nanoTime())
-        .run(from, threads, () => stopped)(state => line.show(state.rounds, progress(setup, state)))
+        .run(from, threads, () => stopped): state =>
+          line.show(state.rounds, progress(setup, state))
+          onShow.step(state, progress(setup, state))
       line.end()
       learned.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
@@ -202,8 +208,7 @@ final class LearnCommand(using Scenarios)
       flights: Int,
       shown: Shown
   ): Either[String, Option[RunningStats]] =
-    val paper = SearchQuestion.paperOpponent(setup.role).text
-    if setup.question.opponent != paper then
+    if !setup.isAgainstPaper then
       shown.say(
         "no flights: they are flown against the paper's policy, and this one was not taught against it"
       )

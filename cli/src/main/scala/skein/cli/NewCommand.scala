@@ -29,6 +29,7 @@ object NewCommand
           (),
           s"expected a name of small letters, digits and dashes that begins with a letter, came '$name'"
         )
+        _ <- taken(name).toLeft(())
         folder = Path.of(options.out.getOrElse(name))
         _ <-
           Either.cond(!Files.exists(folder), (), s"expected a folder that is not there yet, came '$folder'")
@@ -39,11 +40,29 @@ object NewCommand
         Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
     case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
 
+  private def className(name: String)   = name.split('-').map(_.capitalize).mkString
+  private def packageName(name: String) = name.replace("-", "")
+
+  /** Why a project of this name would not compile: its package or class means something else in its own sources. */
+  private def taken(name: String): Option[String] =
+    val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
+    // Neither members of others nor what stands between quotes.
+    val isUsed = s"""(?<![.\"\\w])${className(name)}\\b""".r.findFirstIn(sources).isDefined
+    Option.when(isUsed || Reserved(packageName(name)))(
+      s"expected a name that means nothing else in Scala, came '$name'; for example $name-flight"
+    )
+
+  /** Scala's keywords, and packages that the sources need. */
+  private val Reserved =
+    ("abstract case catch class def do else enum export extends false final finally for given if implicit import lazy " +
+      "match new null object override package private protected return sealed super then this throw trait true try " +
+      "type val var while with yield java javax munit sbt scala skein").split(' ').toSet
+
   private def write(folder: Path, name: String): Either[String, Unit] =
-    val words  = name.split('-').map(_.capitalize).mkString
+    val words  = className(name)
     val filled = Map(
       "@NAME@"    -> name,
-      "@PACKAGE@" -> name.replace("-", ""),
+      "@PACKAGE@" -> packageName(name),
       "@CLASS@"   -> words,
       "@VERSION@" -> resource("version"),
       "@SCALA@"   -> resource("scala-version")

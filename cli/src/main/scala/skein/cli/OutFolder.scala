@@ -1,8 +1,13 @@
 package skein.cli
 
 import java.io.IOException
+import java.nio.channels.{FileChannel, OverlappingFileLockException}
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{FileSystemException, Files, Path}
+import java.nio.file.StandardOpenOption.{CREATE, WRITE}
+import java.time.LocalDateTime
+import java.time.format.DateTimeFormatter
+import scala.util.Using
 import skein.plot.{Drawing, Png, Svg}
 
 /** Folders that commands write into. */
@@ -29,6 +34,30 @@ private[cli] object OutFolder:
           Left(s"$option: cannot write into the folder $folder: ${reason(failed)}")
         case failed: IOException =>
           Left(s"$option: cannot write into the folder $folder: ${failed.getMessage}")
+
+  /** A name that is new every second. */
+  def dated(parent: String): String =
+    s"$parent/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
+
+  /** The folder of a file; of the root, itself. */
+  def of(file: Path): String =
+    val whole = file.toAbsolutePath
+    Option(whole.getParent).getOrElse(whole).toString
+
+  /** Runs `body` as the only command at work in a folder.
+    *
+    * @return
+    *   or that another is
+    */
+  def alone[A](folder: Path)(body: => Either[String, A]): Either[String, A] =
+    val other = Left(s"another command is at work in $folder; expected it to end first")
+    try
+      Using.resource(FileChannel.open(folder.resolve(".skein.lock"), CREATE, WRITE)): channel =>
+        // Without a lock that this process holds already.
+        Option(channel.tryLock()).fold(other)(_ => body)
+    catch
+      case _: OverlappingFileLockException => other
+      case failed: IOException             => Left(s"cannot write into $folder: $failed")
 
   /** Writes files by their names.
     *

@@ -57,7 +57,7 @@ final class ReplayCommand(using Scenarios)
     Replayed
       .of(Path.of(file))
       .left
-      .map(reason => s"$file: $reason")
+      .map(reason => if reason.contains(file) then reason else s"$file: $reason")
       .map: replayed =>
         val lines = decisions("decided again on the recorded readings", replayed.decidedAgain, replayed)
           +: replayed.flownAgain.toSeq.flatMap(flown(_, replayed))

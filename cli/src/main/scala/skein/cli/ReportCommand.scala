@@ -26,8 +26,8 @@ final class ReportCommand(using Scenarios)
     val files = options.files.value.map(Path.of(_))
     for
       first  <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
-      out    <- OutFolder.made("--out", options.out.getOrElse(first.toAbsolutePath.getParent.toString))
       set    <- Report.read(files).left.map(_.map(_.message).mkString("\n"))
+      out    <- OutFolder.made("--out", options.out.getOrElse(OutFolder.of(first)))
       output <- Report.write(set, out)
     yield
       val shown = Shown(options.json.value)

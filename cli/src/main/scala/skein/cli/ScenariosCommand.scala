@@ -20,7 +20,7 @@ final class ScenariosCommand(using scenarios: Scenarios)
       val standard = kind.standard
       Section(
         s"${standard.name}: ${standard.agents.size} vehicles, ${standard.duration.toSeconds.round} s",
-        (standard.limits.map(limit => s"May not happen: ${limit.text}.") :+ standard.note).mkString(" ").trim,
+        (standard.limits.map(limit => s"Limit: ${limit.text}.") :+ standard.note).mkString(" ").trim,
         Some(TextTable(
           Vector("<setting", "default"),
           standard.settings.map((name, value) => Vector(ConfigKeys.ofField(name), value))

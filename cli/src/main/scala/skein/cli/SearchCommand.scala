@@ -1,10 +1,7 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import java.time.LocalDateTime
-import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
-import skein.lanes.DuelBatch
 import skein.optimise.{CmaEs, SearchState}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
@@ -75,18 +72,22 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       shows                     = Shows()
       task                      = TaskShow("search")
       _                         = shows.add(task)
-      _ <- options.view.serving(shows):
-        question match
-          case duel: SearchQuestion =>
-            duel.setup.flatMap: setup =>
-              val block = Effort.blockEpisodes(setup.isFast(setup.batch(1)), setup.conditions.vehicle)
-              Fliers.using(cluster, program, setup, duel, folder, threads, block, shown):
-                run(setup, folder, state.getOrElse(setup.search.start), threads, _, shown, task)
-          case team: TeamQuestion =>
-            team.setup.flatMap: setup =>
-              val block = Effort.blockEpisodes(setup.fliesByLanes(setup.batch(1)), setup.conditions.vehicle)
-              Fliers.using(cluster, program, setup, team, folder, threads, block, shown):
-                TeamSearch(setup, folder, threads, _, shown, task).run(state.getOrElse(setup.search.start))
+      ready <- question match
+        case duel: SearchQuestion => duel.setup
+        case team: TeamQuestion   => team.setup
+      block = Effort.blockEpisodes(ready.byLanes, ready.conditions.vehicle)
+      _ <- OutFolder.alone(folder):
+        options.view.serving(shows):
+          Fliers.using(cluster, program, ready, question, folder, threads, block, shown): fliers =>
+            SearchJob(
+              ready,
+              question,
+              folder,
+              threads,
+              fliers,
+              shown,
+              task
+            ).run(state.getOrElse(ready.search.start))
     yield ()
 
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
@@ -105,9 +106,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     yield (Path.of(folder), file.question, Some(file.state))
 
   private def begin(options: SearchOptions): Either[String, Begun] =
-    val folder = Path.of(options.out.getOrElse(
-      s"searches/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
-    ))
+    val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
       question <- options.scenario.orElse(scenarios.firstWithoutDuel).fold(duel(options))(team(options, _))
       _        <- Either.cond(
@@ -115,7 +114,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         (),
         s"--out: $folder holds a search already; --resume $folder goes on with it"
       )
-      _ <- OutFolder.made("--out", options.out.getOrElse(folder.toString))
+      _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
 
   private def team(options: SearchOptions, scenario: String): Either[String, TeamQuestion] =
@@ -143,7 +142,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         options.episodes.getOrElse(20),
         options.population.getOrElse(LaneFunction.COUNT.min(candidates.max(4))),
         forward.seed.getOrElse(1),
-        options.fresh.getOrElse(TeamSearch.FreshEpisodes)
+        options.fresh.getOrElse(Effort.TeamsFresh)
       )
       _ <- question.setup
     yield question
@@ -180,125 +179,3 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       )
       _ <- question.setup
     yield question
-
-  private def run(
-      setup: SearchSetup,
-      folder: Path,
-      from: SearchState,
-      threads: Int,
-      fliers: Fliers,
-      shown: Shown,
-      task: TaskShow
-  ): Either[String, Unit] =
-    val batch  = setup.batch(threads)
-    val onShow = SearchOnShow(
-      task,
-      s"${setup.family.name}, ${setup.question.conditions.loop} over ${setup.question.link}",
-      setup.search.expected,
-      measured(setup)
-    )
-    say(shown, introduction(setup, batch))
-    @volatile var stopped = false
-    Edge.untilInterrupted(() => stopped = true):
-      val startedAt = System.nanoTime()
-      val line      = ProgressLine(setup.search.expected, Console.err, from.flown)
-      var last      = from
-      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(setup, last)}"))
-      val searched =
-        SearchRun(setup.search, setup.question, fliers(Judge.Candidates), folder, () => System.nanoTime())
-          .run(from, () => stopped): state =>
-            last = state
-            line.show(state.flown, progress(setup, state))
-            onShow.step(state, progress(setup, state))
-      line.end()
-      fliers.onWait((_, _) => ())
-      searched.flatMap: state =>
-        val seconds = (System.nanoTime() - startedAt) * 1e-9
-        val flown   = state.flown - from.flown
-        say(
-          shown,
-          f"$flown%,d episodes of ${setup.conditions.duration}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
-        )
-        val goOn = s"stopped; ./skein search --resume $folder goes on"
-        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
-        else
-          conclude(setup, batch, folder, state, fliers, shown, onShow).map(_ =>
-            if !state.isDone then say(shown, goOn)
-          )
-
-  private def introduction(setup: SearchSetup, batch: DuelBatch): String =
-    import setup.{family, objective, opponent, question}
-    val axes =
-      family.space.axes.take(4).map(axis => s"${axis.name} ${axis.least} … ${axis.most}").mkString(", ") +
-        (if family.space.dimension > 4 then s" and ${family.space.dimension - 4} more" else "")
-    s"""${objective.text}: ${question.role} ${family.name} ($axes) against ${opponent.label}
-       |loop ${question.conditions.loop} every ${brief(
-        question.conditions.periodMs
-      )} ms over ${question.link}; ${setup.conditions.vehicle.description}
-       |${question.method}, about ${setup.search.expected} episodes; engine: ${setup.engine(
-        batch
-      )}""".stripMargin
-
-  private def progress(setup: SearchSetup, state: SearchState): String =
-    state.best.fold("no candidate measured yet"): best =>
-      s"best ${brief(best.tally.mean)} ${setup.objective.unit} with ${PolicyFile(setup.role, setup.family, best.candidate).label}"
-
-  /** Measures the winner on fresh episodes and writes policy and pictures. */
-  private def conclude(
-      setup: SearchSetup,
-      batch: DuelBatch,
-      folder: Path,
-      state: SearchState,
-      fliers: Fliers,
-      shown: Shown,
-      onShow: SearchOnShow
-  ): Either[String, Unit] =
-    val effort = Effort.of(setup, batch)
-    // Somebody who stops a search does not wait for long.
-    val most   = if state.isDone then Int.MaxValue else effort.freshEpisodes
-    val fresh  = setup.question.fresh.getOrElse(effort.freshEpisodes).min(most)
-    val result = SearchResult.measured(setup, fliers(_), state, fresh)
-    for
-      file <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
-      _ = shown.tables(Seq(result.section), lines(result.summary))
-      pictures <-
-        if state.isDone then landscape(setup, folder, result, effort.within(fresh), fliers, shown, onShow)
-        else Right(Vector.empty)
-    yield say(shown, s"written: ${(file ++ pictures).mkString(", ")}")
-
-  private def landscape(
-      setup: SearchSetup,
-      folder: Path,
-      result: SearchResult,
-      effort: Effort,
-      fliers: Fliers,
-      shown: Shown,
-      onShow: SearchOnShow
-  ): Either[String, Vector[Path]] =
-    say(shown, "drawing the landscape")
-    val land = Landscape.of(
-      setup.family.space,
-      result.policy.parameters,
-      fliers(Judge.Candidates),
-      SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
-      onMap = effort.onMap,
-      onRow = onShow.landscape
-    )
-    val title =
-      s"${setup.family.name}, ${setup.question.conditions.loop} over ${setup.question.link}, model ${setup.conditions.vehicle.name}"
-    val drawing = LandscapeFigure(land, title, measured(setup))
-    OutFolder.write(
-      folder,
-      OutFolder.picture("landscape", drawing, title) :+ OutFolder.text("landscape.csv", land.csv)
-    )
-
-  private def measured(setup: SearchSetup): String =
-    setup.objective.formula + (if setup.objective.unit.isEmpty then "" else s", ${setup.objective.unit}")
-
-  private def brief(value: Double): String = PolicyFile.brief(value)
-
-  private def say(shown: Shown, text: String): Unit = shown.say(lines(text))
-
-  private def lines(text: String): String = text.linesIterator.map(_.stripTrailing).mkString("\n")
-
-  extension (conditions: Conditions.Resolved) private def duration: Double = conditions.duel.durationS

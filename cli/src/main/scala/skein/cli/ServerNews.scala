@@ -20,7 +20,8 @@ private[cli] object ServerNews:
     val byMavlink = Seq(
       mavlink.damaged    -> "damaged frames",
       mavlink.dropped    -> "datagrams dropped for peers too slow",
-      mavlink.turnedAway -> "peers turned away"
+      mavlink.turnedAway -> "peers turned away",
+      mavlink.ignored    -> "datagrams ignored, of too many peers or too many at once"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
     Option.when(counts.nonEmpty || dropped.nonEmpty || byMavlink.nonEmpty):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")

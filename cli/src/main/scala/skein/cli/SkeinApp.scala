@@ -1,11 +1,12 @@
 package skein.cli
 
+import java.io.{FileDescriptor, FileOutputStream, IOException, OutputStream, PrintStream}
 import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
 import skein.scenario.{ScenarioKind, Scenarios}
 
-/** A program with all of Skein's commands, for scenarios of one's own:
+/** A program with all of Skein's commands, for scenarios of your own:
   *
   * {{{
   * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
@@ -21,14 +22,17 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   final given scenarios: Scenarios = Scenarios(kinds*)
 
+  private def program = getClass.getName.stripSuffix("$")
+
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
     SpreadCommand(),
-    SearchCommand(getClass.getName.stripSuffix("$")),
+    SearchCommand(program),
     LearnCommand(),
+    PolicyCommand,
     WorkerCommand(),
     ClusterCommand,
-    BudgetCommand(),
+    BudgetCommand(program),
     ServeCommand,
     LinkCommand,
     LatencyCommand,
@@ -38,7 +42,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     IdentifyCommand,
     ReplayCommand(),
     DigestCommand,
-    TortureCommand(),
+    TortureCommand(program),
     ScenariosCommand(),
     NewCommand,
     CompletionCommand(commands)
@@ -46,7 +50,22 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   final def main(arguments: Array[String]): Unit =
     val status = run(arguments.toSeq)
-    if !Edge.isInterrupted then sys.exit(status)
+    if !Edge.isInterrupted then
+      sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
+
+  /** What was said must have come through. Who closes a pipe has seen enough of it. */
+  private[skein] final def written(out: PrintStream, again: OutputStream): Int =
+    val why = Option.when(out.checkError()):
+      try
+        again.write('\n')
+        again.flush()
+        "some of it was lost"
+      catch case failed: IOException => s"${failed.getMessage}"
+    why
+      .filterNot(_.contains("Broken pipe"))
+      .fold(0): reason =>
+        Console.err.println(s"skein: cannot write to standard output: $reason")
+        1
 
   /** Runs one command, for tests.
     *

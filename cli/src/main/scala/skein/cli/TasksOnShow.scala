@@ -3,6 +3,7 @@ package skein.cli
 import skein.budget.BudgetAxes
 import skein.optimise.{SearchState, RunningStats}
 import skein.search.Landscape
+import skein.training.{LearnSetup, LearnState}
 import skein.view.TaskShow
 import skein.view.TaskShow.Axis
 
@@ -36,6 +37,26 @@ private[cli] final class SearchOnShow(show: TaskShow, title: String, expected: L
           Axis(land.space.axes(y).name, land.ys),
           means.map(_.map(Some(_)))
         )
+
+/** Learning, for its viewers. */
+private[cli] final class LearnOnShow(show: TaskShow, setup: LearnSetup):
+  def step(state: LearnState, line: String): Unit =
+    show.progress(
+      setup.title,
+      state.rounds * setup.stepsOfRound,
+      setup.rounds * setup.stepsOfRound,
+      "steps",
+      line
+    )
+    if state.scores.nonEmpty then
+      show.curve(
+        "The policy as it grows",
+        "steps of all environments",
+        setup.measure,
+        state.scores.map(score =>
+          (score.steps.toDouble, score.mean)
+        )
+      )
 
 /** A latency budget's map, for its viewers. */
 private[cli] final class BudgetOnShow(

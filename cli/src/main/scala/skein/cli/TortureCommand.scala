@@ -2,9 +2,9 @@ package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
+import skein.scenario.Scenarios
 import skein.settings.NamedScene
-import skein.scenario.{Scenario, Scenarios}
-import skein.torture.{FaultPlan, Torture, Verdict}
+import skein.torture.{FaultPlan, Verdict}
 import skein.units.*
 
 /** Options of `./skein torture`. */
@@ -25,16 +25,25 @@ final case class TortureOptions(
       "what stands in the world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
     )
     scene: Option[String],
+    cluster: ClusterOptions,
+    @arg(doc =
+      "folder for what workers computed and their logs; the same command with the same folder goes on where it was stopped (default: torture/DATE-TIME)"
+    )
+    out: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
 
-final class TortureCommand(using scenarios: Scenarios)
+/** @param program
+  *   the class whose `main` starts the commands
+  */
+final class TortureCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[TortureOptions](
       "torture",
       "flies teams in virtual time while everything goes wrong, and checks what must hold all the same",
       ParserForClass[TortureOptions]
     ):
+  import TortureCommand.*
 
   protected def execute(options: TortureOptions): Either[String, Unit] =
     for
@@ -46,75 +55,107 @@ final class TortureCommand(using scenarios: Scenarios)
         )
         .left
         .map(mistake => s"--duration: $mistake")
-      threads = options.threads.getOrElse(Runtime.getRuntime.availableProcessors)
-      _ <- Either.cond(options.seeds > 0 && threads > 0, (), "--seeds and --threads: expected 1 or more")
-      shown = Shown(options.json.value)
-      task <- scenarioOf(options.scenario)
-      _    <- Either.cond(
-        task.forall(_.eyes.isEmpty),
+      threads <- ForwardOptions.threadCount(options.threads)
+      _       <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
+      cluster <- options.cluster.checked
+      _       <- Either.cond(
+        cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds),
         (),
-        s"--scenario ${options.scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
+        s"--block: expected 1 to ${TortureQuestion.MostSeeds} flights, came ${options.cluster.block.getOrElse(0)}"
       )
+      _ <- Either.cond(
+        cluster.isDefined || options.out.isEmpty,
+        (),
+        "--out: expected with --workers or --cluster, for what they computed"
+      )
+      shown = Shown(options.json.value)
       scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
-      failed = fly(options, duration, threads, task, scene, shown)
-      _      = if options.json.value then shown.tables(Seq(broken(failed)), "")
+      task     = options.scenario.orElse(scenarios.firstWithoutDuel.map(_ => scenarios.kinds.head.name))
+      question = TortureQuestion.of(duration, task, scene)
+      ready <- question.ready
+      count = Count(options, duration, shown)
+      _ <- cluster match
+        case None =>
+          val seeds = Iterator.range(0, options.seeds).map(options.first + _)
+          Right(count.tellingIfCut(ready.fly(seeds, threads)(count.add)))
+        case Some(asked) =>
+          for
+            folder <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("torture")))
+            _      <- OutFolder.alone(folder):
+              ClusterRun.using(asked, program, Questions.torture(question), folder, threads, shown):
+                elsewhere(_, ready, options, asked, count)
+          yield ()
+      _      = count.end()
+      failed = count.failed
       _ <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
     yield ()
 
-  /** Absent where duels are flown, as many as the seed says. */
-  private def scenarioOf(named: Option[String]): Either[String, Option[Scenario]] = named match
-    case Some(name) => scenarios.kind(name).left.map("--scenario: " + _).map(kind => Some(kind.standard))
-    case None       => Right(scenarios.firstWithoutDuel.map(_ => scenarios.kinds.head.standard))
-
-  /** A row for each rule that a flight broke. */
-  private def broken(failed: Vector[Verdict]): Section = Section(
-    "Broken rules",
-    table = Some(
-      TextTable(
-        Vector("seed", "<violation"),
-        for
-          verdict <- failed
-          line    <- verdict.violations.toVector
-        yield Vector(verdict.faultPlan.seed.toString, line)
-      )
-    )
-  )
-
-  private def fly(
+  private def elsewhere(
+      run: ClusterRun,
+      ready: TortureQuestion.Ready,
       options: TortureOptions,
-      duration: Span,
-      threads: Int,
-      task: Option[Scenario],
-      scene: Option[NamedScene],
-      shown: Shown
-  ): Vector[Verdict] =
-    val startedAt = System.nanoTime()
-    var flown     = 0
-    var shownAt   = startedAt
-    var failed    = Vector.empty[Verdict]
+      asked: ClusterOptions.Checked,
+      count: Count
+  ): Either[String, Unit] =
+    val blocks = ready.blocks(options.first, options.seeds, asked.block.getOrElse(BlockFlights))
+    count
+      .tellingIfCut:
+        run.computed(blocks, onAnswer = ready.verdicts(_).foreach(count.add))(())
+      .flatMap(_.toRight("no worker is left").map(_ => ()))
 
-    def show(): Unit =
+object TortureCommand:
+  /** About half a second's, of one core. */
+  private val BlockFlights = 2
+  private val ShowNanos    = 10_000_000_000L
+
+  /** Flights as they land, told on the terminal. */
+  private final class Count(options: TortureOptions, duration: Span, shown: Shown):
+    private val startedAt = System.nanoTime()
+    private var flown     = 0
+    private var shownAt   = startedAt
+    private var broken    = Vector.empty[Verdict]
+
+    def failed: Vector[Verdict] = broken
+
+    def tellingIfCut[A](body: => A): A =
+      Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed")(body)
+
+    def add(verdict: Verdict): Unit =
+      flown += 1
+      if !verdict.isClean then
+        broken :+= verdict
+        shown.say(verdict.faultPlan.toString)
+        verdict.violations.foreach(line => shown.say(s"  $line"))
+        shown.say(
+          s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
+              ""
+            )(name => s" --scenario $name")}${options.scene.fold("")(name => s" --scene $name")}"
+        )
+      if System.nanoTime() - shownAt > ShowNanos then
+        shownAt = System.nanoTime()
+        show()
+
+    def end(): Unit =
+      show()
+      if options.json.value then shown.tables(Seq(table), "")
+
+    private def show(): Unit =
       val seconds = (System.nanoTime() - startedAt) * 1e-9
       val speed   = flown * duration.toSeconds / seconds
       Console.err.println(
         f"$flown of ${options.seeds} flights of ${options.duration}, ${failed.size} failed, $seconds%.0f s, $speed%.0f times real time"
       )
 
-    Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed"):
-      Torture.all(Iterator.range(0, options.seeds).map(options.first + _), duration, threads, task, scene):
-        verdict =>
-          flown += 1
-          if !verdict.isClean then
-            failed :+= verdict
-            shown.say(verdict.faultPlan.toString)
-            verdict.violations.foreach(line => shown.say(s"  $line"))
-            shown.say(
-              s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration ${options.duration}${options.scenario.fold(
-                  ""
-                )(name => s" --scenario $name")}${options.scene.fold("")(name => s" --scene $name")}"
-            )
-          if System.nanoTime() - shownAt > 10_000_000_000L then
-            shownAt = System.nanoTime()
-            show()
-    show()
-    failed
+    /** A row for each rule that a flight broke. */
+    private def table: Section = Section(
+      "Broken rules",
+      table = Some(
+        TextTable(
+          Vector("seed", "<violation"),
+          for
+            verdict <- failed
+            line    <- verdict.violations
+          yield Vector(verdict.faultPlan.seed.toString, line)
+        )
+      )
+    )

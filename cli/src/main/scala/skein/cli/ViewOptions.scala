@@ -49,9 +49,11 @@ final case class ViewOptions(
                 token
               )
               .map(Right(_))(using ExecutionContext.parasitic)
-              .recover { case error => Left(s"--view-port: cannot listen on $port: ${error.getMessage}") }(
-                using ExecutionContext.parasitic
-              )
+              .recover {
+                case error if s"${error.getMessage}${error.getCause}".contains("in use") =>
+                  Left(s"--view-port: port $port is in use; expected a free one, or 0 for any")
+                case error => Left(s"--view-port: cannot listen on $port: ${error.getMessage}")
+              }(using ExecutionContext.parasitic)
           ).flatMap: server =>
             Console.err.println(
               s"to be seen at ${server.url}, and in Foxglove at ws://127.0.0.1:${server.port}" +

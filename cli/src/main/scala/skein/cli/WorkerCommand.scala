@@ -7,12 +7,11 @@ import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
 import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
-import skein.search.PosedQuestion
 import skein.units.Span
 
 /** Options of `./skein worker`. */
 final case class WorkerOptions(
-    @arg(doc = "HOST:PORT of a coordinator: a search with --cluster")
+    @arg(doc = "HOST:PORT of a coordinator: a command with --cluster")
     join: String,
     @arg(doc =
       "HOST:PORT where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
@@ -31,7 +30,7 @@ final case class WorkerOptions(
 final class WorkerCommand(using Scenarios)
     extends OptionsCommand[WorkerOptions](
       "worker",
-      "computes for a search on this machine or another, until that has all that it asked",
+      "computes for a command on this machine or another, until that has all that it asked",
       ParserForClass[WorkerOptions]
     ):
 
@@ -57,7 +56,7 @@ final class WorkerCommand(using Scenarios)
         (),
         s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
       )
-      node = WorkerNode(join, listen, tls, threads, PosedQuestion.solvers, patience.toNanos.nanos)(say)
+      node = WorkerNode(join, listen, tls, threads, Questions.solvers, patience.toNanos.nanos)(say)
       _    = if options.attached.value then
         WorkerProcesses.endWithParent: () =>
           node.stop()

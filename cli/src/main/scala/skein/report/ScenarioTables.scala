@@ -69,8 +69,8 @@ object ScenarioTables:
 
   /** How to read [[violations]]. */
   def limits(scenario: Scenario): String =
-    s"May not happen: ${scenario.limits.map(_.text).mkString("; ")}. Each time is a stretch in which a limit was broken, " +
-      s"of each vehicle or pair; of a flight's, the first $MostListed are listed."
+    s"Limits: ${scenario.limits.map(_.text).mkString("; ")}. A row is a stretch of time in which a vehicle or a pair " +
+      s"broke one; the first $MostListed of each flight and limit are listed."
 
   private val MostListed = 5
 

@@ -85,7 +85,7 @@ object SummaryTables:
     def spread(values: Option[Distribution], digits: Int) =
       values.fold(Vector("", ""))(all => Vector(fixed(all.median, digits), fixed(all.p99, digits)))
     TextTable(
-      Vector("<loop", "<link", "<vehicle", "<looks for", "pictures", "found") ++
+      Vector("<loop", "<link", "<vehicle", "<looks for", "images", "found") ++
         Vector("took ms p50", "p99", "age ms p50", "p99", "off m p50", "p99"),
       for
         flight <- flights.toVector
@@ -103,8 +103,8 @@ object SummaryTables:
 
   /** How to read [[seen]]. */
   val seenNote: String =
-    "Pictures that were looked at until the last detection, and detections that something was made of. Ages of detections are counted from the exposure to " +
-      "each decision made upon them; off: how far what was believed of the moment of the exposure lay from the truth."
+    "Images that were searched until the last detection, and detections that were used. Ages of detections count from the " +
+      "exposure to each decision made from them; off: how far the estimate for the exposure lay from the truth."
 
   /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of what their decisions were made on, by
     * role, and how far apart they converged.

@@ -27,28 +27,21 @@ final case class SearchBlock(
     for candidate <- candidates; value <- candidate do out.putDouble(value)
     ArraySeq.unsafeWrapArray(out.array)
 
-  /** Of each candidate its tally (4, 8 and 8 bytes), or of each candidate and episode its value (8 bytes). */
+  /** Of each candidate its tally ([[StatsBytes]]), or of each candidate and episode its value (8 bytes). */
   def answer(by: Judge => ValueEvaluator): ArraySeq[Byte] =
-    val out =
-      if isWhole then
-        val tallies = by(judge).tallies(candidates, episodes)
-        val out     = ByteBuffer.allocate(SearchBlock.TallyBytes * tallies.size)
-        for tally <- tallies do out.putInt(tally.count).putDouble(tally.mean).putDouble(tally.squares)
-        out
-      else
-        val values = by(judge).valuesUnless(() => false)(candidates, episodes).get
-        val out    = ByteBuffer.allocate(8 * candidates.size * episodes.size)
-        for each <- values; value <- each do out.putDouble(value)
-        out
-    ArraySeq.unsafeWrapArray(out.array)
+    if isWhole then StatsBytes.write(by(judge).tallies(candidates, episodes))
+    else
+      val values = by(judge).valuesUnless(() => false)(candidates, episodes).get
+      val out    = ByteBuffer.allocate(8 * candidates.size * episodes.size)
+      for each <- values; value <- each do out.putDouble(value)
+      ArraySeq.unsafeWrapArray(out.array)
 
   /** Bytes of an answer. */
   private def expected: Int =
-    candidates.size * (if isWhole then SearchBlock.TallyBytes else 8 * episodes.size)
+    candidates.size * (if isWhole then StatsBytes.Each else 8 * episodes.size)
 
 object SearchBlock:
-  private val Head       = 18
-  private val TallyBytes = 20
+  private val Head = 18
 
   /** Of what a block asks, and of its answer. */
   private val MostBytes = 512 << 10
@@ -74,7 +67,7 @@ object SearchBlock:
       for candidate <- candidates; from <- Vector.range(episodes.start, episodes.end, most)
       yield SearchBlock(judge, Vector(candidate), from until (from + most).min(episodes.end), isWhole = false)
     else
-      val fit     = (MostBytes / (8 * candidates.head.size.max(1))).max(1).min(MostBytes / TallyBytes)
+      val fit     = (MostBytes / (8 * candidates.head.size.max(1))).max(1).min(MostBytes / StatsBytes.Each)
       val several = (most / episodes.size).max(1).min(fit)
       val group   = if several > Lanes then several / Lanes * Lanes else several
       candidates.grouped(group).map(SearchBlock(judge, _, episodes, isWhole = true)).toVector
@@ -100,7 +93,7 @@ object SearchBlock:
         for (block, answer) <- blocks.zip(answers) do
           val in = ByteBuffer.wrap(answer.toArray)
           if block.isWhole then
-            for _ <- block.candidates do tallies += RunningStats(in.getInt, in.getDouble, in.getDouble)
+            for _ <- block.candidates do tallies += StatsBytes.read(in)
           else
             parts ++= Vector.fill(block.episodes.size)(in.getDouble)
             if parts.size == episodes then

@@ -2,7 +2,15 @@ package skein.search
 
 import skein.forward.Delays
 import skein.lanes.DuelBatch
-import skein.optimise.{DuelEvaluator, Objective, Search, SearchMethod, ValueEvaluator}
+import skein.optimise.{
+  DuelEvaluator,
+  Evaluator,
+  Objective,
+  RunningStats,
+  Search,
+  SearchMethod,
+  ValueEvaluator
+}
 import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
 import skein.settings.PolicyFile
 import upickle.default.ReadWriter
@@ -44,7 +52,7 @@ final case class SearchQuestion(
       flown     <- conditions.resolved
       delays    <- Conditions.delays(link).left.map("--link: " + _)
       opponent  <- PolicyFile
-        .parse(if role == Role.Pursuer then Role.Evader else Role.Pursuer, opponent)
+        .parse(Role.opponentOf(role), opponent)
         .left
         .map("--opponent: " + _)
       _ <- Either.cond(
@@ -59,11 +67,6 @@ object SearchQuestion:
   val Methods             = "grid, random, cross-entropy, cma-es, racing"
   private val MostRacing  = 100_000
   private val MostEpisode = 1_000_000
-
-  /** The paper's policy of the other role. */
-  def paperOpponent(role: Role): PolicyFile =
-    if role == Role.Pursuer then PolicyFile.ofDefaults(Role.Evader, PolicyFamily.paperEvader)
-    else PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
   /** @return or what was expected, what came, and in which option */
   def method(
@@ -116,7 +119,7 @@ object SearchQuestion:
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method
 
-/** A search ready to run. */
+/** A search for a duel's policy, ready to run. */
 final case class SearchSetup(
     question: SearchQuestion,
     family: PolicyFamily,
@@ -125,15 +128,33 @@ final case class SearchSetup(
     conditions: Conditions.Resolved,
     delays: Delays,
     opponent: PolicyFile,
-    method: SearchMethod
+    by: SearchMethod
 ) extends ReadySearch:
-  def space: SearchSpace = family.space
+  def space: SearchSpace                       = family.space
+  def name: String                             = family.name
+  def method: String                           = question.method
+  def loop: String                             = question.conditions.loop
+  def link: String                             = question.link
+  def text: String                             = objective.text
+  def formula: String                          = objective.formula
+  def unit: String                             = objective.unit
+  def fresh: Option[Int]                       = question.fresh
+  def label(candidate: Vector[Double]): String = policy(candidate).label
+  def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
 
-  val search: Search = Search(family.space, method, objective.direction, question.seed)
+  val search: Search = Search(space, by, objective.direction, question.seed)
 
-  /** The paper's policy of the role, which every result is held against. */
-  val paper: PolicyFamily =
-    if role == Role.Pursuer then PolicyFamily.paperPursuer else PolicyFamily.paperEvader
+  private val paper = PolicyFile.paperOf(role)
+
+  val baseline: Baseline =
+    Baseline(
+      "paper",
+      paper.family.name,
+      paper.family.space.axes.map(_.name).zip(paper.parameters),
+      paper.label
+    )
+
+  private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 
   def batch(threads: Int): DuelBatch = conditions.batch(threads)
 
@@ -156,29 +177,61 @@ final case class SearchSetup(
     shareEpisodes = many
   )
 
-  def judges(threads: Int): Judge => ValueEvaluator = judges(batch(threads))
-
-  def judges(batch: DuelBatch): Judge => ValueEvaluator =
-    val each = Judge.values.toVector.map:
-      case Judge.Candidates => evaluator(batch)
-      case Judge.Winner     => evaluator(batch, many = false)
-      case Judge.Paper      => evaluator(batch, paper, many = false)
+  def judges(threads: Int): Judge => ValueEvaluator =
+    val flown = batch(threads)
+    val each  = Judge.values.toVector.map:
+      case Judge.Candidates => evaluator(flown)
+      case Judge.Winner     => evaluator(flown, many = false)
+      case Judge.Baseline   => evaluator(flown, paper.family, many = false)
     judge => each(judge.ordinal)
 
-  /** Whether this family's policies fly by lanes.
-    *
-    * @param many
-    *   whether many candidates will meet the same episodes
-    */
-  def isFast(batch: DuelBatch, many: Boolean = true): Boolean =
-    val (pursuer, evader) = pair
-    batch.fliesByLanes(pursuer, evader, shareEpisodes = many, Seq(delays))
+  def measured(
+      by: Judge => Evaluator,
+      candidate: Vector[Double],
+      episodes: Range
+  ): (RunningStats, RunningStats) =
+    (
+      by(Judge.Winner).tallies(Vector(candidate), episodes).head,
+      by(Judge.Baseline).tallies(Vector(baseline.candidate), episodes).head
+    )
 
-  /** A line that says what flies the candidates. */
-  def engine(batch: DuelBatch): String =
+  def byLanes: Boolean = fliesByLanes(together = true)
+
+  def effort: Effort = Effort.of(byLanes, fliesByLanes(together = false), conditions.vehicle)
+
+  def engine(threads: Int): String =
     val (pursuer, evader) = pair
-    batch.engine(pursuer, evader, shareEpisodes = true, Seq(delays))
+    batch(threads).engine(pursuer, evader, shareEpisodes = true, Seq(delays))
+
+  private def fliesByLanes(together: Boolean) =
+    val (pursuer, evader) = pair
+    batch(1).fliesByLanes(pursuer, evader, shareEpisodes = together, Seq(delays))
 
   private def pair: (Policy, Policy) =
     if role == Role.Pursuer then (family.defaultPolicy, opponent.policy)
     else (opponent.policy, family.defaultPolicy)
+
+  /** As a policy file. */
+  def file(found: Found): (String, String) =
+    val remarks =
+      SearchResult.objective(text, unit, found.fresh, baseline.name, found.baseline) +
+        s"""found {
+           |  by = "./skein search"
+           |  complete = ${found.state.isDone}
+           |  method = ${question.method}
+           |  loop = ${question.conditions.loop}
+           |  periodMs = ${question.conditions.periodMs}
+           |  link = "${question.link}"
+           |  plant = "${question.conditions.plant}"
+           |  vehicles = "${conditions.vehicle.description}"
+           |  opponent = "${question.opponent}"
+           |  altitudeM = ${question.conditions.altitudeM}
+           |  durationS = ${question.conditions.durationS}
+           |  candidates = ${question.candidates}
+           |  episodesEach = ${question.episodes}
+           |  population = ${question.population}
+           |  episodesFlown = ${found.state.flown}
+           |  seed = ${question.seed}
+           |}
+           |""".stripMargin
+    "policy.conf" -> policy(found.best).hocon(remarks)

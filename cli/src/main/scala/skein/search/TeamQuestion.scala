@@ -2,10 +2,20 @@ package skein.search
 
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{Judged, TeamBatch, TeamCandidate}
-import skein.optimise.{Direction, Search, SearchMethod, TeamEvaluator, ValueEvaluator, WeightedSum}
+import skein.optimise.{
+  Direction,
+  Evaluator,
+  RunningStats,
+  Search,
+  SearchMethod,
+  TeamEvaluator,
+  ValueEvaluator,
+  WeightedSum
+}
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
+import skein.settings.PolicyFile.brief
 import upickle.default.ReadWriter
 
 /** A setting that is searched between two bounds, by its key. */
@@ -64,7 +74,7 @@ final case class TeamQuestion(
       kind <- scenarios.kind(scenario).left.map("--scenario: " + _)
       _    <- Either.cond(vary.nonEmpty, (), "--vary: expected a setting to search, for example ring-m=4..12")
       plain <- read(kind, set).left.map("--set: " + _)
-      axes  <- all(vary)(axis(kind, plain, _))
+      axes  <- UntilWrong.each(vary)(axis(kind, plain, _))
       _     <- Either.cond(
         axes.map(_.name).distinct.size == axes.size,
         (),
@@ -73,7 +83,9 @@ final case class TeamQuestion(
       space = SearchSpace(axes)
       // A setting's bounds may be wrong together with another's.
       corners <-
-        all(space.grid(2))(corner => read(kind, settings(set, space, corner))).left.map("--vary: " + _)
+        UntilWrong.each(
+          space.grid(2)
+        )(corner => read(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _ <- Either.cond(
         corners.forall(corner => altitudesM(corner) == altitudesM(plain)),
         (),
@@ -171,11 +183,6 @@ object TeamQuestion:
           s"expected one of ${known.keys.mkString(", ")}, came '$name${arguments.fold("")(a => s"($a)")}'$note"
         )
 
-  private def all[A, B](of: Vector[A])(each: A => Either[String, B]): Either[String, Vector[B]] =
-    of.foldLeft[Either[String, Vector[B]]](Right(Vector.empty))((before, one) =>
-      before.flatMap(read => each(one).map(read :+ _))
-    )
-
 /** A search over a scenario's settings, ready to run.
   *
   * @param terms
@@ -189,21 +196,46 @@ final case class TeamSetup(
     direction: Direction,
     conditions: Conditions.Resolved,
     delays: Delays,
-    method: SearchMethod
+    by: SearchMethod
 ) extends ReadySearch:
-  val search: Search = Search(space, method, direction, question.seed)
+  val search: Search = Search(space, by, direction, question.seed)
 
   private val durationS = conditions.duel.durationS
   private val periodS   = conditions.timing.periodS
 
-  def batch(threads: Int): TeamBatch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
+  def name: String                             = kind.name
+  def method: String                           = question.method
+  def loop: String                             = question.conditions.loop
+  def link: String                             = question.link
+  def fresh: Option[Int]                       = Some(question.fresh)
+  def label(candidate: Vector[Double]): String = told(candidate, " ")(brief)
+  def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
 
-  def evaluator(batch: TeamBatch): ValueEvaluator =
-    TeamEvaluator(batch, candidate, delays, terms.map(_._1), question.seed)
+  /** The scenario as it is unless told otherwise. */
+  val baseline: Baseline =
+    Baseline(
+      "plain",
+      s"plain ${kind.name}",
+      space.axes.map(_.name).zip(space.defaults),
+      told(space.defaults, " = ")(SearchResult.number)
+    )
+
+  private def told(candidate: Vector[Double], between: String)(number: Double => String) =
+    space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
+
+  private def batch(threads: Int) = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
 
   def judges(threads: Int): Judge => ValueEvaluator =
-    val same = evaluator(batch(threads))
+    val same = TeamEvaluator(batch(threads), candidate, delays, terms.map(_._1), question.seed)
     _ => same
+
+  def measured(
+      by: Judge => Evaluator,
+      candidate: Vector[Double],
+      episodes: Range
+  ): (RunningStats, RunningStats) =
+    val tallies = by(Judge.Winner).tallies(Vector(candidate, baseline.candidate), episodes)
+    (tallies(0), tallies(1))
 
   /** The scenario as a candidate has it; its settings were seen to be right. */
   def scenario(candidate: Vector[Double]): Scenario =
@@ -211,10 +243,11 @@ final case class TeamSetup(
       .read(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  /** A line that says what flies the candidates. */
-  def engine(batch: TeamBatch): String = batch.engine(candidate(space.defaults))
+  def engine(threads: Int): String = batch(threads).engine(candidate(space.defaults))
 
-  def fliesByLanes(batch: TeamBatch): Boolean = batch.fliesByLanes(candidate(space.defaults))
+  def byLanes: Boolean = batch(1).fliesByLanes(candidate(space.defaults))
+
+  def effort: Effort = Effort.ofTeam(byLanes)
 
   private def candidate(values: Vector[Double]): TeamCandidate =
     val own      = scenario(values)
@@ -224,10 +257,26 @@ final case class TeamSetup(
       TeamQuestion.judged(terms.map((_, measure) => measures(measure.name)), durationS, periodS)
     )
 
-  /** As users write it, without the direction. */
   def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
+  def text: String    = s"${direction.text} $formula"
+  def unit: String    = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
 
-  def text: String = s"${direction.text} $formula"
-
-  /** Of the value, where all terms agree. */
-  def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
+  /** As a configuration that `./skein fly --config` flies. */
+  def file(found: Found): (String, String) =
+    def interval(tally: RunningStats) = SearchResult.interval(tally, unit)
+    val settings                      = TeamQuestion.settings(question.set, space, found.best).toVector.sorted
+    val flown                         =
+      s"loop ${question.conditions.loop} every ${question.conditions.periodMs} ms over ${question.link}"
+    "scenario.conf" ->
+      s"""# $text
+         |# ${interval(found.fresh)}: mean over ${found.fresh.count} fresh episodes, 95 %; ${interval(
+          found.baseline
+        )} with ${baseline.label}
+         |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; ${conditions.vehicle.description}
+         |skein.fly {
+         |  scenario = ${kind.name}
+         |  ${kind.name} {
+         |${settings.map((key, value) => s"    $key = $value").mkString("\n")}
+         |  }
+         |}
+         |""".stripMargin

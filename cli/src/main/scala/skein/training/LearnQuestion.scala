@@ -4,8 +4,8 @@ import skein.environment.EnvironmentSettings
 import skein.forward.Delays
 import skein.lanes.DuelBatch
 import skein.learn.{Algorithm, DuelTask, LearnerSettings}
-import skein.optimise.{DuelEvaluator, Evaluator, Objective}
-import skein.policy.{PolicyFamily, Role}
+import skein.optimise.{DuelEvaluator, Evaluator, Objective, WeightedSum}
+import skein.policy.{LearnedPolicy, PolicyFamily, Role}
 import skein.search.Conditions
 import skein.settings.PolicyFile
 import upickle.default.ReadWriter
@@ -62,16 +62,16 @@ final case class LearnQuestion(
       flown     <- conditions.resolved
       delays    <- Conditions.delays(link).left.map("--link: " + _)
       opponent  <- PolicyFile
-        .parse(if role == Role.Pursuer then Role.Evader else Role.Pursuer, opponent)
+        .parse(Role.opponentOf(role), opponent)
         .left
         .map("--opponent: " + _)
       _ <- within("--steps", steps.toDouble, 1, MostSteps)
       _ <- within("--environments", environments, 1, MostEnvironments)
-      _ <- within("--lesson", lessonS, 1, 3600)
-      _ <- within("--turn-rate", turnRateRadPerS, 1e-3, 10)
+      _ <- within("--lesson", lessonS, 1, 3600, " s")
+      _ <- within("--turn-rate", turnRateRadPerS, 1e-3, 10, " rad/s")
       _ <- within("--episodes", episodes, 2, MostEpisodes)
       _ <- within("--fresh", fresh, 2, MostEpisodes)
-      _ <- learner.mistake.toLeft(())
+      _ <- learner.mistake.map(asOption).toLeft(())
       _ <- Either.cond(
         algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments,
         (),
@@ -86,12 +86,23 @@ object LearnQuestion:
   private val MostEnvironments = 1 << 16
   private val MostEpisodes     = 1_000_000
 
-  private def within(option: String, value: Double, least: Double, most: Double): Either[String, Unit] =
+  private def within(
+      option: String,
+      value: Double,
+      least: Double,
+      most: Double,
+      unit: String = ""
+  ): Either[String, Unit] =
     Either.cond(
       value >= least && value <= most,
       (),
-      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}, came $value"
+      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}$unit, came ${PolicyFile.brief(value)}$unit"
     )
+
+  /** `learning rate: …` as `--learning-rate: …`. */
+  private def asOption(mistake: String) =
+    val (name, why) = mistake.splitAt(mistake.indexOf(':'))
+    s"--${name.replace(' ', '-')}$why"
 
 /** Ready to learn. */
 final case class LearnSetup(
@@ -103,11 +114,10 @@ final case class LearnSetup(
     delays: Delays,
     opponent: PolicyFile
 ):
-  val family: PolicyFamily = PolicyFamily.learned(DuelTask.shape(question.learner.hidden))
+  val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden))
 
   /** The paper's policy of the role, which every result is held against. */
-  val paper: PolicyFamily =
-    if role == Role.Pursuer then PolicyFamily.paperPursuer else PolicyFamily.paperEvader
+  val paper: PolicyFile = PolicyFile.paperOf(role)
 
   /** Steps of one environment between two times at which everything may be saved. */
   val stepsPerRound: Int = (question.lessonS * 1000 / question.conditions.periodMs).round.toInt.max(1)
@@ -134,7 +144,6 @@ final case class LearnSetup(
 
   /** @return or what was expected and came */
   def task: Either[String, DuelTask] =
-    val paper    = opponent == PolicyFile.ofDefaults(opponent.role, opponentOfPaper)
     val settings = EnvironmentSettings(
       learners = question.role,
       loop = question.conditions.loop,
@@ -146,15 +155,19 @@ final case class LearnSetup(
       startWithinM = (question.startLeastM, question.startMostM),
       turnRateRadPerS = question.turnRateRadPerS
     )
-    DuelTask.of(settings, Option.when(!paper)(opponent), question.environments, question.seed)
+    DuelTask.of(settings, Some(opponent), question.environments, question.seed)
 
-  private def opponentOfPaper =
-    if role == Role.Pursuer then PolicyFamily.paperEvader else PolicyFamily.paperPursuer
+  def title: String =
+    s"${question.algorithm}, ${question.role}, ${question.conditions.loop} over ${question.link}"
+
+  /** For an axis of a picture. */
+  def measure: String = WeightedSum.withUnit(objective.formula, objective.unit)
+
+  def isAgainstPaper: Boolean = opponent == PolicyFile.paperOf(opponent.role)
 
   /** What an actor's weights make. */
   def policy(weights: Vector[Double]): PolicyFile =
-    val (rate, at) = if role == Role.Pursuer then (question.turnRateRadPerS, 0.0) else (0.0, math.Pi)
-    PolicyFile(role, family, weights ++ Vector(rate, at))
+    PolicyFile(role, family, weights ++ LearnedPolicy.mostTurn(role, question.turnRateRadPerS))
 
 object LearnSetup:
   /** In all, about. */

@@ -4,6 +4,7 @@ import skein.lanes.DuelBatch
 import skein.optimise.RunningStats
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
+import skein.search.SearchResult
 import skein.settings.PolicyFile
 
 /** What was learned, measured on episodes that learning never met.
@@ -42,17 +43,17 @@ final case class LearnResult(
         Vector("<policy", "<where", "mean", "± 95 %", "of", "<unit"),
         Vector(
           row(setup.family.name, episodes, fresh, objective.unit),
-          row(setup.paper.name, episodes, paper, objective.unit)
+          row(setup.paper.family.name, episodes, paper, objective.unit)
         ) ++ flights.map(row(setup.family.name, "flights in virtual time, last 10 s", _, "m"))
       ))
     )
 
   def curve: Drawing =
     LearningCurve(
-      s"${question.algorithm}, ${question.role}, ${question.conditions.loop} over ${question.link}",
-      objective.formula + (if objective.unit.isEmpty then "" else s", ${objective.unit}"),
+      setup.title,
+      setup.measure,
       Seq((question.algorithm, LearningCurve.learned, state.scores)),
-      Seq((setup.paper.name, LearningCurve.paper, paper.mean))
+      Seq((setup.paper.family.name, LearningCurve.paper, paper.mean))
     )
 
   def csv: String =
@@ -64,19 +65,8 @@ final case class LearnResult(
 
   /** As a policy file. */
   def file: String = policy.hocon(
-    s"""objective {
-       |  formula = "${objective.text}"
-       |  # mean over fresh episodes; the true one lies within ± halfWidth95 with 95 % confidence
-       |  mean = ${fresh.mean}
-       |  halfWidth95 = ${fresh.halfWidth95}
-       |  sd = ${fresh.sd}
-       |  episodes = ${fresh.count}
-       |  unit = "${objective.unit}"
-       |  # ${setup.paper.name} with the paper's constants, on the same episodes
-       |  paperMean = ${paper.mean}
-       |  paperHalfWidth95 = ${paper.halfWidth95}
-       |}
-       |learned {
+    SearchResult.objective(objective.text, objective.unit, fresh, setup.paper.family.name, paper) +
+      s"""learned {
        |  by = "./skein learn"
        |  complete = ${state.rounds == setup.rounds}
        |  algorithm = ${question.algorithm}
@@ -94,20 +84,17 @@ final case class LearnResult(
   )
 
 object LearnResult:
-  /** Fresh episodes count from here: above those of judging. */
-  val FreshFrom: Int = 1 << 25
-
   /** @param state
     *   with a best policy
     */
   def measured(setup: LearnSetup, batch: DuelBatch, state: LearnState, episodes: Int): LearnResult =
     val policy = setup.policy(state.best.get.weights)
-    val range  = FreshFrom until FreshFrom + episodes
+    val range  = SearchResult.FreshFrom until SearchResult.FreshFrom + episodes
     LearnResult(
       setup,
       state,
       policy,
       setup.evaluator(batch).tallies(Vector(policy.parameters), range).head,
-      setup.evaluator(batch, setup.paper).tallies(Vector(setup.paper.space.defaults), range).head,
+      setup.evaluator(batch, setup.paper.family).tallies(Vector(setup.paper.parameters), range).head,
       None
     )

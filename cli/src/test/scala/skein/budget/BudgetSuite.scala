@@ -4,7 +4,7 @@ import scala.concurrent.duration.*
 import skein.optimise.{Direction, LatencyBudget, Measure, Objective}
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
-import skein.search.{Conditions, SearchQuestion}
+import skein.search.Conditions
 import skein.settings.PolicyFile
 
 class BudgetSuite extends munit.FunSuite:
@@ -21,7 +21,7 @@ class BudgetSuite extends munit.FunSuite:
         named,
         named.resolved.fold(fail(_), identity),
         paper,
-        SearchQuestion.paperOpponent(Role.Pursuer),
+        PolicyFile.paperOf(Role.Evader),
         Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
         seed = 1,
         threads

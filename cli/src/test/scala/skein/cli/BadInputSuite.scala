@@ -34,7 +34,7 @@ class BadInputSuite extends munit.FunSuite:
       SpreadCommand(),
       SearchCommand("skein.cli.Main"),
       LearnCommand(),
-      BudgetCommand(),
+      BudgetCommand("skein.cli.Main"),
       LatencyCommand
     )
     for command <- commands do
@@ -56,7 +56,11 @@ class BadInputSuite extends munit.FunSuite:
 
   test("a tolerance without end holds for everything, and is refused"):
     for value <- Seq("Infinity", "NaN", "0", "-1") do
-      assertRefused(BudgetCommand(), Seq("--within", value), "--within: expected a number above 0, came")
+      assertRefused(
+        BudgetCommand("skein.cli.Main"),
+        Seq("--within", value),
+        "--within: expected a number above 0, came"
+      )
 
   folder.test(
     "a configuration that is a folder, is missing, is nested too deeply or has unknown keys is refused"

@@ -30,6 +30,11 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
   private lazy val policy: Path = files(made("search")(forward*)).find(_.toString.endsWith("policy.conf")).get
   private lazy val learned: Path =
     files(made("learn", "--network", "8")(learn*)).find(_.toString.endsWith("policy.conf")).get
+  private lazy val onnx: Path =
+    val file           = folder.resolve("pursuer.onnx")
+    val (status, told) = run(Seq("policy", learned.toString, "--onnx", file.toString))
+    assertEquals(status, 0, told)
+    file
   private lazy val scenario: Path =
     files(made("search --scenario surround --vary ring-m=4..12 --objective off-ring".split(' ')*)(team*))
       .find(_.toString.endsWith("scenario.conf"))
@@ -62,11 +67,14 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
       case "search" if words.contains("--scenario") => team
       case "search"                                 => forward
       case "learn"                                  => learn
+      case "budget" if words.contains("--scenario") =>
+        Seq("--means", "2", "--jitters", "2", "--episodes", "1", "--duration", "12s")
       case "budget"  => Seq("--means", "3", "--jitters", "2", "--episodes", "20", "--duration", "12s")
       case "latency" => Seq("--period", "5ms")
+      case "torture" => Seq("--seeds", "4", "--duration", "12s")
       case _         => Seq.empty
     words ++ more ++
-      Option.when(Set("fly", "search", "learn", "budget", "latency", "new")(words.head))(Seq(
+      Option.when(Set("fly", "search", "learn", "budget", "latency", "new", "torture")(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
@@ -126,16 +134,20 @@ class DocumentedCommandsLiveSuite extends munit.FunSuite:
       val words = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(found =>
         Option(found.group(1)).getOrElse(found.group(2))
       ).map:
-        case "HOST:PORT"                => server.address.toString
-        case "NAME"                     => "patrol"
-        case "FILE" | "FILE…"           => recording.toString
-        case "settings.json"            => settings.toString
-        case "searches/…/policy.conf"   => policy.toString
-        case "learned/…/policy.conf"    => learned.toString
-        case "searches/…/scenario.conf" => scenario.toString
+        case "HOST:PORT"                                                => server.address.toString
+        case "NAME"                                                     => "patrol"
+        case "FILE" if command.startsWith("policy")                     => learned.toString
+        case "FILE" | "FILE…"                                           => recording.toString
+        case "settings.json"                                            => settings.toString
+        case "searches/…/policy.conf"                                   => policy.toString
+        case "learned/…/policy.conf" | "learned/2026-11-22/policy.conf" => learned.toString
+        case "learned/2026-11-22"                                       => learned.getParent.toString
+        case "pursuer.onnx" | "other.onnx"                              => onnx.toString
+        case "evader.onnx"                                              => s"evader:$onnx"
+        case "searches/…/scenario.conf"                                 => scenario.toString
         // What one command of a guide writes, a later one reads.
-        case name if Set("flight.mcap", "again.duckdb")(name) => folder.resolve(name).toString
-        case word                                             => word
+        case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
+        case word                                                             => word
       val (status, told) = words.head match
         case "--help"  => run(words)
         case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))

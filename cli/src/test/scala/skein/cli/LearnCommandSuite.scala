@@ -8,7 +8,7 @@ import skein.settings.PolicyFile
 import skein.training.*
 
 class LearnCommandSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 2.minutes
+  override val munitTimeout: Duration = 5.minutes
 
   private val short =
     ("--steps 2000 --environments 16 --lesson 5s --network 8 --episodes 2 --fresh 4 --flights 1 " +
@@ -32,6 +32,46 @@ class LearnCommandSuite extends munit.FunSuite:
       assertEquals(PolicyFile.name(policy.role), side)
       assertEquals(policy.family.name, "learned:8")
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
+
+  test("what was learned learns on beside a flight, which is flown again to an equal digest"):
+    val folder           = Files.createTempDirectory("in-flight")
+    val learned          = folder.resolve("learned").toString
+    val (status, _, err) = run(Seq("--out", learned, "--batch", "32") ++ short)
+    assertEquals(status, 0, err)
+    def flown(words: String*) =
+      val said   = ByteArrayOutputStream()
+      val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
+      (status, said.toString(UTF_8))
+    val flight =
+      Seq(
+        "fly",
+        "--clock",
+        "virtual",
+        "--loop",
+        "stream",
+        "--link",
+        "vpn",
+        "--duration",
+        "6s",
+        "--learn",
+        learned
+      )
+    val (landed, said) =
+      flown(flight ++ Seq("--learn-version", "10", "--out", folder.resolve("flown").toString)*)
+    assertEquals(landed, 0, said)
+    val file      = folder.resolve("flown/stream-vpn-learning.duckdb")
+    val recording = skein.record.RecordingReader.read(file).fold(error => fail(error.message), identity)
+    val versions  = recording.events.filter(_.kind == skein.record.EventKind.Learned)
+    assert(versions.size >= 3, versions)
+    assertEquals(
+      recording.heading.parametersOf("version").keySet,
+      versions.flatMap(_.decision).map(_.toString).toSet
+    )
+    val (same, told) = flown("replay", file.toString)
+    assertEquals(same, 0, told)
+    val (refused, why) = flown(flight ++ Seq("--learn-noise", "2", "--out", folder.resolve("not").toString)*)
+    assertEquals(refused, 1, why)
+    assert(why.contains("--learn-noise: expected 0.0 to 1, came 2.0"), why)
 
   test("learning that is stopped and gone on with comes to the same policy, to the bit"):
     val question = LearnCommand
@@ -68,10 +108,10 @@ class LearnCommandSuite extends munit.FunSuite:
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")
     refused("discount: expected 0 up to less than 1", "--discount", "NaN")
-    refused("learning rate: expected", "--learning-rate", "-1")
+    refused("--learning-rate: expected", "--learning-rate", "-1")
     refused("--start: expected LEAST..MOST", "--start", "30..3")
     refused("--steps: expected 1", "--steps", "0")
-    refused("plant", "--plant", "ideal")
+    refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
   test("a folder of something else, or with a damaged state, is not gone on with"):

@@ -21,10 +21,18 @@ class MisuseSuite extends munit.FunSuite:
           Seq("--candidates", "x"),
           "--candidates: expected a whole number that is not too large, came 'x'"
         ),
-        (BudgetCommand(), Seq("--tolerance", "much"), "--tolerance: expected a number, came 'much'"),
+        (
+          BudgetCommand("skein.cli.Main"),
+          Seq("--tolerance", "much"),
+          "--tolerance: expected a number, came 'much'"
+        ),
         (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
         (SpreadCommand(), Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
-        (BudgetCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --plant now"),
+        (
+          BudgetCommand("skein.cli.Main"),
+          Seq("--model", "drag"),
+          "--model: no such option any more; it is --plant now"
+        ),
         (SearchCommand("skein.cli.Main"), Seq("--seed"), "--seed: expected a value behind it"),
         (
           SearchCommand("skein.cli.Main"),

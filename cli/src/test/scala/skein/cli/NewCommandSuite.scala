@@ -34,6 +34,14 @@ class NewCommandSuite extends munit.FunSuite:
     assertNotEquals(status, 0)
     assert(told.contains("expected a folder that is not there yet"), told)
 
+  test("a name that would not compile is refused, and one is proposed that would"):
+    for name <- Seq("object", "scenario", "agent", "scala", "skein", "vector3", "corners", "main", "type") do
+      val (status, told) = run(name)
+      assertNotEquals(status, 0, name)
+      assert(told.contains(s"$name-flight"), told)
+    for name <- Seq("leader-flight", "leader", "patrol") do
+      assertEquals(run(name, "--out", "/")._2.contains("-flight"), false, name)
+
   test("a name that is none of a project is refused"):
     for name <- Seq("Ridge", "../ridge", "ridge watch", "-", "") do
       val (status, told) = run(name)

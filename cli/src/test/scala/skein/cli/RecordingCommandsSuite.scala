@@ -55,6 +55,21 @@ class RecordingCommandsSuite extends munit.FunSuite:
     assert(text.linesIterator.exists(line => line.startsWith("stream") && line.contains("vpn")), text)
     assert(Files.exists(folder.resolve("report/report.html")))
 
+  recordings.test(
+    "a recording is not exported onto itself, whatever it is called there, and a folder is no recording"
+  ): folder =>
+    val file   = folder.resolve("stream-vpn.duckdb")
+    val before = Files.size(file)
+    val linked = Files.createSymbolicLink(folder.resolve("linked.mcap"), file)
+    for other <- Seq(folder.resolve("./stream-vpn.duckdb"), linked) do
+      val (status, _, err) = run(ExportCommand, file.toString, "--mcap", other.toString)
+      assertEquals(status, 1)
+      assert(err.contains("expected another file than the recording"), err)
+    assertEquals(Files.size(file), before)
+    val (status, _, err) = run(ReportCommand(), "/")
+    assertEquals(status, 1)
+    assert(err.contains("/ is not a recording: it is a folder"), err)
+
   recordings.test("report --json gives the tables alone on standard output"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
     val (status, text, err) =

@@ -11,10 +11,17 @@ class ServerNewsSuite extends munit.FunSuite:
 
   test("what peers of MAVLink lost is told, too"):
     assertEquals(
-      ServerNews.line(calm, ServerLimits(), MavlinkStats(damaged = 3, dropped = 2, turnedAway = 1)).map(
+      ServerNews.line(
+        calm,
+        ServerLimits(),
+        MavlinkStats(damaged = 3, dropped = 2, turnedAway = 1, ignored = 9)
+      ).map(
         _.takeWhile(_ != ';')
       ),
-      Some("MAVLink: 3 damaged frames, 2 datagrams dropped for peers too slow, 1 peers turned away")
+      Some(
+        "MAVLink: 3 damaged frames, 2 datagrams dropped for peers too slow, 1 peers turned away, " +
+          "9 datagrams ignored, of too many peers or too many at once"
+      )
     )
 
   test("each kind of refusal is counted and named, with the memory that was held"):

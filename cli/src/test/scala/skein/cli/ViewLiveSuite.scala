@@ -49,7 +49,7 @@ class ViewLiveSuite extends munit.FunSuite:
   folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
     out =>
       val packages = needed(JavaScriptTools.packages)
-      val flying   = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "20s")
+      val flying   = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "40s")
       val saids    = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
         protocol -> Future(
           JavaScriptTools.run(

@@ -1,5 +1,6 @@
 package skein.flight
 
+import scala.concurrent.duration.*
 import skein.cli.OurScenarios
 import skein.loop.{LoopKind, Outcome, Replay}
 import skein.measure.FlightSummary
@@ -11,6 +12,8 @@ import skein.units.*
 
 /** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in virtual time. */
 class BlindPursuitSimulation extends munit.FunSuite:
+  override def munitTimeout: Duration = 2.minutes
+
   private given Scenarios = OurScenarios.all
 
   private def settings(

@@ -33,18 +33,18 @@ class TeamSearchSuite extends munit.FunSuite:
 
   test("the best settings of a scenario are found by lanes, and flown as they are written down"):
     val ready = setup()
-    val batch = ready.batch(2)
-    assert(ready.engine(batch).startsWith("SIMD"), ready.engine(batch))
-    val state  = ended(ready.search, ready.evaluator(batch))
-    val result = TeamSearchResult.measured(ready, _ => ready.evaluator(batch), state, 4)
-    assert(result.fresh.mean < result.plain.mean, result.summary)
-    val written = ConfigFactory.parseString(result.file).withFallback(ConfigFactory.load()).resolve()
-    val flown   = ScenarioSettings.read(written).fold(fail(_), identity)
-    assertEquals(flown, ready.scenario(result.best))
+    assert(ready.engine(2).startsWith("SIMD"), ready.engine(2))
+    val judges = ready.judges(2)
+    val found  = SearchResult.measured(ready, judges, ended(ready.search, judges(Judge.Candidates)), 4)
+    assert(found.fresh.mean < found.baseline.mean, SearchResult(ready, found).summary)
+    val written =
+      ConfigFactory.parseString(ready.file(found)._2).withFallback(ConfigFactory.load()).resolve()
+    val flown = ScenarioSettings.read(written).fold(fail(_), identity)
+    assertEquals(flown, ready.scenario(found.best))
 
   test("a candidate comes to what its measures say of the same flight by the scalar engine"):
     val ready    = setup()
-    val lanes    = ready.evaluator(ready.batch(1)).tallies(Vector(Vector(8.0, 8.0)), 0 until 3).head
+    val lanes    = ready.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 3).head
     val surround = ready.scenario(Vector(8.0, 8.0))
     val measures = surround.measures.filter(measure => Set("off ring", "gap")(measure.name))
     assertEquals(measures.map(_.reduced.nonEmpty), Vector(true, true))
@@ -59,7 +59,7 @@ class TeamSearchSuite extends munit.FunSuite:
 
   test("a search over settings is written down, read back and gone on with to the same end"):
     val ready     = setup(question.copy(method = "cma-es"))
-    val evaluator = ready.evaluator(ready.batch(2))
+    val evaluator = ready.judges(2)(Judge.Candidates)
     val broken    = Iterator
       .iterate(ready.search.start): state =>
         val text = SearchFile.json(SearchFile(SearchFile.Version, ready.question, state))

@@ -57,7 +57,7 @@ private[cluster] final class CoordinatorBehavior private (
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
       case _: ToCoordinator                              => () // Of an earlier run.
-      case Compute(works, promise)                       => compute(works, promise)
+      case Compute(works, onAnswer, promise)             => compute(works, onAnswer, promise)
       case Cancel                                        =>
         state = state.cancelled
         ended(Right(None))
@@ -117,7 +117,7 @@ private[cluster] final class CoordinatorBehavior private (
           case Left(mistake) => ended(Left(mistake))
           case Right(())     =>
             call.foreach: open =>
-              open.answers.update(block.key, answer)
+              open.take(block.key, answer)
               if open.isDone then ended(Right(Some(open.all)))
 
   private def keep(key: BlockKey, answer: ArraySeq[Byte]): Either[String, Unit] =
@@ -140,13 +140,17 @@ private[cluster] final class CoordinatorBehavior private (
       tell(News.Lost(worker, record.holds.size))
       feed()
 
-  private def compute(works: Vector[ArraySeq[Byte]], promise: Promise[Outcome]): Unit =
+  private def compute(
+      works: Vector[ArraySeq[Byte]],
+      onAnswer: ArraySeq[Byte] => Unit,
+      promise: Promise[Outcome]
+  ): Unit =
     if call.isDefined then promise.success(Left("one call at a time"))
     else
-      val open = Call(works.map(BlockKey.of), mutable.HashMap.empty, promise)
+      val open = Call(works.map(BlockKey.of), onAnswer, promise)
       val asks = works.zip(open.keys).distinctBy(_._2).filter: (_, key) =>
         val known = ledger.answer(key)
-        known.foreach(open.answers.update(key, _))
+        known.foreach(open.take(key, _))
         known.isEmpty
       resumed += open.answers.size
       call = Some(open)
@@ -172,9 +176,13 @@ private[cluster] object CoordinatorBehavior:
   type Outcome = Either[String, Option[Vector[ArraySeq[Byte]]]]
 
   sealed trait Local
-  final case class Compute(works: Vector[ArraySeq[Byte]], promise: Promise[Outcome]) extends Local
-  case object Cancel                                                                 extends Local
-  final case class Unreachable(address: Address)                                     extends Local
+  final case class Compute(
+      works: Vector[ArraySeq[Byte]],
+      onAnswer: ArraySeq[Byte] => Unit,
+      promise: Promise[Outcome]
+  ) extends Local
+  case object Cancel                             extends Local
+  final case class Unreachable(address: Address) extends Local
 
   /** A worker's process has ended. */
   final case class Ended(worker: String) extends Local
@@ -190,9 +198,15 @@ private[cluster] object CoordinatorBehavior:
 
   private final case class Call(
       keys: Vector[BlockKey],
-      answers: mutable.HashMap[BlockKey, ArraySeq[Byte]],
+      onAnswer: ArraySeq[Byte] => Unit,
       promise: Promise[Outcome]
   ):
+    val answers = mutable.HashMap.empty[BlockKey, ArraySeq[Byte]]
+
+    def take(key: BlockKey, answer: ArraySeq[Byte]): Unit =
+      answers.update(key, answer)
+      onAnswer(answer)
+
     val asked: Int                  = keys.toSet.size
     def isDone: Boolean             = answers.size == asked
     def all: Vector[ArraySeq[Byte]] = keys.map(answers)

@@ -35,12 +35,17 @@ final class CoordinatorNode private (
   /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed again. One
     * call at a time.
     *
+    * @param onAnswer
+    *   told each answer when it comes or is found in the ledger, in any order, on a thread of the node's own
     * @return
     *   the answers in the order of the works; none if it was cancelled; or why there are none
     */
-  def compute(works: Vector[ArraySeq[Byte]]): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
+  def compute(
+      works: Vector[ArraySeq[Byte]],
+      onAnswer: ArraySeq[Byte] => Unit = _ => ()
+  ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
     val promise = Promise[CoordinatorBehavior.Outcome]()
-    coordinator ! CoordinatorBehavior.Compute(works, promise)
+    coordinator ! CoordinatorBehavior.Compute(works, onAnswer, promise)
     promise.future
 
   def cancel(): Unit = coordinator ! CoordinatorBehavior.Cancel

@@ -63,9 +63,6 @@ final class Angles(
       source.mul(node.args(0), source.const(node.args(1).value * by))
     else source.mul(node, source.const(by))
 
-  /** Whether sines and cosines of it come without any sine or cosine. */
-  def isDirection(node: Node): Boolean = directionOf(node).isDefined
-
   /** Cosine and sine of a converted angle. */
   def cosSin(node: Node): (Node, Node) = directionOf(node) match
     case Some(way) => unit(way)

@@ -2,8 +2,8 @@ package skein.fusion
 
 import skein.units.*
 
-/** What is believed of a vehicle at a moment: position and velocity in NED, jointly normal. A Kalman filter's state;
-  * the vehicle is taken to move evenly but for an acceleration that is white noise.
+/** The estimate of a vehicle at a moment: position and velocity in NED, jointly normal. A Kalman filter's state for
+  * constant velocity with white noise as acceleration.
   *
   * @param at
   *   on the clock of the measurements
@@ -27,7 +27,7 @@ final case class Belief(
     velocity: Matrix3
 ):
 
-  /** Carried forward to a later moment.
+  /** Predicted for a later moment.
     *
     * @param acceleration
     *   spectral density of the unknown acceleration along each axis, m²/s³. The noise it adds over Δt is Δt³/3, Δt²/2 and
@@ -45,7 +45,7 @@ final case class Belief(
       velocity + noise(dtS)
     )
 
-  /** Joined with what was measured at this belief's own moment. */
+  /** Updated by a measurement of the estimate's own moment. */
   def joined(measured: Measurement): Belief =
     val placed = joinedPosition(measured.positionNed, measured.covariance)
     measured.velocity.fold(placed)(velocity => placed.joinedVelocity(velocity.ned, velocity.covariance))

@@ -2,17 +2,17 @@ package skein.fusion
 
 import skein.units.*
 
-/** How measurements of a vehicle are joined.
+/** Settings of the filter for one vehicle.
   *
   * @param acceleration
-  *   how much the vehicle's velocity wanders: spectral density of its acceleration, m²/s³. A vehicle that accelerates
-  *   with a (m/s²) for about τ (s) at a time has about a²τ
+  *   process noise: spectral density of the vehicle's acceleration, m²/s³. A vehicle that accelerates with a (m/s²) for
+  *   about τ (s) at a time has about a²τ
   * @param topSpeed
-  *   standard deviation of a velocity that nobody has measured yet
+  *   standard deviation of the velocity before it was measured
   * @param history
   *   how much older than the newest one a measurement may be
   * @param mostMeasurements
-  *   that are remembered, whatever the time
+  *   that are kept at most
   */
 final case class FusionSettings(
     acceleration: Double = 10,
@@ -25,11 +25,11 @@ final case class FusionSettings(
     s"fusion needs settings above zero: $this"
   )
 
-/** What is believed of one vehicle from measurements that come in any order: each enters at the moment of which it tells,
-  * and all later ones are joined again behind it. So the belief is that of a filter which was given all of them in order.
-  * Of equally old ones the one that came first is joined first.
+/** Estimates one vehicle's state from measurements in any order. Each enters at its valid time, and all later ones are
+  * processed again after it. So the estimate is that of a filter that got all of them in order. Of equally old ones, the one
+  * that arrived first is processed first.
   *
-  * Immutable. Costs one step of the filter for each measurement that is newer than the one that comes.
+  * Immutable. An update costs one step of the filter for each measurement that is newer.
   */
 final class Fusion private (
     settings: FusionSettings,
@@ -41,11 +41,11 @@ final class Fusion private (
   /** After the newest measurement; none before the first. */
   def belief: Option[Belief] = remembered.lastOption.map(_.after).orElse(before)
 
-  /** What is believed of a moment, the newest measurement's or a later one. */
+  /** The estimate for a moment, that of the newest measurement or a later one. */
   def at(later: Instant): Option[Belief] =
     belief.filter(_.at <= later).map(_.carriedTo(later, settings.acceleration))
 
-  /** With one measurement more. None if it is too old: older than all that is remembered. */
+  /** With one measurement more. None if it is older than all that are kept. */
   def including(measured: Measurement): Option[Fusion] =
     val isTooOld = before.exists(_.at > measured.validAt) ||
       belief.exists(_.at.since(measured.validAt) > settings.history)

@@ -1,6 +1,5 @@
 package skein.fusion
 
-import skein.signal.Kinematics
 import skein.units.*
 
 /** Where a vehicle was at a moment, as something measured it: a reading of its own, or a detection by somebody's camera
@@ -25,23 +24,6 @@ final case class Measurement(
     covariance.determinant > 0 && velocity.forall(_.covariance.determinant > 0),
     s"a measurement's covariance is positive: $this"
   )
-
-object Measurement:
-
-  /** A reading of a vehicle's own state with the same standard deviation along all axes. */
-  def ofReading(
-      validAt: Instant,
-      state: Kinematics,
-      position: Metres,
-      velocity: MetresPerSecond
-  ): Measurement =
-    def variance(sd: Double) = Matrix3.diagonal(sd * sd)
-    Measurement(
-      validAt,
-      state.positionNed,
-      variance(position.value),
-      Some((ned = state.velocityNed, covariance = variance(velocity.value)))
-    )
 
 /** What a camera or a LIDAR tells of something it found, in its own frame (front, right, down).
   *

@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.*
 
-/** What a vehicle is told to do. World frame NED, metres, m/s, radians from north towards east. An action goes on until
-  * the next one, or until the time is over that it was sent for; the vehicle then holds its position.
+/** What a vehicle is to do. World frame NED, metres, m/s, radians from north towards east. An action lasts until the next
+  * one, or for the time that it was sent for; then the vehicle holds its position.
   */
 enum Action:
   /** Flies with this velocity. */

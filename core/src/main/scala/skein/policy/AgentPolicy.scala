@@ -2,25 +2,24 @@ package skein.policy
 
 import skein.units.*
 
-/** How a vehicle decides: a pure function from what it observes, and a memory of its own, to an action and the next
-  * memory. It integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as often
-  * must not act twice as strongly. Nothing else is remembered between decisions, so that a recorded flight is decided
-  * again from the recording alone.
+/** How a vehicle decides: a pure function from observation and memory to action and next memory. It integrates over
+  * measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as often must not act twice as
+  * strongly. It keeps nothing else between decisions, so that a replay can repeat them from the recording alone.
   */
 trait AgentPolicy:
 
-  /** What it remembers from one decision to the next. Immutable. */
+  /** What is kept from one decision to the next. Immutable. */
   type Memory
 
-  /** Which sensors of its vehicle it wants to be read, by name; see [[skein.port.VehiclePort.sensors]]. What they said
-    * last is in [[Observation.sensed]].
+  /** Names of its vehicle's sensors that are to be read; see [[skein.port.VehiclePort.sensors]]. Their last readings are in
+    * [[Observation.sensed]].
     */
   def sensors: Set[String] = Set.empty
 
-  /** Before the first decision. */
+  /** The memory before the first decision. */
   def start: Memory
 
-  /** What to do now, and what to remember. */
+  /** The action now, and the next memory. */
   def choose(seen: Observation, memory: Memory): (Action, Memory)
 
 /** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of [[AgentPolicy]]. */

@@ -2,7 +2,7 @@ package skein.policy
 
 import skein.units.*
 
-/** What a vehicle is to the others, for example `Role("Scout")`. */
+/** A vehicle's part in the scenario, for example `Role("Scout")`. */
 final case class Role(name: String):
   override def toString: String = name
 
@@ -13,21 +13,26 @@ object Role:
   val Follower: Role  = Role("Follower")
   val Traveller: Role = Role("Traveller")
 
+  /** Against whom a role of the duel flies. */
+  def opponentOf(role: Role): Role = if role == Pursuer then Evader else Pursuer
+
   private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
 
   /** By its name; one of ours in letters of any case. */
   def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))
 
-/** One vehicle and how it behaves.
+/** One vehicle and its policy.
   *
+  * @param name
+  *   the simulator's name of the vehicle; in AirSim, that of `settings.json`
   * @param speed
-  *   of the velocity it commands, where its policy does not choose one
+  *   commanded where the policy does not choose one
   * @param startPositionNed
   *   m, in the world frame; it also holds this altitude
   * @param startHeading
-  *   the heading its policy starts from
+  *   taken as the last commanded heading before the first decision
   * @param policy
-  *   [[Policy]] against one opponent, [[TeamPolicy]] for a vehicle among all, or any other in three dimensions
+  *   a [[Policy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other in three dimensions
   */
 final case class Agent(
     name: String,

@@ -1,7 +1,7 @@
 package skein.policy
 
-/** What a learner learned: a network of rectifiers of all that it sees ([[PlanarObservation.fromOwnHeading]] over
-  * [[LearnedPolicy.scales]]), whose one output, squashed by tanh, says how to turn.
+/** What a learner learned: a network of all that it sees ([[PlanarObservation.fromOwnHeading]] over
+  * [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
   *
   * Allocates two arrays as wide as its widest layer at a decision, and one of what it sees.
   *
@@ -23,13 +23,11 @@ final case class LearnedPolicy(
     s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
   )
   require(
-    parameters.size == shape.parameters,
-    s"a network of $shape has ${shape.parameters} parameters, got ${parameters.size}"
+    shape.activations.last != Activation.Relu,
+    "a learned policy's output is squashed by tanh or clipped, came relu"
   )
 
-  private val weights = parameters.toArray
-  private val widths  = shape.widths.toArray
-  private val widest  = shape.widest
+  private val network = DenseNetwork(shape, parameters)
   private val scales  = LearnedPolicy.scales.toArray
 
   /** Nothing is remembered; a number flies by lanes. */
@@ -40,34 +38,13 @@ final case class LearnedPolicy(
 
   /** Of the most that it turns: −1 to 1, to the right. */
   def share(seen: PlanarObservation): Double =
-    val what   = seen.fromOwnHeading
-    var input  = Array.ofDim[Double](widest)
-    var output = Array.ofDim[Double](widest)
-    var i      = 0
+    val what  = seen.fromOwnHeading
+    val input = network.scratch
+    var i     = 0
     while i < LearnedPolicy.Inputs do
       input(i) = what(i) / scales(i)
       i += 1
-    var at    = 0
-    var layer = 1
-    while layer < widths.length do
-      val isLast = layer == widths.length - 1
-      var neuron = 0
-      while neuron < widths(layer) do
-        var sum = 0.0
-        var i   = 0
-        while i < widths(layer - 1) do
-          sum += weights(at) * input(i)
-          at += 1
-          i += 1
-        sum += weights(at)
-        at += 1
-        output(neuron) = if isLast then StrictMath.tanh(sum) else sum.max(0.0)
-        neuron += 1
-      val spare = input
-      input = output
-      output = spare
-      layer += 1
-    input(0)
+    network.output(input)
 
 object LearnedPolicy:
   /** Numbers that it sees. */
@@ -75,3 +52,47 @@ object LearnedPolicy:
 
   /** What a learner's numbers are divided by, so that all are of about −1 to 1. */
   val scales: Vector[Double] = Vector(20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
+
+  /** Rectifiers and tanh, as learners make them. */
+  def shape(hidden: Vector[Int]): NeuralShape =
+    NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
+
+  /** The most that a policy of a role turns: rad/s until the next decision, and rad at once.
+    *
+    * @param rateRadPerS
+    *   of a pursuer
+    */
+  def mostTurn(role: Role, rateRadPerS: Double): Vector[Double] =
+    if role == Role.Pursuer then Vector(rateRadPerS, 0.0) else Vector(0.0, math.Pi)
+
+  /** `64x64`: rectifiers, and tanh of the output. What is otherwise is named behind a width, and behind a colon for the
+    * output: `64tanhx64tanh:clip`.
+    */
+  def label(shape: NeuralShape): String =
+    val hidden = shape.hidden.zip(shape.activations).map: (width, activation) =>
+      s"$width${if activation == Activation.Relu then "" else activation.label}"
+    hidden.mkString("x") + (if shape.activations.last == Activation.Tanh then ""
+                            else s":${shape.activations.last.label}")
+
+  /** Reads [[label]] back. */
+  def parse(text: String): Either[String, NeuralShape] =
+    def layer(text: String) =
+      val (width, activation) = text.span(_.isDigit)
+      for
+        number <- width.toIntOption.filter(NeuralShape.isWidth)
+        kind   <- if activation.isEmpty then Some(Activation.Relu) else named(activation)
+      yield (number, kind)
+    val (hidden, output) = text.span(_ != ':')
+    val layers           = if hidden.isEmpty then Vector.empty else hidden.split("x", -1).toVector.map(layer)
+    val last             = if output.isEmpty then Some(Activation.Tanh) else named(output.tail)
+    last.filter(
+      _ != Activation.Relu && layers.sizeIs <= NeuralShape.MostLayers && layers.forall(_.isDefined)
+    ) match
+      case Some(kind) =>
+        Right(NeuralShape(layers.flatten.map(_._1), Inputs, layers.flatten.map(_._2) :+ kind))
+      case None =>
+        Left(
+          s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to ${NeuralShape.MostWidth}, each with relu, tanh or clip behind it, and :tanh or :clip of the output, for example 64x64 or 64tanhx64tanh:clip, came '$text'"
+        )
+
+  private def named(text: String) = Activation.values.find(_.label == text)

@@ -13,14 +13,7 @@ package skein.policy
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)
     extends Policy:
-  require(
-    parameters.size == shape.parameters,
-    s"a network of $shape has ${shape.parameters} parameters, got ${parameters.size}"
-  )
-
-  private val weights = parameters.toArray
-  private val widths  = shape.widths.toArray
-  private val widest  = shape.widest
+  private val network = DenseNetwork(shape, parameters)
 
   def heading(
       dxM: Double,
@@ -34,33 +27,14 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
 
   /** rad/s, to the right. */
   def turnRate(dxM: Double, dyM: Double, dvxMps: Double, dvyMps: Double, ownHeadingRad: Double): Double =
-    val cos    = StrictMath.cos(ownHeadingRad)
-    val sin    = StrictMath.sin(ownHeadingRad)
-    var input  = Array.ofDim[Double](widest)
-    var output = Array.ofDim[Double](widest)
+    val cos   = StrictMath.cos(ownHeadingRad)
+    val sin   = StrictMath.sin(ownHeadingRad)
+    val input = network.scratch
     input(0) = (dxM * cos + dyM * sin) / NeuralPolicy.LengthM
     input(1) = (dyM * cos - dxM * sin) / NeuralPolicy.LengthM
     input(2) = (dvxMps * cos + dvyMps * sin) / NeuralPolicy.SpeedMps
     input(3) = (dvyMps * cos - dvxMps * sin) / NeuralPolicy.SpeedMps
-    var at    = 0
-    var layer = 1
-    while layer < widths.length do
-      var neuron = 0
-      while neuron < widths(layer) do
-        var sum = 0.0
-        var i   = 0
-        while i < widths(layer - 1) do
-          sum += weights(at) * input(i)
-          at += 1
-          i += 1
-        output(neuron) = StrictMath.tanh(sum + weights(at))
-        at += 1
-        neuron += 1
-      val spare = input
-      input = output
-      output = spare
-      layer += 1
-    turnRateRadPerS * input(0)
+    turnRateRadPerS * network.output(input)
 
 object NeuralPolicy:
   /** Distances of about this much are seen best, m. */

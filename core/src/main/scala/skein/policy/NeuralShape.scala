@@ -1,13 +1,18 @@
 package skein.policy
 
-/** How many neurons each hidden layer has; one output. Parameters are laid out layer by layer, neuron by neuron: a weight
-  * per input, then the bias.
+/** The layers of a network of one output. Parameters are laid out layer by layer, neuron by neuron: a weight per input,
+  * then the bias.
+  *
+  * @param hidden
+  *   how many neurons each hidden layer has
+  * @param activations
+  *   of each hidden layer, and of the output
   */
-final case class NeuralShape(hidden: Vector[Int], inputs: Int = NeuralShape.Inputs):
+final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
   require(
     hidden.forall(width =>
       width >= 1 && width <= NeuralShape.MostWidth
-    ) && hidden.sizeIs <= NeuralShape.MostLayers,
+    ) && hidden.sizeIs <= NeuralShape.MostLayers && activations.sizeIs == hidden.size + 1,
     s"expected at most ${NeuralShape.MostLayers} hidden layers of 1 to ${NeuralShape.MostWidth} neurons, came $this"
   )
 
@@ -35,12 +40,17 @@ object NeuralShape:
   val MostWidth  = 256
   val MostLayers = 8
 
+  /** Of a [[NeuralPolicy]]: tanh throughout. */
+  def apply(hidden: Vector[Int]): NeuralShape =
+    NeuralShape(hidden, Inputs, Vector.fill(hidden.size + 1)(Activation.Tanh))
+
   /** `8x8`: the hidden layers' widths. */
   def parse(text: String): Either[String, NeuralShape] =
     val widths = text.split("x", -1).toVector.map(_.toIntOption)
-    if widths.sizeIs <= MostLayers && widths.forall(_.exists(width => width >= 1 && width <= MostWidth)) then
-      Right(NeuralShape(widths.flatten))
+    if widths.sizeIs <= MostLayers && widths.forall(_.exists(isWidth)) then Right(NeuralShape(widths.flatten))
     else
       Left(
         s"expected up to $MostLayers widths of hidden layers from 1 to $MostWidth, for example 8x8, came '$text'"
       )
+
+  private[policy] def isWidth(width: Int): Boolean = width >= 1 && width <= MostWidth

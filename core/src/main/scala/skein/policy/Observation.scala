@@ -6,13 +6,13 @@ import skein.units.*
 /** What a policy decides upon.
   *
   * @param self
-  *   the own place among the vehicles of the scenario
+  *   index of the own vehicle in the scenario
   * @param vehicles
-  *   what is known of each, the own included, by place
+  *   the estimate of each, the own included, by index
   * @param opponent
-  *   whom the scenario sets the vehicle against at this moment: the nearest of those; the own place where there is none
+  *   index of the opponent: of several, the nearest at this moment; the own index where there is none
   * @param headings
-  *   commanded last to each vehicle, as far as known, by place; before the first command that of the start
+  *   commanded last to each vehicle, as far as known, by index; before the first command, that of the start
   * @param elapsed
   *   since the own last decision; zero at the first
   * @param decisions
@@ -22,10 +22,10 @@ import skein.units.*
   * @param altitude
   *   of the vehicle's start, down, negative above the origin
   * @param sensed
-  *   what the sensors of the own vehicle said last, by name: those that the policy asked for ([[AgentPolicy.sensors]])
-  *   and that have answered before
+  *   last readings of the own vehicle's sensors, by name: those that the policy asks for ([[AgentPolicy.sensors]]) and
+  *   that have answered
   * @param actsIn
-  *   how long until the command acts, by the forecast; zero where nothing is predicted
+  *   predicted time until the command acts; zero where nothing is predicted
   */
 final case class Observation(
     self: Int,
@@ -41,19 +41,19 @@ final case class Observation(
 ):
   def own: Seen = vehicles(self)
 
-/** What is known of one vehicle.
+/** The estimate of one vehicle's state.
   *
   * @param kinematics
   *   world NED, in three dimensions with attitude
   * @param age
-  *   of the reading that this rests on, since physics was sampled, by the estimate of the clocks' offset; before there is
-  *   one, since the answer came
+  *   of the reading behind it, since physics was sampled, by the estimated clock offset; before there is one, since the
+  *   answer came
   * @param isPredicted
-  *   whether it was carried forward to when the command will act, and not just heard
+  *   whether it is predicted for the moment at which the command will act, and not just the reading
   */
 final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
 
-/** What a sensor said last.
+/** A sensor's last reading.
   *
   * @param columns
   *   names with units, such as `altitudeM`
@@ -64,7 +64,7 @@ final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
   */
 final case class Sensed(columns: Vector[String], values: Vector[Double], age: Span):
 
-  /** A column's value.
+  /** The value of a column.
     *
     * @throws NoSuchElementException
     *   if there is no such column

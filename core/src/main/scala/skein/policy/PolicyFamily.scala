@@ -53,6 +53,9 @@ object PolicyFamily:
     parameters => PaperEvader(parameters(0))
   )
 
+  /** The paper's policies of a role of the duel, which results are held against. */
+  def paperOf(role: Role): PolicyFamily = if role == Role.Pursuer then paperPursuer else paperEvader
+
   private val turnRate = Axis("turnRateRadPerS", 0.2, 3.0, 1.0)
 
   val purePursuit: PolicyFamily = PolicyFamily(
@@ -117,9 +120,11 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** What `./skein learn` teaches, named `learned:64x64` by its hidden layers; the default's weights are all zero. */
+  /** What `./skein learn` teaches, named `learned:64x64` as [[LearnedPolicy.label]] says; the default's weights are all
+    * zero.
+    */
   def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
-    s"$LearnedPrefix${shape.hidden.mkString("x")}",
+    s"$LearnedPrefix${LearnedPolicy.label(shape)}",
     s"a neural network of all that a learner sees, with hidden layers of $shape",
     Set(Role.Pursuer, Role.Evader),
     SearchSpace(
@@ -153,9 +158,7 @@ object PolicyFamily:
   def parse(text: String): Either[String, PolicyFamily] =
     if text.startsWith(NeuralPrefix) then NeuralShape.parse(text.stripPrefix(NeuralPrefix)).map(neural)
     else if text.startsWith(LearnedPrefix) then
-      NeuralShape
-        .parse(text.stripPrefix(LearnedPrefix))
-        .map(shape => learned(shape.copy(inputs = LearnedPolicy.Inputs)))
+      LearnedPolicy.parse(text.stripPrefix(LearnedPrefix)).map(learned)
     else
       all
         .find(_.name == text)

@@ -1,16 +1,16 @@
 package skein.scenario
 
-/** What a vehicle carries to see by, besides what every vehicle has. A built-in simulator is made with it; another needs it
-  * in its `settings.json`.
+/** A camera or lidar of a vehicle, besides those that every vehicle has. The built-in simulator gets it from here; another
+  * simulator needs it in its `settings.json`.
   */
 enum Equipment:
   def vehicle: String
   def name: String
 
-  /** A lidar that turns around the vehicle's down axis, which its policy reads as a sensor of this name: `northM`, `eastM`,
-    * `downM`, where it was, and then, from north and clockwise, how far the nearest thing is in each of [[Sectors]] equal
-    * sectors of the compass, in the plane, m. Things more than [[BandM]] above or below are passed over; where there is
-    * nothing else, it is the lidar's range.
+  /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor of this name: its position `northM`,
+    * `eastM`, `downM`; then, clockwise from north, the distance in the plane to the nearest thing in each of [[Sectors]]
+    * equal sectors of the compass, m. Things more than [[BandM]] above or below do not count; an empty sector has the
+    * lidar's range.
     *
     * @param verticalFovDeg
     *   lower, upper; negative looks down

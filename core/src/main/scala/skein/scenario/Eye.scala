@@ -5,27 +5,27 @@ import skein.fusion.{FusionSettings, Sighting}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** How the policy of one vehicle knows of something by a camera alone: pictures are taken, something is recognised in them,
-  * and what is found joins the belief at the moment of its exposure. The policy reads the belief as a sensor.
+/** A camera as a policy's source of knowledge: images are taken, a target is recognised in them, and each detection enters
+  * an estimate at the moment of its exposure. The policy reads the estimate as a sensor.
   *
   * @param vehicle
-  *   who looks
+  *   whose camera it is
   * @param sensor
-  *   under which its policy reads what is believed: [[Eye.Columns]], valid at the newest detection's exposure
+  *   the name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the newest detection's exposure
   * @param camera
   *   of the vehicle: AirSim's, or one of the scenario's equipment
   * @param target
-  *   whom it looks for, for reports
+  *   the vehicle that is looked for, for reports
   * @param every
-  *   between two pictures
+  *   period of the images
   * @param recogniser
   *   makes one for each worker
   * @param takes
-  *   how long recognition takes, if it is not slower by itself: in virtual time that is how long it takes
+  *   how long recognition takes: exactly, in virtual time; at least, live
   * @param workers
-  *   pictures that are looked at side by side
+  *   images that are searched at the same time
   * @param deadline
-  *   of each picture
+  *   for each image
   */
 final case class Eye(
     vehicle: String,
@@ -41,10 +41,10 @@ final case class Eye(
 )
 
 object Eye:
-  /** What is believed: where it was and how it moved, world NED, and the position's standard deviation along north,
-    * east or down, the largest. Then of the newest detection: where it was seen in the camera's frame, how long recognition took, and
-    * where the camera was, with its orientation. Last, how many pictures were looked at until then, and in how many
-    * something was found.
+  /** The estimate: the target's position and velocity, world NED, and the largest of the position's standard deviations
+    * along north, east and down. Then the newest detection: its place in the camera's frame, how long recognition took, and
+    * the camera's position and orientation. Last, how many images were searched until then, and in how many the target
+    * was found.
     */
   val Columns: Vector[String] = Vector(
     "northM",
@@ -69,12 +69,12 @@ object Eye:
     "found"
   )
 
-/** Looks for one thing in pictures. May keep memory of its own; is never called by two threads at once. */
+/** Looks for one thing in images. May keep memory of its own; is never called by two threads at once. */
 trait Recogniser:
 
   /** @param bgr
     *   blue, green, red of each pixel, in rows from the top
     * @return
-    *   what was found, in the camera's frame; or why this is no picture to look at
+    *   what was found, in the camera's frame; or why the image cannot be searched
     */
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[Sighting]]

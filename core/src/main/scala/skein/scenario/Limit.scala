@@ -74,15 +74,21 @@ object Limit:
 
   /** Of every vehicle, above the origin. */
   def floor(altitude: Metres): Limit =
-    least("altitude", "m", altitude.value)((tracks, vehicle) => tracks.altitudeM(vehicle, _))
+    single("altitude", "m", altitude.value, true, Some(Kept.Above(altitude.value)))((tracks, vehicle) =>
+      tracks.altitudeM(vehicle, _)
+    )
 
   /** Of every vehicle, above the origin. */
   def ceiling(altitude: Metres): Limit =
-    most("altitude", "m", altitude.value)((tracks, vehicle) => tracks.altitudeM(vehicle, _))
+    single("altitude", "m", altitude.value, false, Some(Kept.Below(altitude.value)))((tracks, vehicle) =>
+      tracks.altitudeM(vehicle, _)
+    )
 
   /** Of every vehicle, in space. */
   def speed(most: MetresPerSecond): Limit =
-    Limit.most("speed", "m/s", most.value)((tracks, vehicle) => tracks.velocityNed(vehicle, _).norm)
+    single("speed", "m/s", most.value, false, Some(Kept.NoFaster(most.value)))((tracks, vehicle) =>
+      tracks.velocityNed(vehicle, _).norm
+    )
 
   /** Every vehicle stays in a circle, seen from above. */
   def geofence(north: Metres, east: Metres, radius: Metres): Limit =
@@ -156,3 +162,10 @@ enum Kept:
   /** Between any two vehicles, in the plane, m. */
   case Apart(leastM: Double)
   case Inside(fence: Fence)
+
+  /** In altitude above the origin, m. */
+  case Above(leastM: Double)
+  case Below(mostM: Double)
+
+  /** m/s. */
+  case NoFaster(mostMps: Double)

@@ -1,15 +1,15 @@
 package skein.scenario
 
-/** A number that a flight comes to. For example `Measure("out of sight", "s")(tracks => …)`.
+/** A number computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
   *
   * @param unit
   *   may be empty
   * @param isCount
   *   of events: over several flights it is added up
   * @param of
-  *   absent where the flight never came to it
+  *   the value; absent where the flight has none, for example a time of arrival if it never arrived
   * @param reduced
-  *   of which quantity it is, if it is of one: then searches judge by it
+  *   the quantity that it reduces, if it does: then searches can judge by it
   */
 final class Measure private (
     val name: String,
@@ -29,7 +29,7 @@ object Measure:
   def count(name: String)(of: Tracks => Int): Measure =
     new Measure(name, "", true, None, tracks => Some(of(tracks).toDouble))
 
-  /** What a quantity comes to. */
+  /** A reduced quantity. */
   private[scenario] def of(
       name: String,
       unit: String,
@@ -37,7 +37,7 @@ object Measure:
   )(of: Tracks => Option[Double]): Measure =
     new Measure(name, unit, false, Some(by), of)
 
-/** What a quantity comes to over a part of a flight. */
+/** A quantity reduced over a part of a flight. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
 
 /** A quantity over the time of a flight: drawn, and reduced to measures.
@@ -116,7 +116,7 @@ object Series:
       instant => quantity.of(tracks.positions(instant))
     )
 
-/** What a quantity is held to.
+/** A value that a quantity is compared with: a line in its figure.
   *
   * @param name
   *   in the legend

@@ -12,13 +12,13 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A number of where all vehicles are at one moment: drawn and measured by the report, judged by a search. Pure. A class
-  * whose method is arithmetic flies by lanes, as policies do (`docs/guides/formulas.md`).
+/** A number computed from the positions of all vehicles at one moment. Reports draw and measure it, searches judge by it.
+  * Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are (`docs/guides/formulas.md`).
   */
 trait Quantity:
   def of(positions: Positions): Double
 
-/** What a quantity comes to over a flight. */
+/** How a quantity over time becomes one number. */
 enum Reduction:
   case Mean
 

@@ -1,9 +1,9 @@
 package skein.scenario
 
-/** What a flight came to.
+/** The result of a flight.
   *
   * @param measured
-  *   the first stands for the flight when it is compared with others
+  *   flights are compared by the first
   * @param violations
   *   of all limits, in the order of their times
   */
@@ -14,7 +14,7 @@ final case class Result(
     curves: Vector[(Series, Curve)],
     violations: Vector[Violation]
 ):
-  /** What a measure came to, by its name; absent where the flight never came to it. */
+  /** A measure's value, by its name; absent where the flight has none. */
   def value(measure: String): Option[Double] =
     measured
       .find(_.measure.name == measure)
@@ -33,6 +33,6 @@ object Result:
   )
 
 /** @param value
-  *   absent where the flight never came to it
+  *   absent where the flight has none
   */
 final case class Measured(measure: Measure, value: Option[Double])

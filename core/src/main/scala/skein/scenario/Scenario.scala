@@ -9,34 +9,34 @@ import skein.units.*
   */
 trait Scenario extends Product:
 
-  /** Who flies: where each vehicle starts, what it is to the others, and the policy that it flies by. */
+  /** Who flies: each vehicle's name, role, start and policy. */
   def agents: Vector[Agent]
 
-  /** What may not happen. Nothing prevents it; what did happen is counted, listed and shown. */
+  /** Limits of the task. Nothing enforces them; violations are counted, listed and shown. */
   def limits: Vector[Limit] = Vector.empty
 
-  /** What is drawn over time. */
+  /** Quantities that the report draws over time. */
   def series: Vector[Series] = Vector.empty
 
-  /** What a flight comes to. The first stands for the flight when it is compared with others. */
+  /** Numbers that a flight is summarised by. Flights are compared by the first. */
   def measures: Vector[Measure] = Vector.empty
 
-  /** How long it flies, unless it is told otherwise. */
+  /** Of a flight, unless a command sets another. */
   def duration: Span = Span.ofSeconds(60)
 
-  /** What stands in the world that it is flown in, unless a flight is told otherwise: a scene that ships. */
+  /** The built-in simulator's scene, unless a command sets another: `empty`, `forest`, `pursuit` or `street`. */
   def scene: String = "empty"
 
-  /** What its vehicles carry to see by. */
+  /** Cameras and lidars of its vehicles. */
   def equipment: Vector[Equipment] = Vector.empty
 
-  /** What their policies know by cameras. */
+  /** Estimates that policies have from cameras. */
   def eyes: Vector[Eye] = Vector.empty
 
-  /** Whether it is over before its time; asked upon every decision. A pure function. */
+  /** Whether the flight ends before its duration; asked at every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 
-  /** What its measures mean, for the report: whole sentences. */
+  /** For the report: how to read the measures, in whole sentences. */
   def note: String = ""
 
   /** Every setting that cannot be flown: `name: expected …, came …`. */
@@ -45,10 +45,10 @@ trait Scenario extends Product:
   /** One word, under which its settings stand in configurations and recordings. */
   def name: String = Scenario.worded(productPrefix)
 
-  /** The same, with what has to be told of the settings. */
+  /** The name, with settings that tables have to show behind a comma. */
   def title: String = name
 
-  /** By which pictures tell the vehicles of one role apart: equal numbers, equal colours. */
+  /** Number of a vehicle's colour within its role, in figures. */
   def shade(vehicle: Int): Int = (0 until vehicle).count(agents(_).role == agents(vehicle).role)
 
   /** The same with at least so many vehicles, where there can be more: for rehearsals. */

@@ -2,7 +2,7 @@ package skein.scenario
 
 import scala.deriving.Mirror
 
-/** A kind of scenario: what its settings are called, what they are unless told otherwise, and how they are read.
+/** A kind of scenario: the names of its settings, their defaults, and how they are read.
   *
   * {{{
   * val patrol = ScenarioKind(Patrol())   // of: case class Patrol(scouts: Int = 2, heightM: Double = 30) extends Scenario
@@ -21,7 +21,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
   /** @param values
-    *   settings by name; what is not told is the default
+    *   settings by name; those that are missing have their defaults
     * @return
     *   or every mistake: what was expected, and what came
     */

@@ -1,6 +1,6 @@
 package skein.scenario
 
-/** The kinds of scenarios that a program knows, by name: whoever reads settings or recordings is given it.
+/** The kinds of scenarios that a program knows, by name; needed wherever settings or recordings are read.
   *
   * @param kinds
   *   the first is flown where none is named
@@ -11,7 +11,7 @@ final case class Scenarios(kinds: Vector[ScenarioKind[?]]):
 
   def names: Vector[String] = kinds.map(_.name)
 
-  /** What a command flies that knows the duel apart, where there is no duel. */
+  /** The default scenario of a program without the duel. */
   def firstWithoutDuel: Option[String] = Option.when(!names.contains(PaperDuel.Name))(names.head)
 
   /** @return or what was expected, what came, and what is nearest */

@@ -4,10 +4,10 @@ package skein.scenario
 enum Window:
   case Whole
 
-  /** The end; a flight that was shorter has no such part. */
+  /** The last `seconds`; a shorter flight has no such part. */
   case Last(seconds: Double)
 
-  /** All but the begin; of a flight that was shorter, the whole. */
+  /** All after the first `seconds`; of a shorter flight, the whole. */
   case After(seconds: Double)
 
   /** Instants of it; never empty. */

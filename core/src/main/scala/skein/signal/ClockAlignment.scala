@@ -2,26 +2,26 @@ package skein.signal
 
 import skein.units.*
 
-/** What is known of the offset between the controller's clock and the simulator's.
+/** Estimates the offset between the controller's clock and the simulator's.
   *
   * Physics was sampled at some moment between request and answer, so each reading bounds the offset (controller minus
   * simulator) from both sides: `sentAt − validAt ≤ offset ≤ receivedAt − validAt`. The bounds of all readings hold at
-  * once; they narrow with every fast leg in either direction, and the offset cannot lie outside as long as neither
-  * clock stops. Where it lies between the bounds is estimated by assuming that the fastest quarter of the latest legs
-  * is alike in both directions, whatever the slower ones are. (Their minima vary more: over the paper's VPN by 7 ms.)
+  * once; they narrow with every short delay in either direction, and the offset cannot lie outside as long as neither
+  * clock stops. Between the bounds it is estimated by assuming that the lower quartile of
+  * the latest delays is equal in both directions. (Their minima vary more: over the paper's VPN by 7 ms.)
   *
   * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates neither
-  * contradict themselves nor hold the estimate back. If readings contradict each other none the less, the simulator
-  * stood still or was restarted: estimation starts afresh, and that is counted. The bounds of the last few runs are
-  * kept: an answer of a run before that comes late contradicts the present bounds and agrees with the former ones. It
-  * tells nothing of the present clock, and is older than all of the present run, whatever its simulator's time.
+  * contradict themselves nor hold the estimate back. If readings contradict each other all the same, the simulator
+  * was paused or restarted: estimation starts anew, and that is counted. The bounds of the last few runs are kept. A late
+  * answer of a former run contradicts the present bounds and agrees with that run's. It says nothing about the present
+  * clock, and is older than all readings of the present run, whatever its time stamp.
   *
   * @param lower
   *   the offset is at least this
   * @param upper
   *   the offset is at most this
   * @param latest
-  *   what single readings told, the newest last
+  *   bounds from single readings, the newest last
   * @param validAt
   *   the simulator's time of the newest reading
   * @param receivedAt
@@ -33,7 +33,7 @@ import skein.units.*
   * @param since
   *   when the first reading of the present run arrived
   * @param former
-  *   the runs before, the newest last; of each what was known at its end
+  *   the runs before, the newest last, as estimated at their ends
   */
 final case class ClockAlignment private (
     lower: Span,
@@ -60,9 +60,9 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
-  /** Whether one reading tells of a later moment than another: it was asked for when the other had come, or else the
-    * later run of the simulator sampled it, or else the simulator's clock says so. Two readings alone cannot tell: where
-    * the simulator has started again with an earlier clock, a late answer of its former run has the later time.
+  /** Whether one reading was sampled later than another: because it was asked for after the other had arrived, or else
+    * because it is of a later run of the simulator, or else by the simulator's clock. The two readings alone do not
+    * suffice: after a restart with an earlier clock, a late answer of the former run has the later time stamp.
     */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     if one.sentAt > other.receivedAt then true
@@ -119,7 +119,7 @@ final case class ClockAlignment private (
 
 object ClockAlignment:
 
-  /** What one reading tells of the offset. */
+  /** Bounds of the offset by one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
   /** Readings that the estimate between the bounds is made from. */
@@ -134,7 +134,7 @@ object ClockAlignment:
   /** A running simulator's clock advances within this: three physics steps of AirSim. */
   val Tick: Span = Span.ofMillis(9)
 
-  /** What a single reading tells. */
+  /** By a single reading. */
   def of(reading: Stamped[?]): ClockAlignment =
     val bounds = Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
     ClockAlignment(
@@ -149,7 +149,7 @@ object ClockAlignment:
       former = Vector.empty
     )
 
-  /** By which two clocks drift apart between two instants, at most. */
+  /** The most that two clocks drift apart between two instants. */
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)
 

@@ -2,8 +2,7 @@ package skein.signal
 
 import skein.units.*
 
-/** A reading and when it was true, asked for and answered. When it was used is known only at the decision, which
-  * records it beside this.
+/** A reading with its valid time and the times of asking and answering. The decision that uses it records its own time.
   *
   * @param validAt
   *   when physics was sampled, on the simulator's clock
@@ -15,8 +14,8 @@ import skein.units.*
 final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): Stamped[B] = copy(value = f(value))
 
-  /** Whether this tells of a later moment, by two readings alone: the simulator's clock says so, or it was asked for when
-    * the other had come. Over a restart of the simulator [[ClockAlignment.isNewer]] knows better.
+  /** Whether this was sampled later, judged by the two readings alone: by the simulator's clock, or because it was asked
+    * for after the other had arrived. Across a restart of the simulator use [[ClockAlignment.isNewer]].
     */
   def isNewerThan(other: Stamped[?]): Boolean = validAt > other.validAt || sentAt > other.receivedAt
 

@@ -43,7 +43,10 @@ enum YawMode:
   * changes.
   */
 trait Guidance:
-  def setpoint(now: Kinematics): Setpoint
+  /** @param now
+    *   computed only by who asks
+    */
+  def setpoint(now: => Kinematics): Setpoint
 
   /** Time between two goals; absent where one is enough. */
   def period: Option[Span]
@@ -69,8 +72,8 @@ final case class Setpoint(
     yaw: YawMode = YawMode.Rate,
     yawGoal: Double = 0.0
 ) extends Guidance:
-  def setpoint(now: Kinematics): Setpoint = this
-  def period: Option[Span]                = None
+  def setpoint(now: => Kinematics): Setpoint = this
+  def period: Option[Span]                   = None
 
   /** The same with this yaw, rad from north. */
   def withYaw(yawRad: Double): Setpoint = copy(yaw = YawMode.Angle, yawGoal = yawRad)

@@ -98,3 +98,27 @@ class PolicyFormulaLaws extends munit.FunSuite:
               java.lang.Double.doubleToRawLongBits(other),
               s"$policy of $seen"
             )
+
+  for name <- Seq("learned:8x8", "learned:6tanhx5clip:clip", "learned::clip") do
+    test(s"$name: the formula of what is seen answers to the bit what the method does (seed $seed)"):
+      val random  = SplitMix64(seed)
+      val family  = PolicyFamily.parse(name).fold(fail(_), identity)
+      val formula = Formula.of(drawn(family)(random), "decide").fold(throw _, identity)
+      for _ <- 1 to 40 do
+        val policy  = drawn(family)(random).asInstanceOf[LearnedPolicy]
+        def place() = 50 * random.nextDouble() - 25
+        val seen    = Array.fill(9)(place())
+        val decided = policy.decide(
+          PlanarObservation(seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6), seen(7), seen(8)),
+          0
+        )
+        assertEquals(
+          java.lang.Double.doubleToRawLongBits(
+            formula.evaluate(
+              seen ++ Array.fill(formula.inputs.size - 9)(0.0),
+              formula.parametersOf(policy)
+            )(0)
+          ),
+          java.lang.Double.doubleToRawLongBits(decided.headingRad),
+          s"$policy of ${seen.mkString(" ")}"
+        )

@@ -6,15 +6,15 @@ import scala.util.Try
 import skein.lanes.SteppedDuels.WORLDS
 import skein.settings.PolicyFile
 
-/** Many episodes of the duel, step by step: one side or both decide from outside, at the moments at which the loop lets
-  * them, on readings as old as the link makes them. [[EnvironmentSettings]] says which, [[EnvironmentBuffers]] what is
-  * seen and done.
+/** Many episodes of the duel, step by step. One side or both are decided for from outside ([[EnvironmentSettings]]), at the
+  * moments at which the loop decides, on readings as old as the link makes them. Observations and actions are in
+  * [[EnvironmentBuffers]].
   *
-  * A step is one decision. Its reward is, for a pursuer, minus the distances scored meanwhile (once a period) over 10 m,
-  * and 10 for a capture; for an evader the opposite. So the rewards of an episode without a capture add up to its mean
-  * distance as `./skein search` tells it, times the number of periods over 10 m.
+  * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once a period),
+  * divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode without a
+  * capture sum to minus its mean distance, as `./skein search` has it, times the number of periods, divided by 10 m.
   *
-  * One call at a time. Allocates nothing at a step but where many groups share the processors.
+  * One call at a time. A step allocates nothing, except where many groups share the processors.
   *
   * @param count
   *   of environments

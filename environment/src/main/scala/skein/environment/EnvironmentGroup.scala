@@ -126,7 +126,7 @@ private final class EnvironmentGroup(
       val number   = first + world
       val wasDone  = isDone(world)
       val captured = settings.captureRadiusM > 0 && duels.distanceLeast(world) <= settings.captureRadiusM
-      val cost     = duels.distanceSum(world) / PerM
+      val cost     = duels.distanceSum(world) / EnvironmentSettings.RewardM
       into.distance(number, duels.distance(world))
       into.time(number, duels.scoredAtS - beganS(world))
       if wasDone then
@@ -215,9 +215,6 @@ private final class EnvironmentGroup(
       agent += 1
 
 private object EnvironmentGroup:
-  /** A distance of so much, at the end of one period, costs 1. */
-  val PerM = 10f
-
   val CaptureReward = 10f
 
   private val Huge      = 1e30f

@@ -94,14 +94,16 @@ final case class EnvironmentSettings(
     if opponent.isEmpty then Right(None)
     else if roles.size == 2 then Left(s"opponent: expected none where both sides learn, came '$opponent'")
     else
-      val role = if roles.head == Role.Pursuer then Role.Evader else Role.Pursuer
       PolicyFile
-        .chosen(role, opponent)
+        .chosen(Role.opponentOf(roles.head), opponent)
         .left
         .map("opponent: " + _)
         .map(Some(_))
 
 object EnvironmentSettings:
+  /** A distance of so much costs the pursuer, and earns the evader, 1 a period. */
+  val RewardM = 10f
+
   /** What settings come to. The duel lasts a little longer than an episode: who sees its end must be due once more. */
   private[environment] final case class Resolved(
       settings: EnvironmentSettings,

@@ -2,7 +2,7 @@ package skein.environment
 
 import skein.policy.Policy
 
-/** Turns at a rate that somebody outside tells before each decision.
+/** Turns at a rate that is set from outside before each decision.
   *
   * @param rateRadPerS
   *   to the right
@@ -18,7 +18,7 @@ private[environment] final case class Steered(rateRadPerS: Double) extends Polic
       elapsedS: Double
   ): Double = ownHeadingRad + rateRadPerS * elapsedS
 
-/** Turns at once by an angle that somebody outside tells before each decision.
+/** Turns at once by an angle that is set from outside before each decision.
   *
   * @param turnRad
   *   to the right

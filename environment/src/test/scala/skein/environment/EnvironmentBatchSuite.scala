@@ -81,7 +81,7 @@ class EnvironmentBatchSuite extends munit.FunSuite:
         steps += 1
         assert(!learner.terminated(0) && steps < 1000)
       val (reference, leastByLanes, meanByLanes) = engine(settings, 0)
-      val mean                                   = -sum * EnvironmentGroup.PerM / 200
+      val mean                                   = -sum * EnvironmentSettings.RewardM / 200
       // Sums of 200 floats of up to 25 m, added up in two orders.
       assertEqualsDouble(mean, meanByLanes, 200 * 25 * math.ulp(1f) * 2)
       assertEqualsDouble(mean, reference.meanDistanceM, 0.02)
@@ -168,7 +168,9 @@ class EnvironmentBatchSuite extends munit.FunSuite:
     assert(refused(EnvironmentSettings(learners = "x")).startsWith("learners: expected "))
     assert(refused(EnvironmentSettings(loop = "plan")).contains("which plans"))
     assert(refused(EnvironmentSettings(link = "no")).startsWith("link: "))
-    assert(refused(EnvironmentSettings(plant = "ideal")).startsWith("plant: the lanes fly"))
+    assert(refused(EnvironmentSettings(plant = "quadrotor", altitudeM = 3)).startsWith(
+      "plant: the lanes know no ground"
+    ))
     assert(refused(EnvironmentSettings(startWithinM = (5, 2))).startsWith("start_within_m: expected 5.0"))
     val learner = Learner(EnvironmentSettings(), 2, Autoreset.Disabled)
     intercept[IllegalStateException](learner.batch.step())

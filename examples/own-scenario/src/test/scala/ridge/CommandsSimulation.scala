@@ -91,4 +91,4 @@ class CommandsSimulation extends munit.FunSuite:
     val (status, said) = run("scenarios")
     assertEquals(status, 0)
     assert(clue(said).contains("over-the-ridge: 2 vehicles"))
-    assert(said.contains("crest-m") && said.contains("May not happen: separation of at least 8 m."))
+    assert(said.contains("crest-m") && said.contains("Limit: separation of at least 8 m."))

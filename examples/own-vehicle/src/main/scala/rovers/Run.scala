@@ -10,7 +10,7 @@ import skein.report.{Report, ReportSections}
 import skein.units.*
 
 /** Drives for 30 s over TCP, and the same in virtual time; writes both recordings and a report of them. */
-@main def run(): Unit =
+@main def driveRovers(): Unit =
   given system: ActorSystem = ActorSystem("rovers")
   import Chase.scenarios
   import system.dispatcher

@@ -1,5 +1,6 @@
 package skein.flight
 
+import java.util.concurrent.Executors
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.Flow
@@ -10,12 +11,13 @@ import skein.airsim.*
 import skein.flow.Hold
 import skein.link.*
 import skein.loop.*
-import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
+import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
+import skein.loop.planning.{BackgroundThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
 import skein.port.{SteppedTime, VehiclePort}
 import skein.record.{Flight as FlightRow, *}
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
-import skein.settings.{FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
+import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
 import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -83,6 +85,8 @@ final case class FlightResult(plan: FlightPlan, outcome: Outcome, written: Eithe
   *   what a flight that plans searches with
   * @param tell
   *   a line for a person, of what goes wrong in flight, as soon as it does
+  * @param learnsOn
+  *   what policies learn on that learn in flight; without it, each on a thread of its own that gives way to all others
   */
 final class FlightAssembler(
     transport: Transport,
@@ -90,7 +94,8 @@ final class FlightAssembler(
     settings: FlySettings,
     simulator: Option[Address],
     workers: PlanSettings => PlanWorkers = FlightAssembler.threads,
-    tell: String => Unit = _ => ()
+    tell: String => Unit = _ => (),
+    learnsOn: Option[ExecutionContext] = None
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -144,7 +149,8 @@ final class FlightAssembler(
               threads.close()
               Future.successful(Done)
         val finish    = Finish(settings.scenario, plan.loop == LoopKind.Paused, watch)
-        val team      = Team(plan.fleet(settings), reached.crafts, clock, finish, loopSettings, planners)
+        val flown     = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, watch))
+        val team      = Team(flown, reached.crafts, clock, finish, loopSettings, planners)
         val startedAt = clock.now()
         val vigil     = Vigil(
           watch,
@@ -184,6 +190,26 @@ final class FlightAssembler(
     starting
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
       .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
+
+  /** Who flies, with a policy that may learn. */
+  private def learning(plan: FlightPlan, chosen: ChosenPolicy, opened: Opened, watch: Watch): Fleet =
+    def taught(lessons: Lessons, explore: Double) =
+      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed): (vehicle, decision, news) =>
+        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(watch.offer)
+    chosen.learning match
+      case None                                  => plan.fleet(settings)
+      case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
+      case Some(Learning.Beside(explore, begun)) =>
+        val on = learnsOn.getOrElse:
+          val thread = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-learn"))
+          // It may hang in a lesson: nobody waits for that.
+          opened.closing(ExecutionContext.fromExecutorService(thread)): _ =>
+            thread.shutdownNow()
+            Future.successful(Done)
+        val lessons = opened.closing(LessonsBeside(begun(plan.seed), on)): lessons =>
+          lessons.close()
+          Future.successful(Done)
+        taught(lessons, explore)
 
   private def overAirSim(plan: FlightPlan, address: Address, opened: Opened, watch: Watch): Future[Reached] =
     for
@@ -230,15 +256,15 @@ final class FlightAssembler(
         EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
           .connection(TransportError.Lost(at, "the link broke"))
           .join(plain())
-    val origin                                 = server.map(_ => WorldSettings.DefaultOrigin)
-    val mavlink                                = MavlinkFleet(fleet, clock, origin, plain)
+    val origin  = server.map(_ => WorldSettings.DefaultOrigin)
+    val mavlink = MavlinkFleet(fleet, clock, origin, plain, isDatagrams = server.isEmpty)
     def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
         if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps))
         else Future.unit
       _                <- mavlink.prepare().map(right)
-      (link, vehicles) <- mavlink.open(linked).map(right)
+      (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
     yield
       val _ = opened.closing(link)(_.close())
       Reached(vehicles, None, at.toString, () => Future.unit, () => Future.successful(Right(None)))

@@ -11,12 +11,17 @@ import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.units.*
 
-/** A scenario's vehicles over MAVLink, system 1 being its first. */
+/** A scenario's vehicles over MAVLink, system 1 being its first.
+  *
+  * @param isDatagrams
+  *   whether `connect` gives datagrams, and not pieces of a stream
+  */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,
     clock: Clock,
     origin: Option[GeoLocation],
-    connect: () => Flow[ByteString, ByteString, ?]
+    connect: () => Flow[ByteString, ByteString, ?],
+    isDatagrams: Boolean
 )(using system: ActorSystem):
   import MavlinkFleet.*
   import system.dispatcher
@@ -27,7 +32,7 @@ private[flight] final class MavlinkFleet(
 
   /** Brings all to their starts, over a connection of its own: this is not part of the flight. */
   def prepare(): Future[Either[String, Done]] =
-    MavlinkLink.open(connect(), systems, clock, origin, settings).flatMap:
+    MavlinkLink.open(connect(), systems, clock, origin, settings, isDatagrams = isDatagrams).flatMap:
       case Left(error) => Future.successful(Left(error.message))
       case Right(link) =>
         val starts = fleet.agents.zip(systems).map: (agent, number) =>
@@ -43,12 +48,17 @@ private[flight] final class MavlinkFleet(
           .recover { case Climb.NotReady(reason) => Left(reason) }
           .flatMap(result => link.close().map(_ => result))
 
-  /** Opens the connection that is flown over. */
+  /** Opens the connection that is flown over.
+    *
+    * @param isStream
+    *   whether what stands between makes a stream of it
+    */
   def open(
-      flow: Flow[ByteString, ByteString, ?]
+      flow: Flow[ByteString, ByteString, ?],
+      isStream: Boolean
   ): Future[Either[String, (MavlinkLink, Vector[MavlinkVehicle])]] =
     MavlinkLink
-      .open(flow, systems, clock, origin, settings)
+      .open(flow, systems, clock, origin, settings, isDatagrams = isDatagrams && !isStream)
       .map(_.left.map(_.message).map(link => (link, systems.map(MavlinkVehicle(link, _)))))
 
   private def leaveGround(vehicle: MavlinkVehicle): Future[Vector3] =

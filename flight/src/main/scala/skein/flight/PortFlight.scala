@@ -9,19 +9,19 @@ import skein.scenario.Scenario
 import skein.settings.ScenarioSettings
 import skein.units.*
 
-/** One flight of a loop with vehicles of any kind, live or in virtual time: whatever has a [[VehiclePort]] flies. The
-  * vehicles are at their starts already.
+/** One flight of a loop with vehicles of any kind that have a [[VehiclePort]], live or in virtual time. The vehicles must
+  * be at their starts already.
   *
   * @param id
-  *   names it in tables and pictures
+  *   its name in tables and figures
   * @param scenario
   *   who flies, by which policies, and what is measured
   * @param link
-  *   what the vehicles are reached over
+  *   name of the network between loop and vehicles, for the report
   * @param simulator
-  *   what they are
+  *   name of the vehicles' simulator, for the report
   * @param clockKind
-  *   the clock that it is flown by; [[clock]] reads it
+  *   real or virtual time; [[clock]] reads it
   */
 final case class PortFlight(
     id: String,
@@ -58,9 +58,9 @@ final case class PortFlight(
     * @param vehicles
     *   one for each agent of the scenario, in its order
     * @param time
-    *   of the simulator, where it can stand still: `paused` needs it
+    *   of a simulator that can be stopped and stepped: `paused` needs it
     * @return
-    *   the flight under way, and how it ended: when it completes, the vehicles hover and everything is written
+    *   the flight under way. Its `landed` completes when the vehicles hover and everything is written
     */
   def start(vehicles: Vector[VehiclePort], recorder: Recorder, time: Option[SteppedTime] = None)(using
       system: ActorSystem

@@ -134,12 +134,12 @@ private[skein] final class Seeing(
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit = what match
     case Frames.Skipped.Missed(frames) =>
-      note(EventKind.Skipped, s"${eye.sensor}: $frames pictures not taken")
+      note(EventKind.Skipped, s"${eye.sensor}: $frames images not taken")
     case Frames.Skipped.Failed(error) => note(EventKind.TimedOut, s"${eye.sensor}: $error")
-    case Frames.Skipped.Overtaken(_)  => note(EventKind.Dropped, s"${eye.sensor}: a picture overtaken")
-    case Frames.Skipped.Repeated(_)   => note(EventKind.Dropped, s"${eye.sensor}: the same picture again")
+    case Frames.Skipped.Overtaken(_)  => note(EventKind.Dropped, s"${eye.sensor}: an image overtaken")
+    case Frames.Skipped.Repeated(_)   => note(EventKind.Dropped, s"${eye.sensor}: the same image again")
     case Frames.Skipped.Replaced(_)   =>
-      note(EventKind.Dropped, s"${eye.sensor}: a picture replaced by a newer one")
+      note(EventKind.Dropped, s"${eye.sensor}: an image replaced by a newer one")
 
   private def unrecognised(what: Unrecognised[Any]): Unit = what match
     case Unrecognised.Late(_) => note(EventKind.DeadlineMissed, s"${eye.sensor}: recognition was late")

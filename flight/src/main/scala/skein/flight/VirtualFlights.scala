@@ -2,7 +2,6 @@ package skein.flight
 
 import java.io.{PrintWriter, StringWriter}
 import java.nio.file.Path
-import java.util.concurrent.Executors
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.link.{MemoryNetwork, NetworkPlan}
@@ -57,10 +56,7 @@ object VirtualFlights:
         try fly(plan)
         catch case error: Throwable => Left(NotFlown.trace(error))
       result.left.map(NotFlown(plan, _))
-    val cores   = Runtime.getRuntime.availableProcessors
-    val threads = Executors.newFixedThreadPool(plans.size.min(cores).max(1))
-    try plans.map(plan => threads.submit(() => flown(plan))).map(_.get())
-    finally threads.shutdown()
+    InParallel.map(plans, Runtime.getRuntime.availableProcessors)(flown)
 
   /** Flies on the calling thread, to the end.
     *
@@ -74,8 +70,15 @@ object VirtualFlights:
         import system.dispatcher
         val clock     = Clock.ofNanos(VirtualTime.clock(system))
         val network   = MemoryNetwork(NetworkPlan(), plan.seed, clock)
-        val assembler = FlightAssembler(network.host("localhost"), clock, settings, simulator = None, workers)
-        val recorder  = MemoryRecorder(assembler.heading(plan, clockKind = "virtual"))
+        val assembler = FlightAssembler(
+          network.host("localhost"),
+          clock,
+          settings,
+          simulator = None,
+          workers,
+          learnsOn = Some(system.dispatcher)
+        )
+        val recorder = MemoryRecorder(assembler.heading(plan, clockKind = "virtual"))
         assembler
           .start(plan, recorder)
           .flatMap:

@@ -99,6 +99,8 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     *
     * @param speed
     *   absent where the vehicle commands its own
+    * @throws ArithmeticException
+    *   if the heading is no finite number: no vehicle is told such a thing
     */
   def decided(
       memory: Memory,
@@ -107,6 +109,10 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
       heading: Double,
       speed: Option[MetresPerSecond]
   ): (Memory, Decision) =
+    if !heading.isFinite then
+      throw ArithmeticException(
+        s"the policy of ${agent.name} decided for a heading that is no finite number: $heading"
+      )
     val decision = Decision(
       vehicle = self,
       sequence = memory.decisions,

@@ -17,7 +17,7 @@ object GraphLayout:
   def of(graph: LoopGraph): Map[String, Spot] =
     val forward = withoutTurns(graph)
     val before  = forward.groupMap(_.to)(_.from).withDefaultValue(Vector.empty)
-    val columns = (1 to graph.stages.size).foldLeft(graph.stages.map(_ -> 0).toMap): (columns, _) =>
+    val columns = (1 until graph.stages.size).foldLeft(graph.stages.map(_ -> 0).toMap): (columns, _) =>
       forward.foldLeft(columns)((known, edge) =>
         known.updated(edge.to, known(edge.to).max(known(edge.from) + 1))
       )
@@ -28,7 +28,7 @@ object GraphLayout:
       val (at, names)         = column
       def above(name: String) =
         val rows = before(name).flatMap(placed.get).map(_.row)
-        if rows.isEmpty then 0.0 else rows.sum / rows.size
+        rows.sum / rows.size.max(1)
       placed ++ names.sortBy(name => (above(name), turning(name), name)).zipWithIndex.map((name, row) =>
         name -> Spot(at, row + (tallest - names.size) / 2.0)
       )

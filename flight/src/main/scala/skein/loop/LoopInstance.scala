@@ -1,8 +1,6 @@
 package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.pattern.after
-import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Future, Promise}
 import skein.policy.{Action, Fleet}
 import skein.port.{Sensor, VehicleError, VehiclePort}
@@ -27,12 +25,9 @@ object LoopInstance:
       val flight  = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
       val running = RunningGraph(team.meters)
       // A graph that has just been started tells nothing yet.
-      def ask(left: Int): Future[Option[LoopGraph]] = running.shape().flatMap:
-        case None if left > 0 => after(AskEvery)(ask(left - 1))
-        case found            => Future.successful(found)
-      ask(MostAsked).andThen(_ => flight.stop())
+      UntilCertain(running.shape(), MostAsked, AskEvery)(_.isDefined).andThen(_ => flight.stop())
 
-  private val AskEvery  = 10.millis
+  private val AskEvery  = Span.ofMillis(10)
   private val MostAsked = 500
 
   private final class Silent(asked: Set[String]) extends VehiclePort:

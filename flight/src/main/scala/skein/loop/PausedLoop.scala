@@ -33,6 +33,29 @@ object PausedLoop:
   /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs. */
   private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
 
+  /** What the readings of a step show that must not be, a line each: time that passed while they were read, and a step
+    * that took other than its time.
+    *
+    * @param before
+    *   what was read of the step before; empty where there is none
+    */
+  private[loop] def drift(
+      step: Long,
+      before: Vector[Stamped[?]],
+      read: Vector[Stamped[?]],
+      period: Span
+  ): Vector[String] =
+    val (now, oldest) = (newest(read), read.map(_.validAt).min)
+    val stepped       = Option.when(before.nonEmpty)(now.since(newest(before)))
+    Vector(
+      Option.when(oldest != now)(
+        s"${now.since(oldest).toMillis} ms of simulator time passed while step $step was read: it did not stand still"
+      ),
+      stepped.filter(_ != period).map(took =>
+        s"step $step took ${took.toMillis} ms of simulator time instead of ${period.toMillis} ms"
+      )
+    ).flatten
+
   /** While the simulator stands still, no time passes between question and answer. */
   private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
     read.copy(sentAt = read.validAt, receivedAt = read.validAt)
@@ -113,21 +136,14 @@ private final class PausedFlight(
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
   private def verifyStep(step: Step, readings: Vector[Reading]): Unit =
-    val (now, oldest) = (PausedLoop.newest(readings.map(_.state)), readings.map(_.state.validAt).min)
-    if oldest != now then
-      team.log.note(
-        EventKind.StepDrift,
-        None,
-        s"${now.since(oldest).toMillis} ms of simulator time passed while step ${step.number} was read: it did not stand still"
+    PausedLoop
+      .drift(
+        step.number,
+        step.view.readings.flatten.map(_.state),
+        readings.map(_.state),
+        team.settings.period
       )
-    if step.number > 0 then
-      val stepped = now.since(PausedLoop.newest(step.view.readings.flatten.map(_.state)))
-      if stepped != team.settings.period then
-        team.log.note(
-          EventKind.StepDrift,
-          None,
-          s"step ${step.number} took ${stepped.toMillis} ms of simulator time instead of ${team.settings.period.toMillis} ms"
-        )
+      .foreach(team.log.note(EventKind.StepDrift, None, _))
 
   private def orFail[A](call: Future[Either[VehicleError, A]]): Future[A] =
     call.transform:

@@ -31,7 +31,8 @@ import skein.vehicle.ReducedModel
   * @param geofenceM
   *   to be kept to north and south, east and west of the origin; 0: none
   * @param kept
-  *   of the scenario's limits, with a margin of [[PlanSettings.Doubt]]; not in the text
+  *   of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds [[PlanSettings.SpeedDoubt]]; not in
+  *   the text
   * @param response
   *   of the vehicles to their commands; across the command it is taken to be as along it
   */
@@ -106,6 +107,20 @@ final case class PlanSettings(
   /** What the scenario says that any two vehicles keep between them, opponents too, m; 0: nothing. */
   def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
+  /** The fastest that a vehicle is commanded which would be commanded so much, m/s. */
+  def speedMps(ownMps: Double): Double =
+    kept.collect { case Kept.NoFaster(mostMps) => mostMps * (1 - PlanSettings.SpeedDoubt) }.foldLeft(ownMps)(
+      _ min _
+    )
+
+  /** The altitude nearest to a vehicle's own between floor and ceiling; midway where these are close, m. */
+  def altitudeM(ownM: Double): Double =
+    val leastM = kept.collect { case Kept.Above(leastM) => leastM + PlanSettings.Doubt }.maxOption
+    val mostM  = kept.collect { case Kept.Below(mostM) => mostM - PlanSettings.Doubt }.minOption
+    (leastM, mostM) match
+      case (Some(least), Some(most)) if least > most => (least + most) / 2
+      case _ => ownM.max(leastM.getOrElse(ownM)).min(mostM.getOrElse(Double.PositiveInfinity))
+
   /** As [[PlanSettings.parse]] reads it back, apart from the response. */
   def text: String = Seq(
     "deadlineNs"     -> deadline.toNanos,
@@ -131,6 +146,9 @@ object PlanSettings:
     */
   val Doubt = 1.0
 
+  /** The same of speeds, as a share: vehicles swing past what they are commanded. */
+  val SpeedDoubt = 0.1
+
   private val methods = Map(
     CrossEntropy -> Method.CrossEntropy(elites = 48, smoothing = 0.2),
     PathIntegral -> Method.PathIntegral(temperature = 0.1)
@@ -141,9 +159,7 @@ object PlanSettings:
 
   /** Reads settings back from their text; absent where that is no such text. */
   def parse(text: String): Option[PlanSettings] =
-    val values = text.split(' ').map(_.split("=", 2)).collect { case Array(name, value) =>
-      name -> value
-    }.toMap
+    val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
     for
       deadline   <- values.get("deadlineNs").flatMap(_.toLongOption)
       steps      <- values.get("horizonSteps").flatMap(_.toIntOption)

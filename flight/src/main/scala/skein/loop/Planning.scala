@@ -4,16 +4,22 @@ import skein.planning.*
 import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
 import skein.signal.Kinematics
 import skein.units.*
+import skein.vehicle.ReducedModel
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
-private abstract class Planning(fleet: Fleet, self: Int):
+private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings):
   protected val agent: Agent     = fleet.agents(self)
   protected val decider: Decider = Decider(fleet, self)
+  private val startM             = -agent.startPositionNed.z
 
-  def planner: PlannerSettings
+  /** At which it flies: its start's, as far as the limits let it. */
+  protected val altitudeM: Double      = settings.altitudeM(startM)
+  protected val response: ReducedModel = settings.responseAt(altitudeM)
+
+  final val planner: PlannerSettings = settings.planner
 
   /** How long after its arrival a command begins to act on the vehicle. */
-  def deadTime: Span
+  final val deadTime: Span = Span.ofSeconds(response.deadTimeS)
 
   /** Whether plans depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean
@@ -48,7 +54,13 @@ private abstract class Planning(fleet: Fleet, self: Int):
     val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
     val (next, decision) =
       decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
-    (next, PlannedDecision(decision, action, plan, isOld))
+    (next, PlannedDecision(atAltitude(decision), action, plan, isOld))
+
+  private def atAltitude(decision: Decision): Decision =
+    if altitudeM == startM then decision
+    else
+      val velocity = agent.velocityNed(decision.heading.value, decision.speed)
+      decision.copy(action = Some(skein.policy.Action.VelocityAt(velocity.x, velocity.y, Metres(-altitudeM))))
 
   /** The plan's manoeuvre where it costs clearly less than every one suggested. */
   private def begun(part: Part, plan: Plan): Manoeuvre =

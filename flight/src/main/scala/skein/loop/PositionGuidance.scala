@@ -16,7 +16,7 @@ final private[loop] case class PositionGuidance(positionNed: Vector3, speed: Met
 
   val period: Option[Span] = Some(PathFollowing.Period)
 
-  def setpoint(now: Kinematics): Setpoint =
+  def setpoint(now: => Kinematics): Setpoint =
     val way      = positionNed - now.positionNed
     val aim      = way * (lookaheadM / way.norm).min(1)
     val velocity = PathFollowing.velocityNed(aim, speed.value)

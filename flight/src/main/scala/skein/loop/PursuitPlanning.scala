@@ -14,15 +14,11 @@ import skein.units.*
   * In its place the vehicle's own policy decides within the turn limit.
   */
 private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSettings, seed: Long)
-    extends Planning(fleet, self):
+    extends Planning(fleet, self, settings):
   import Planning.{motion, straight}
-  private val speed    = agent.speed.value
-  private val response = settings.responseAt(-agent.startPositionNed.z)
-  private val leastM   =
+  private val speed  = settings.speedMps(agent.speed.value)
+  private val leastM =
     settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
-
-  val planner: PlannerSettings = settings.planner
-  val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
 
   private val objective = Objective(
     Limits(speed * settings.slowestShare, speed, speed / settings.turningRadiusM, settings.turningRadiusM),
@@ -61,7 +57,7 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
         Target.Opponent(now, response, speed, view.headingRad(opponent, fleet), policy)
       case Left(_) => Target.Along(straight(now, planner))
 
-  protected def choosesSpeed: Boolean = settings.slowestShare < 1
+  protected def choosesSpeed: Boolean = settings.slowestShare < 1 || speed < agent.speed.value
 
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
     val (_, decision) = decider.decide(memory, view, now)

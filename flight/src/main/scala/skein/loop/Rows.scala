@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Fleet, Role}
+import skein.policy.{Action, Fleet, Role}
 import skein.record.{
   Command,
   Decision as DecisionRow,
@@ -116,6 +116,9 @@ private final class Rows(fleet: Fleet):
       Some(decision.sequence),
       MetresPerSecond(velocity.x),
       MetresPerSecond(velocity.y),
-      Metres(agent.startPositionNed.z),
+      decision.action match
+        case Some(Action.VelocityAt(_, _, down, _)) => down
+        case _                                      => Metres(agent.startPositionNed.z)
+      ,
       at
     )

@@ -19,12 +19,11 @@ object LoopGraph:
   def of(names: Vector[Option[String]], connections: Vector[(from: Int, to: Int)]): LoopGraph =
     val next                            = connections.groupMap(_.from)(_.to).withDefaultValue(Vector.empty)
     def reached(from: Int): Vector[Int] =
-      def walk(seen: Set[Int], front: Vector[Int], found: Vector[Int]): Vector[Int] =
-        front.headOption match
-          case None                            => found
-          case Some(at) if seen(at)            => walk(seen, front.tail, found)
-          case Some(at) if names(at).isDefined => walk(seen + at, front.tail, found :+ at)
-          case Some(at)                        => walk(seen + at, front.tail ++ next(at), found)
+      def walk(unnamed: Set[Int], front: Vector[Int], found: Vector[Int]): Vector[Int] = front match
+        case at +: rest if names(at).isDefined => walk(unnamed, rest, found :+ at)
+        case at +: rest if unnamed(at)         => walk(unnamed, rest, found)
+        case at +: rest                        => walk(unnamed + at, rest ++ next(at), found)
+        case _                                 => found
       walk(Set.empty, next(from), Vector.empty)
     val edges =
       for

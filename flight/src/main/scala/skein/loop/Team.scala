@@ -456,7 +456,7 @@ final class Team(
       // To hover is a command, too, and must not be a third one outstanding.
       _      <- allEnded(sent.dropRight(1))
       answer <- UntilCertain(crafts(vehicle).hover())(Team.isHovering).transform(Success(_))
-      _      <- allEnded(sent.takeRight(1))
+      _      <- allEnded(sent)
     yield answer match
       case Success(Left(error)) if !Team.isHovering(Left(error)) =>
         log.failed(vehicle, "not known to hover", error)

@@ -15,21 +15,17 @@ private final class TeamPlanning(
     policy: GoalPolicy,
     settings: PlanSettings,
     seed: Long
-) extends Planning(fleet, self):
+) extends Planning(fleet, self, settings):
   import Planning.{motion, straight}
-  private val response = settings.responseAt(-agent.startPositionNed.z)
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
-  val planner: PlannerSettings = settings.planner
-  val deadTime: Span           = Span.ofSeconds(response.deadTimeS)
-
   private val objective = Objective(
-    Limits(0, policy.mostMps, TeamPlanning.MostTurnRad / settings.planner.dtS),
+    Limits(0, settings.speedMps(policy.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
     distance = 1,
     carried = 0.5,
     turning = 0.002,
     speedChange = 0.1,
-    cruiseSpeed = agent.speed.value,
+    cruiseSpeed = settings.speedMps(agent.speed.value),
     separation =
       if minimumM > 0 then Separation(minimumM + PlanSettings.Doubt, margin = 0.8, growth = 0.5)
       else Separation(0, 0, 0),
@@ -61,7 +57,7 @@ private final class TeamPlanning(
     val limits = turningAtOnce(alone.sinceDecisionS)
     Part(
       // Other speeds than that of the place wanted are for catching up.
-      objective.copy(limits = limits, cruiseSpeed = speed(along)),
+      objective.copy(limits = limits, cruiseSpeed = settings.speedMps(speed(along))),
       alone.copy(suggested = suggested(request, alone, limits)),
       Planning.stream(seed, self, memory)
     )
@@ -86,7 +82,7 @@ private final class TeamPlanning(
 
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
     val course = policy.course(decider.request(memory, view, now))
-    Action(course.headingRad - memory.headingRad, course.speedMps, Vector.empty)
+    Action(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
 
 private object TeamPlanning:
   /** Of a multirotor that turns on the spot: as far as candidates can turn at once ([[skein.planning.Planner]]). What is

@@ -15,13 +15,14 @@ private[loop] object UntilCertain:
   val Pause: Span = Span.ofMillis(500)
 
   /** What the last attempt came to; one that fails is not certain. */
-  def apply[A](attempt: => Future[A])(isCertain: A => Boolean)(using ActorSystem): Future[A] =
-    attempts(Attempts)(attempt)(isCertain)
-
-  private def attempts[A](left: Int)(attempt: => Future[A])(isCertain: A => Boolean)(using
+  def apply[A](
+      attempt: => Future[A],
+      attempts: Int = Attempts,
+      pause: Span = Pause
+  )(isCertain: A => Boolean)(using
       system: ActorSystem
   ): Future[A] =
     import system.dispatcher
     attempt.transformWith: result =>
-      if left == 1 || result.toOption.exists(isCertain) then Future.fromTry(result)
-      else after(Pause.toDuration, system.scheduler)(attempts(left - 1)(attempt)(isCertain))
+      if attempts == 1 || result.toOption.exists(isCertain) then Future.fromTry(result)
+      else after(pause.toDuration, system.scheduler)(UntilCertain(attempt, attempts - 1, pause)(isCertain))

@@ -6,8 +6,9 @@ import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
+import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
-import skein.policy.{Agent, Fleet, Policy}
+import skein.policy.{Agent, Fleet, LearnedPolicy, Policy}
 import skein.scenario.{PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -53,7 +54,7 @@ final case class FlySettings(
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
   /** Plans are flown by the model of a file that readings are carried forward by, where one is set; else by that of each
-    * vehicle's altitude. They keep the scenario's separation and geofences.
+    * vehicle's altitude. They keep the scenario's limits, but for those of quantities of its own.
     */
   def planningByModel: PlanSettings = planning.copy(
     kept = scenario.limits.flatMap(_.kept),
@@ -83,12 +84,14 @@ final case class FlySettings(
     */
   def plans: Vector[FlightPlan] =
     val names = policies.zipWithIndex.map: (policy, index) =>
-      val same = policies.take(index).count(_.family.name == policy.family.name)
-      policy.family.name + (if same == 0 then "" else s"-${same + 1}")
+      val same = policies.take(index).count(_.name == policy.name)
+      policy.name + (if same == 0 then "" else s"-${same + 1}")
     val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
-    papers ++ chosen.flatMap(policy =>
-      papers.map(plan => plan.copy(id = s"${plan.id}-${policy.name}", policy = Some(policy)))
-    )
+    papers ++ chosen.flatMap(plansWith)
+
+  /** The same flights with a policy in the place of the scenario's. */
+  def plansWith(policy: ChosenPolicy): Vector[FlightPlan] =
+    papers.map(plan => plan.copy(id = s"${plan.id}-${policy.name}", policy = Some(policy)))
 
   private def papers: Vector[FlightPlan] =
     val truth  = Option.when(loops.contains(LoopKind.Paused))((LoopKind.Paused, LatencyProfile.none))
@@ -104,8 +107,26 @@ final case class FlySettings(
   *
   * @param name
   *   short, in tables; no two of an experiment share one
+  * @param learning
+  *   where it learns while it flies; then the file is what it begins with, a network
   */
-final case class ChosenPolicy(name: String, file: PolicyFile)
+final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[Learning] = None):
+
+  /** The scenario with this policy for all agents of its role, which learns by lessons.
+    *
+    * @param note
+    *   told of what is new, with the vehicle and the number of its next decision
+    */
+  def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
+      note: (String, Long, News) => Unit
+  ): Fleet =
+    def version(parameters: Vector[Double]) = file.family.policy(parameters).asInstanceOf[LearnedPolicy]
+    Fleet(fleet.agents.map: agent =>
+      if agent.role != file.role then agent
+      else
+        agent.copy(policy =
+          LearningPolicy(version(file.parameters), version, explore, seed, lessons, note(agent.name, _, _))
+        ))
 
 /** One flight of an experiment.
   *

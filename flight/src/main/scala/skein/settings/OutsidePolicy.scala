@@ -9,18 +9,18 @@ import scala.util.{Failure, Success, Try}
 import skein.policy.*
 import skein.units.{Clock, Instant, Span}
 
-/** A policy in a process of its own, asked over a Unix socket. It is given what a learner sees in `skein.environment`:
-  * [[PlanarObservation.fromOwnHeading]], and answers with a number from −1 to 1: how to turn; what is beyond is taken for the bound. So
-  * what was taught there flies in every loop.
+/** A policy in a process of its own, asked over a Unix socket. It gets the observation of `skein.environment`
+  * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond are clipped.
+  * So a policy that was trained there flies in every loop.
   *
   * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is none: a
   * length in bytes (32 bits) and UTF-8. One question is under way at a time, of all flights together. The clock of a
   * flight in virtual time stands still meanwhile, so equal answers make equal flights.
   *
-  * Where there is no number, the decision fails: by the policy's own word, by a number that is not finite, by anything
-  * else than one answer, or because none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last
-  * two nobody is asked again, and every later decision fails at once: an answer that nobody asked for would be taken for
-  * that to the next question, and all that follow would be late by one.
+  * A decision fails if the policy reports an error, if the number is not finite, if anything but one answer comes, or if
+  * none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two the policy is not asked again,
+  * and every later decision fails at once: a surplus answer would be taken for that to the next question, and all later
+  * answers would be late by one.
   *
   * @param mostTurnRadPerS
   *   of a pursuer

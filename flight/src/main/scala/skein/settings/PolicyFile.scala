@@ -4,10 +4,11 @@ import com.typesafe.config.{Config, ConfigException, ConfigValue}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
+import skein.onnx.OnnxPolicy
 import skein.policy.{Fleet, Policy, PolicyFamily, Role}
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
-  * how the policy was found) is for people.
+  * how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
   *
   * @param parameters
   *   in the order of the family's axes
@@ -18,6 +19,11 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
   /** The scenario with this policy for all agents of its role. */
   def flownIn(fleet: Fleet): Fleet =
     Fleet(fleet.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
+
+  /** In names of flights. */
+  def name: String =
+    if family.name.startsWith(OnnxPolicy.Prefix) then family.name.take(OnnxPolicy.Prefix.length + 8)
+    else family.name
 
   /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
   def text: String =
@@ -30,7 +36,7 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
     val shown = family.space.axes.zip(parameters).take(PolicyFile.MostShown).map: (axis, value) =>
       s"${axis.name}=${PolicyFile.brief(value)}"
     val more = family.space.dimension - shown.size
-    (family.name +: shown).mkString(" ") + (if more > 0 then s" and $more more" else "")
+    (name +: shown).mkString(" ") + (if more > 0 then s" and $more more" else "")
 
   /** As a file, with remarks for people.
     *
@@ -58,6 +64,9 @@ object PolicyFile:
 
   def ofDefaults(role: Role, family: PolicyFamily): PolicyFile =
     PolicyFile(role, family, family.space.defaults)
+
+  /** The paper's policy of a role of the duel. */
+  def paperOf(role: Role): PolicyFile = ofDefaults(role, PolicyFamily.paperOf(role))
 
   /** Four significant digits. */
   def brief(value: Double): String =
@@ -91,21 +100,38 @@ object PolicyFile:
   def chosen(role: Role, text: String): Either[String, PolicyFile] =
     val read = PolicyFamily.parse(text) match
       case Right(family) => roleOf(family, Some(name(role))).map(ofDefaults(_, family))
-      case Left(_)       => PolicyFile.read(text)
+      case Left(_)       => PolicyFile.read(text, Some(role))
     read.filterOrElse(
       _.role == role,
       s"expected a policy for the ${name(role)}, came one for the other role: $text"
     )
 
-  /** Reads a file.
+  /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
     *
+    * @param asked
+    *   whose it is then; without it, a pursuer's
     * @return
     *   or what was expected, what came, and where
     */
-  def read(path: String): Either[String, PolicyFile] =
-    HoconFile.read(path).flatMap: file =>
-      try of(file.resolve(), path)
-      catch case mistake: ConfigException => Left(s"$path: ${mistake.getMessage}")
+  def read(path: String, asked: Option[Role] = None): Either[String, PolicyFile] =
+    if path.endsWith(OnnxPolicy.Suffix) then
+      path match
+        case s"pursuer:$file" => ofOnnx(file, Some(Role.Pursuer), asked)
+        case s"evader:$file"  => ofOnnx(file, Some(Role.Evader), asked)
+        case file             => ofOnnx(file, None, asked)
+    else
+      HoconFile.read(path).flatMap: file =>
+        try of(file.resolve(), path)
+        catch case mistake: ConfigException => Left(s"$path: ${mistake.getMessage}")
+
+  private def ofOnnx(path: String, told: Option[Role], asked: Option[Role]): Either[String, PolicyFile] =
+    for
+      found <- OnnxPolicy.read(path)
+      noted <- found.role match
+        case None       => Right(None)
+        case Some(text) => role(text).map(Some(_)).left.map(mistake => s"$path: its role: $mistake")
+      chosen = told.orElse(noted).orElse(asked).getOrElse(Role.Pursuer)
+    yield PolicyFile(chosen, found.family, found.parameters(chosen))
 
   private def of(file: Config, path: String): Either[String, PolicyFile] =
     def at(value: ConfigValue)                    = s"$path, line ${value.origin.lineNumber}"
@@ -143,7 +169,9 @@ object PolicyFile:
   def parse(role: Role, text: String): Either[String, PolicyFile] =
     val words = text.split(' ').toVector
     for
-      family <- PolicyFamily.parse(words.head)
+      family <-
+        if words.head.startsWith(OnnxPolicy.Prefix) then OnnxPolicy.recorded(words.head)
+        else PolicyFamily.parse(words.head)
       values = words.tail.flatMap: word =>
         word.split('=') match
           case Array(name, value) => value.toDoubleOption.filter(_.isFinite).map(name -> _)

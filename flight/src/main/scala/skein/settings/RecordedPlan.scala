@@ -1,16 +1,23 @@
 package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
+import skein.loop.learning.{Learning, LessonsAgain, News}
 import skein.measure.RecordedScenario
 import skein.policy.Fleet
-import skein.record.{Parameter, Recording}
+import skein.record.{Event, EventKind, Parameter, Record, Recording}
 import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
 import skein.units.*
 
 /** What a recording says was flown: enough to fly it again. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  def fleet: Fleet = plan.fleet(settings)
+  /** Who flew, and decides again. */
+  def fleet: Fleet =
+    val flown = plan.fleet(settings)
+    plan.policy match
+      case Some(chosen @ ChosenPolicy(_, _, Some(Learning.Again(explore, news)))) =>
+        chosen.learningIn(flown, LessonsAgain(news), explore, plan.seed)((_, _, _) => ())
+      case _ => flown
 
 object RecordedPlan:
   private val Predictor = "predictor"
@@ -24,6 +31,21 @@ object RecordedPlan:
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
+
+  /** How a policy tried out that learned in flight. */
+  private val Explore = "learningExplore"
+
+  /** The word before the number of a decision from which on a policy had other parameters. */
+  private val Version = "version"
+
+  /** What is recorded of a policy that learns.
+    *
+    * @param decision
+    *   the number of the next one
+    */
+  def learned(at: Instant, vehicle: String, decision: Long, news: News): Seq[Record] =
+    news.parameters.map(parameters => Parameter(s"$Version.$decision", Numbers64.text(parameters))).toSeq :+
+      Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
   /** What [[of]] needs besides the columns that every recording has. */
   def parameters(settings: FlySettings, plan: FlightPlan): Seq[Parameter] =
@@ -41,7 +63,7 @@ object RecordedPlan:
         Seq(
           Parameter(PolicyName, chosen.name),
           Parameter(s"$PolicyName.${PolicyFile.name(chosen.file.role)}", chosen.file.text)
-        )
+        ) ++ chosen.learning.map(learning => Parameter(Explore, learning.explore.toString))
 
   /** Reads it back.
     *
@@ -84,7 +106,10 @@ object RecordedPlan:
         scenario,
         planning = planning
       )
-      policy <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
+      chosen  <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
+      explore <- optional(Explore, "a number")(_.toDoubleOption)
+      news    <- newsOf(recording)
+      policy = chosen.map(_.copy(learning = explore.map(Learning.Again(_, news))))
     yield RecordedPlan(
       settings.copy(
         predictor = now.orElse(older).getOrElse(settings.predictor),
@@ -95,6 +120,28 @@ object RecordedPlan:
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy)
     )
+
+  /** Versions' parameters belong to the last that was new before a decision. */
+  private def newsOf(recording: Recording): Either[String, Map[Long, Vector[News]]] =
+    val versions = recording.heading.parametersOf(Version)
+    val said     = recording.events
+      .filter(_.kind == EventKind.Learned)
+      .flatMap(event => event.decision.map(_ -> News(event.detail)))
+      .groupMap(_._1)(_._2)
+    versions.foldLeft[Either[String, Map[Long, Vector[News]]]](Right(said)):
+      case (before, (number, text)) =>
+        for
+          said     <- before
+          decision <- number.toLongOption.filter(said.contains).toRight(
+            s"its parameter '$Version.$number': expected a decision before which something was learned"
+          )
+          numbers <- Numbers64.parse(text).toRight(
+            s"its parameter '$Version.$number': expected numbers in Base64, came others"
+          )
+        yield said.updated(
+          decision,
+          said(decision).init :+ said(decision).last.copy(parameters = Some(numbers))
+        )
 
   private def policyOf(
       name: Option[String],

@@ -1,11 +1,15 @@
 package skein.settings
 
 import java.io.IOException
+import java.nio.ByteBuffer
 import java.nio.charset.CharacterCodingException
+import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{AccessDeniedException, Files, Path}
+import scala.util.Using
 
 /** Text files that users name. */
 object TextFile:
+  private val MostBytes = 64 << 20
 
   /** The file's text, or why it cannot be read. */
   def read(path: String): Either[String, String] =
@@ -14,7 +18,13 @@ object TextFile:
     else if !Files.exists(file) then Left(s"there is no file $path")
     else if Files.isDirectory(file) then Left(s"expected a file, came the folder $path")
     else
-      try Right(Files.readString(file))
+      try
+        val bytes = Using.resource(Files.newInputStream(file))(_.readNBytes(MostBytes + 1))
+        Either.cond(
+          bytes.length <= MostBytes,
+          UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString,
+          s"expected a file of at most ${MostBytes >> 20} MiB, came $path, which is larger"
+        )
       catch
         case _: CharacterCodingException => Left(s"$path is no text in UTF-8")
         case _: AccessDeniedException    => Left(s"cannot read $path: access denied")

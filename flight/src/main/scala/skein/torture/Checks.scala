@@ -225,6 +225,13 @@ object Checks:
 
 private object Recorded:
   def rows(recording: Recording): Int =
-    recording.readings.size + recording.decisions.size + recording.commands.size +
-      recording.acknowledgements.size + recording.events.size + recording.predictions.size +
-      recording.sightings.size + recording.planned.size
+    Vector(
+      recording.readings,
+      recording.decisions,
+      recording.commands,
+      recording.acknowledgements,
+      recording.events,
+      recording.predictions,
+      recording.sightings,
+      recording.planned
+    ).map(_.size).sum

@@ -18,11 +18,14 @@ object Torture:
       scenario: Option[Scenario] = None,
       scene: Option[NamedScene] = None
   ): Verdict =
-    val drawn     = FaultPlan.of(seed, duration)
-    val flown     = scenario.fold(drawn)(drawn.flying)
-    val faultPlan =
-      scene.orElse(NamedScene.shipped(flown.scenario.scene)).fold(flown)(in => flown.copy(scene = in))
-    Verdict(faultPlan, violations(Checks.violations(TortureFlight.fly(faultPlan))))
+    val drawn = plan(seed, duration, scenario, scene)
+    Verdict(drawn, violations(Checks.violations(TortureFlight.fly(drawn))))
+
+  /** What happens to the flight of a seed. */
+  def plan(seed: Long, duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]): FaultPlan =
+    val drawn = FaultPlan.of(seed, duration)
+    val flown = scenario.fold(drawn)(drawn.flying)
+    scene.orElse(NamedScene.shipped(flown.scenario.scene)).fold(flown)(in => flown.copy(scene = in))
 
   /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
   private[torture] def violations(found: => Vector[String]): Vector[String] =

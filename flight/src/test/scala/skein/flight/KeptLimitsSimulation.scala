@@ -10,7 +10,7 @@ import skein.units.*
 
 /** A scenario as a user would write it: its policies know nothing of its limits. */
 class KeptLimitsSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
+  override def munitTimeout: Duration = 4.minutes
 
   /** What is broken by some vehicles, theirs alone or with others. */
   private def violations(scenario: Scenario, loop: LoopKind, by: Int*) =
@@ -34,6 +34,32 @@ class KeptLimitsSimulation extends munit.FunSuite:
     val (_, broken) = violations(Shadow(), LoopKind.Predictive, 1)
     assertEquals(broken, Vector("distance from the geofence's middle", "separation"))
     assertEquals(violations(Shadow(), LoopKind.Plan, 1)._2, Vector.empty)
+
+  test(
+    "plans climb or sink to where floor and ceiling let them fly, and stay below the speed that is allowed"
+  ):
+    for corridor <- Seq(Corridor(7, 12), Corridor(1, 3.8)) do
+      val (_, broken) = violations(corridor, LoopKind.Predictive, 0, 1)
+      assertEquals(broken, Vector("altitude", "speed"))
+      val (flown, _) = violations(corridor, LoopKind.Plan, 0, 1)
+      val late       = flown.violations.filter(violation => violation.toS > Corridor.ClimbS)
+      assertEquals(late.map(one => (one.limit.text, one.worst, one.toS)), Vector.empty, corridor)
+      assert(flown.value("furthest from the goals").exists(_ < 6), flown.measured.toString)
+
+/** Starts at 5 m, where nobody may fly, and has policies that fly 5 m/s, which nobody may. */
+final case class Corridor(floorM: Double, ceilingM: Double) extends Scenario:
+  def agents: Vector[Agent]              = Couriers().agents
+  override def duration: Span            = Span.ofSeconds(14)
+  override def measures: Vector[Measure] = Couriers().measures
+  override def limits: Vector[Limit]     = Vector(
+    Limit.floor(Metres(floorM)),
+    Limit.ceiling(Metres(ceilingM)),
+    Limit.speed(MetresPerSecond(4))
+  )
+
+object Corridor:
+  /** Until when vehicles may be on their way up or down. */
+  val ClimbS = 5.0
 
 /** Two fly at one another, each to where the other began, past a notch in the field's edge. */
 final case class Couriers() extends Scenario:

@@ -22,19 +22,24 @@ class MavlinkFlightLiveSuite extends munit.FunSuite:
   override def afterAll(): Unit =
     val _ = Await.result(system.terminate(), 20.seconds)
 
+  private val settings = FlySettings(
+    List(LoopKind.Stream),
+    List(LatencyProfile.none),
+    Span.ofSeconds(5),
+    Span.ofMillis(100),
+    seed = 1,
+    wire = Wire.Mavlink
+  )
+  private val plan = settings.plans.head
+
+  private def assembler(port: Int) =
+    FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", port)))
+
   test("the duel flies by datagrams: vehicles take off, come to their starts, and are flown to the end"):
     val port =
       val socket = DatagramSocket(0, InetAddress.getLoopbackAddress)
       try socket.getLocalPort
       finally socket.close()
-    val settings = FlySettings(
-      List(LoopKind.Stream),
-      List(LatencyProfile.none),
-      Span.ofSeconds(5),
-      Span.ofMillis(100),
-      seed = 1,
-      wire = Wire.Mavlink
-    )
     val vehicles = settings.fleet.agents.zipWithIndex.map((agent, index) =>
       VehicleSettings(agent.name, Vector3(0, 5 * index, 0))
     )
@@ -51,11 +56,9 @@ class MavlinkFlightLiveSuite extends munit.FunSuite:
       10.seconds
     )
     try
-      val assembler =
-        FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", port)))
-      val plan     = settings.plans.head
-      val recorder = MemoryRecorder(assembler.heading(plan, "real"))
-      val assembly = Await.result(assembler.start(plan, recorder), 3.minutes).fold(fail(_), identity)
+      val flying   = assembler(port)
+      val recorder = MemoryRecorder(flying.heading(plan, "real"))
+      val assembly = Await.result(flying.start(plan, recorder), 3.minutes).fold(fail(_), identity)
       val landed   = Await.result(assembly.landed, 1.minute)
       assertEquals(landed.outcome, Outcome.Completed)
       assert(recorder.recording.decisions.size > 60, s"${recorder.recording.decisions.size} decisions")
@@ -63,15 +66,6 @@ class MavlinkFlightLiveSuite extends munit.FunSuite:
       val _ = Await.result(server.close(), 10.seconds)
 
   test("where nobody speaks MAVLink, the flight says so"):
-    val settings = FlySettings(
-      List(LoopKind.Stream),
-      List(LatencyProfile.none),
-      Span.ofSeconds(5),
-      Span.ofMillis(100),
-      seed = 1,
-      wire = Wire.Mavlink
-    )
-    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", 9)))
-    val plan      = settings.plans.head
-    val why = Await.result(assembler.start(plan, MemoryRecorder(assembler.heading(plan, "real"))), 1.minute)
+    val flying = assembler(9)
+    val why    = Await.result(flying.start(plan, MemoryRecorder(flying.heading(plan, "real"))), 1.minute)
     assert(why.left.exists(_.contains("expected MAVLink systems 1, 2")), why.toString)

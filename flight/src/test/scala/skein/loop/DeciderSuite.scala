@@ -43,6 +43,13 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(second.elapsed, Span.ofMillis(150))
     assertEquals(second.sequence, 1L)
 
+  test("no vehicle is told a heading that is no finite number"):
+    val lost = Decider(scenario, 1, skein.policy.PaperPursuer(Double.NaN))
+    val told = intercept[ArithmeticException](lost.decide(lost.start, view, millis(200)))
+    assert(
+      told.getMessage.contains("the policy of Pursuer decided for a heading that is no finite number: NaN")
+    )
+
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
     val ofEvader =
@@ -70,6 +77,24 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.uncertainty.toMillis, 10, driftMs)
     assertEqualsDouble(age.own.toMillis, 90, driftMs)
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
+
+  test(
+    "it sees itself heading where it was last told, the others where they were sent, and all as they are foreseen"
+  ):
+    val sent   = view.withMove(Move(0, 0, 0.4, millis(150))).withMove(Move(1, 0, 0.6, millis(150)))
+    val memory = pursuer.start.copy(headingRad = 0.9, decidedAt = Some(millis(170)), decisions = 3)
+    val heard  = pursuer.observation(memory, sent, millis(200))
+    assertEquals(heard.headings.map(_.value), Vector(0.4, 0.9))
+    assertEquals((heard.elapsed, heard.decisions, heard.actsIn), (Span.ofMillis(30), 3L, Span.Zero))
+    assert(heard.vehicles.forall(!_.isPredicted))
+    val ahead                      = sent.readings(0).get.state.value.copy(positionNed = Vector3(7, 8, -20))
+    def foreseen(actsAtMs: Double) =
+      val estimate = skein.forecast.Estimate(ahead, millis(actsAtMs), millis(1040))
+      pursuer.observation(memory, sent.copy(estimates = Some(Vector(estimate, estimate))), millis(200))
+    assert(foreseen(1150).vehicles.forall(seen => seen.isPredicted && seen.kinematics == ahead))
+    // The simulator's clock is 900 ms ahead, to within the drift.
+    assertEqualsDouble(foreseen(1150).actsIn.toMillis, 50, 0.01)
+    assertEquals(foreseen(1050).actsIn, Span.Zero, "what was to act already acts now")
 
   test("no decision is made before every vehicle was seen"):
     assert(!TeamView.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)

@@ -21,6 +21,7 @@ class FailedFlightSuite extends munit.FunSuite:
     import system.dispatcher
     private var outstanding, hovers = 0
     var mostOutstanding             = 0
+    var outstandingAtHover          = 0
     var hovering                    = false
 
     def isAnswered: Boolean = outstanding == 0
@@ -42,6 +43,7 @@ class FailedFlightSuite extends munit.FunSuite:
       if hovers <= lostHovers then Future.successful(lost)
       else
         hovering = true
+        outstandingAtHover = outstanding
         counted(craft.hover())
 
   private final case class FlightResult(outcome: Outcome, crafts: Vector[Counted], recording: Recording)
@@ -51,7 +53,8 @@ class FailedFlightSuite extends munit.FunSuite:
       kind: LoopKind,
       error: => Throwable,
       lostHovers: Int = 0,
-      link: LatencyProfile = LatencyProfile.vpn
+      link: LatencyProfile = LatencyProfile.vpn,
+      settings: LoopSettings = LoopSettings()
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
@@ -67,7 +70,7 @@ class FailedFlightSuite extends munit.FunSuite:
       val world    = FarQuadrotors(scenario, link, 1, clock)
       val crafts   = world.crafts.map(Counted(_, lostHovers))
       val recorder = MemoryRecorder(Samples.heading)
-      val team     = Team(scenario, crafts, clock, recorder, LoopSettings())
+      val team     = Team(scenario, crafts, clock, recorder, settings)
       Flight
         .start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder)
         .outcome
@@ -102,3 +105,29 @@ class FailedFlightSuite extends munit.FunSuite:
       landed.crafts.map(craft => (craft.hovering, craft.mostOutstanding)),
       Vector.fill(2)((true, 2))
     )
+
+  test("where six may be outstanding, it waits until all but one have ended"):
+    val landed = fly(
+      LoopKind.Stream,
+      IllegalStateException("no idea"),
+      link = VirtualDuel.constant(800),
+      settings = LoopSettings(movesInFlight = 6)
+    )
+    for craft <- landed.crafts do
+      assert(craft.mostOutstanding > 2, craft.mostOutstanding.toString)
+      assertEquals((craft.hovering, craft.outstandingAtHover), (true, 1))
+
+  test("what lets the simulator's time pass in steps is needed by paused, and by no other"):
+    def flown(kind: LoopKind): Outcome = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val duel               = PaperDuel().fleet
+        val recorder           = MemoryRecorder(Samples.heading)
+        val world              = FarQuadrotors(duel, LatencyProfile.none, 1, clock)
+        val team               = Team(duel, world.crafts, clock, recorder, LoopSettings())
+        Flight.start(kind, team, None, Span.ofSeconds(1), clock, recorder).outcome
+      .value
+    assertEquals(flown(LoopKind.Stream), Outcome.Completed)
+    assert(intercept[IllegalArgumentException](flown(LoopKind.Paused)).getMessage.contains("paused needs"))

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.policy.Action
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
-import skein.record.{MemoryRecorder, Samples}
+import skein.record.{EventKind, MemoryRecorder, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
@@ -17,11 +17,13 @@ class PausedLoopSuite extends munit.FunSuite:
   private final class Fragile(craft: VehiclePort, isPaused: () => Boolean, failing: Int, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0
+    var readWhileItRan        = false
     var hovering              = false
     var toldWhilePaused       = false
 
     def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
       reads += 1
+      readWhileItRan ||= !isPaused()
       if reads == failing then Future.successful(lost) else craft.read()
 
     def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
@@ -37,12 +39,18 @@ class PausedLoopSuite extends munit.FunSuite:
         craft.hover()
 
   /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let run. */
-  private final class FragileStepper(stepper: SteppedTime, failing: Int, failedResumes: Int)
-      extends SteppedTime:
+  private final class FragileStepper(
+      stepper: SteppedTime,
+      failing: Int,
+      failedResumes: Int,
+      stepsBy: Option[Span]
+  ) extends SteppedTime:
     private var steps, resumes = 0
+    var pauses                 = 0
     var paused                 = false
 
     def pause(): Future[Either[VehicleError, Unit]] =
+      pauses += 1
       paused = true
       stepper.pause()
 
@@ -55,22 +63,25 @@ class PausedLoopSuite extends munit.FunSuite:
 
     def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
       steps += 1
-      if steps == failing then Future.successful(lost) else stepper.continueFor(span)
+      if steps == failing then Future.successful(lost) else stepper.continueFor(stepsBy.getOrElse(span))
 
   private final case class FlightResult(
       outcome: Outcome,
       paused: Boolean,
       hovering: Vector[Boolean],
       toldWhilePaused: Boolean,
+      stoodStill: Boolean,
       commands: Int,
-      ends: Int
+      ends: Int,
+      drifts: Int
   )
 
   private def fly(
       failingRead: Int = 0,
       failingStep: Int = 0,
       failedHovers: Int = 0,
-      failedResumes: Int = 0
+      failedResumes: Int = 0,
+      stepsBy: Option[Span] = None
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
@@ -78,7 +89,7 @@ class PausedLoopSuite extends munit.FunSuite:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
-      val stepper            = FragileStepper(world, failingStep, failedResumes)
+      val stepper            = FragileStepper(world, failingStep, failedResumes, stepsBy)
       val crafts             = world.crafts.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))
       val recorder           = MemoryRecorder(Samples.heading)
       val team               = Team(scenario, crafts, clock, recorder, LoopSettings())
@@ -92,8 +103,10 @@ class PausedLoopSuite extends munit.FunSuite:
             stepper.paused,
             crafts.map(_.hovering),
             crafts.exists(_.toldWhilePaused),
+            stepper.pauses == 1 && !crafts.exists(_.readWhileItRan),
             recording.commands.size,
-            recording.acknowledgements.size
+            recording.acknowledgements.size,
+            recording.events.count(_.kind == EventKind.StepDrift)
           )
     .value
 
@@ -106,7 +119,31 @@ class PausedLoopSuite extends munit.FunSuite:
   test("after its last step the vehicles hover and the simulator runs"):
     val landed = fly()
     assertEquals((landed.outcome, landed.commands), (Outcome.Completed, 20))
+    assert(landed.stoodStill, "it was to be paused once, before anything was read")
     isReleased(landed)
+
+  private def readAt(ms: Double*): Vector[Stamped[Unit]] =
+    ms.toVector.map(at => Stamped((), Instant.Epoch + Span.ofMillis(at), Instant.Epoch, Instant.Epoch))
+
+  test("a step that took other than its time, or in which time passed while it was read, is told"):
+    def drift(step: Long, before: Vector[Stamped[Unit]], read: Vector[Stamped[Unit]]) =
+      PausedLoop.drift(step, before, read, Span.ofMillis(100))
+    assertEquals(PausedLoop.newest(readAt(500, 503, 501)), Instant.Epoch + Span.ofMillis(503))
+    assertEquals(drift(0, Vector.empty, readAt(500, 500)), Vector.empty)
+    assertEquals(drift(1, readAt(500, 500), readAt(600, 600)), Vector.empty)
+    val ran = "3.0 ms of simulator time passed while step 2 was read: it did not stand still"
+    assertEquals(drift(2, readAt(500, 503), readAt(603, 600)), Vector(ran))
+    for (at, ms) <- Seq(590.0 -> "90.0", 610.0 -> "110.0") do
+      assertEquals(
+        drift(7, readAt(500, 500), readAt(at, at)),
+        Vector(s"step 7 took $ms ms of simulator time instead of 100.0 ms")
+      )
+
+  test(
+    "a flight whose steps are as long as they should be notes no drift, and a simulator that runs on is noted"
+  ):
+    assertEquals(fly().drifts, 0)
+    assertEquals(fly(stepsBy = Some(Span.ofMillis(90))).drifts, 9)
 
   test("a flight that fails midway, in a reading or in a step, lets the simulator run, too"):
     for landed <- Seq(fly(failingRead = 5), fly(failingStep = 5), fly(failingStep = 1)) do

@@ -39,6 +39,15 @@ class PlanLoopSimulation extends munit.FunSuite:
     assertEquals(duel.recording.planned.map(_.took).distinct, Vector(planning.deadline))
     assertEquals(duel.recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)
 
+  test(
+    "its plans begin when their first command will act: the deadline, the way there and the dead time later"
+  ):
+    for decision <- duel.recording.decisions if decision.vehicle == "Pursuer" do
+      val acts  = decision.predicted.get.actsAt + decision.trueAge.get.clockOffset
+      val ahead = acts.since(decision.decidedAt).toMillis
+      val least = 60 + 1000 * planning.response.deadTimeS - decision.trueAge.get.uncertainty.toMillis
+      assert(ahead >= least && ahead <= least + 200, s"decision ${decision.sequence}: $ahead ms")
+
   test("the pursuer keeps its turning circle"):
     val most  = 10.0 / planning.turningRadiusM
     val turns = duel.recording.decisions.filter(_.vehicle == "Pursuer").drop(1)

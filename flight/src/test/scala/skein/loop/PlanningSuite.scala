@@ -1,8 +1,18 @@
 package skein.loop
 
-import skein.planning.{Separation, Target}
-import skein.policy.{AgentPolicy, Course, Fleet, GoalPolicy, KeepHeading, Policy, Role, TeamObservation}
-import skein.scenario.PaperDuel
+import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, Separation, Target}
+import skein.policy.{
+  AgentPolicy,
+  Course,
+  Fleet,
+  GoalPolicy,
+  KeepHeading,
+  Policy,
+  Role,
+  TeamObservation,
+  TeamPolicy
+}
+import skein.scenario.{Kept, PaperDuel}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
@@ -31,6 +41,50 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(alone.objective.separation, Separation(0, margin = 0))
     assertEquals(alone.situation.others.size, 0)
     assert(!PursuitPlanning(fleet, pursuer, PlanSettings(), 3).regardsTeam)
+
+  test(
+    "what the scenario keeps between any two is kept from opponents, too, with a metre more, however little it is"
+  ):
+    val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
+    val kept     = part(settings)
+    assertEquals(kept.objective.separation, Separation(8, margin = 1))
+    assertEquals(kept.situation.others.size, 2) // both evaders
+    val least = PlanSettings(kept = Vector(skein.scenario.Kept.Apart(0.5)))
+    assertEquals(part(least).objective.separation, Separation(1.5, margin = 1))
+    assertEquals(part(least).situation.others.size, 2)
+    val little = PlanSettings(separationM = 0.5)
+    assertEquals(part(little).objective.separation, Separation(0.5, margin = 1))
+    assert(PursuitPlanning(fleet, pursuer, little, 3).regardsTeam)
+
+  /** What is decided in the place of a plan by a policy that turns so far from where it was told to head, 0.25 rad. */
+  private def byPolicy(turn: Double, settings: PlanSettings): (Decision, PlannedDecision) =
+    object Turning extends Policy:
+      def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
+        own + turn
+    val turning  = Fleet(fleet.agents.updated(pursuer, fleet.agents(pursuer).copy(policy = Turning)))
+    val planning = PursuitPlanning(turning, pursuer, settings, seed = 3)
+    decidedBy(planning, isOld = true)
+
+  private def decidedBy(planning: Planning, isOld: Boolean): (Decision, PlannedDecision) =
+    val memory    = Memory(0.25, Some(now - Span.ofMillis(200)), 7)
+    val posed     = planning.pose(memory, view, now)
+    val plan      = JointPlanner().resumed(PlanProblem(planning.planner, Vector(posed)), None).plans.head
+    val (_, made) = planning.decide(memory, view, now, posed, plan, isOld)
+    (made.decision, made)
+
+  test(
+    "in the plan's place its policy decides, within the turn limit, at the speed that the vehicle always has"
+  ):
+    // 10 m/s over 8 m for 0.2 s are 0.25 rad.
+    assertEquals(fleet.agents(pursuer).speed.value, 10.0)
+    for (turn, heading) <- Seq(2.0 -> 0.5, -2.0 -> 0.0, 0.125 -> 0.375, -0.125 -> 0.125) do
+      val (decision, made) = byPolicy(turn, PlanSettings())
+      assertEqualsDouble(decision.heading.value, heading, 1e-9)
+      assertEquals((decision.speed, made.byPolicy), (None, true))
+
+  test("a speed is chosen where less than the vehicle's own may be commanded"):
+    assertEquals(byPolicy(0.1, PlanSettings(slowestShare = 0.999))._1.speed, Some(MetresPerSecond(10)))
+    assertEquals(decidedBy(PursuitPlanning(fleet, pursuer, PlanSettings(), 3), isOld = false)._1.speed, None)
 
   test("it may turn for as long as it has not decided, at most for half a second"):
     assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
@@ -64,6 +118,13 @@ class PlanningSuite extends munit.FunSuite:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
         System.nanoTime.toDouble
     assert(target(Lucky).isInstanceOf[Target.Along])
+    // Of those alone that somebody plans against.
+    def all(policy: AgentPolicy) = Fleet(fleet.agents.map(_.copy(policy = policy)))
+    val luckyPursuers            = Fleet(fleet.agents.map(agent =>
+      if agent.role == Role.Pursuer then agent.copy(policy = Lucky) else agent.copy(policy = KeepHeading)
+    ))
+    assertEquals(OpponentModel.missing(luckyPursuers), Vector.empty)
+    assertEquals(OpponentModel.missing(all(Moving())), Vector.empty)
     val told = OpponentModel.missing(flownBy(Lucky))
     assert(
       told.exists(_.startsWith(s"plan: ${fleet.agents(evader).name} is taken to fly straight on: ")),
@@ -91,6 +152,13 @@ class PlanningSuite extends munit.FunSuite:
     for steps <- Seq(2, 10) do
       val posed = teamPart(Moving(), PlanSettings(horizonSteps = steps, step = Span.ofMillis(200)))
       assertEqualsDouble(posed.objective.cruiseSpeed, 3, 1e-12)
+      // It is to be on its place at the end of each step.
+      posed.situation.behaviours.map(_.target) match
+        case Vector(Target.Along(track)) =>
+          assertEqualsDouble(track.x(0), 0.6, 1e-6)
+          assertEqualsDouble(track.x(steps - 1), 0.6 * steps, 1e-5)
+          assertEquals(track.y(0), 4.0)
+        case other => fail(s"came $other")
       // It may stand still.
       assertEquals((posed.objective.limits.minSpeed, posed.objective.limits.maxSpeed), (0.0, 6.0))
     // One place does not move.
@@ -104,9 +172,26 @@ class PlanningSuite extends munit.FunSuite:
       (posed.objective.separation.minimum, posed.situation.suggested.size)
     assertEquals(separation(Moving(), PlanSettings()), (0.0, 1))
     assertEquals(separation(Moving(2), PlanSettings()), (3.0, 0))
+    assertEquals(separation(Moving(0.5), PlanSettings()), (1.5, 0))
     assertEquals(separation(Moving(2), PlanSettings(separationM = 5)), (6.0, 0))
-    val kept = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
+    val kept = PlanSettings(separationM = 5, kept = Vector(Kept.Apart(7)))
     assertEquals(separation(Moving(), kept), (8.0, 1))
+
+  test("speeds stay below a limit by a tenth, however they come about"):
+    val kept  = PlanSettings(kept = Vector(Kept.NoFaster(5), Kept.NoFaster(2), Kept.Above(1)))
+    val posed = teamPart(Moving(), kept).objective
+    assertEquals((posed.limits.maxSpeed, posed.cruiseSpeed), (1.8, 1.8))
+    val pursuit = PursuitPlanning(fleet, pursuer, kept, 3).pose(Memory(0.25, None, 7), view, now).objective
+    assertEquals((pursuit.limits.minSpeed, pursuit.limits.maxSpeed, pursuit.cruiseSpeed), (1.8, 1.8, 1.8))
+    assertEquals(PlanSettings(kept = Vector(Kept.NoFaster(5))).speedMps(3), 3.0)
+
+  test("the altitude is a vehicle's own as far as floor and ceiling let it, a metre inside, or midway"):
+    def flown(kept: Kept*) = PlanSettings(kept = kept.toVector).altitudeM(5)
+    assertEquals(flown(), 5.0)
+    assertEquals(flown(Kept.Above(4), Kept.Below(6)), 5.0)
+    assertEquals(flown(Kept.Above(2), Kept.Above(7)), 8.0)
+    assertEquals(flown(Kept.Below(9), Kept.Below(4)), 3.0)
+    assertEquals(flown(Kept.Above(7), Kept.Below(8)), 7.5)
 
   test("after a longer pause one of a team turns no further at once, a radian"):
     def mostAtOnce(pauseS: Double) =
@@ -117,3 +202,67 @@ class PlanningSuite extends munit.FunSuite:
       ).objective.limits.maxTurnRate
     assertEquals(mostAtOnce(0.05), 1 / 0.1)
     assertEquals(mostAtOnce(0.4), 1 / 0.4)
+
+  test(
+    "vehicles of a team that do not plan are kept from where a separation is set, and else are in nobody's way"
+  ):
+    val mixed = Fleet(fleet.agents.zipWithIndex.map((agent, place) =>
+      if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
+    ))
+    def posed(separationM: Double) =
+      TeamPlanning(mixed, pursuer, Moving(), PlanSettings(separationM = separationM), seed = 3)
+        .pose(Memory(0.25, None, 7), view, now)
+    assertEquals(posed(0.5).situation.others.size, fleet.agents.size - 1)
+    assertEquals(posed(0).situation.others.size, 0)
+    assert(!posed(0).objective.separation.isKept)
+
+  private object Together extends TeamPolicy:
+    def course(seen: TeamObservation): Course = Course(0, 1)
+
+  test("in the plan's place the policy of one of a team decides its heading and its speed"):
+    val team             = Fleet(fleet.agents.map(_.copy(policy = Moving())))
+    val planning         = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)
+    val (decision, made) = decidedBy(planning, isOld = true)
+    assertEqualsDouble(decision.heading.value, 0, 1e-12)
+    assertEquals((decision.speed, made.byPolicy), (Some(MetresPerSecond(3)), true))
+    assert(decidedBy(planning, isOld = false)._1.speed.isDefined)
+
+  test(
+    "a plan is begun with where it saves a tenth of a metre against what the policy would do, else the policy's way"
+  ):
+    val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
+    val planning             = TeamPlanning(team, pursuer, Moving(), PlanSettings(), seed = 3)
+    val memory               = Memory(0.25, Some(now - Span.ofMillis(200)), 7)
+    val posed                = planning.pose(memory, view, now)
+    val rollout              = ManoeuvreRollout(posed.situation, posed.objective, planning.planner.dtS)
+    val plans                = JointPlanner().resumed(PlanProblem(planning.planner, Vector(posed)), None)
+    val speeds               = (0 to 500).map(_ / 100.0)
+    def flown(speed: Double) = Manoeuvre.straight(speed, planning.planner.steps)
+    def begun(suggested: Double, planned: Double) =
+      val part = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
+      val plan = plans.plans.head.copy(manoeuvre = flown(planned))
+      planning.decide(memory, view, now, part, plan, isOld = false)._2.decision.speed.get.value
+    val costs                                   = speeds.map(speed => speed -> rollout.fly(flown(speed)).cost)
+    val (best, least)                           = costs.minBy(_._2)
+    def worse(from: Double, to: Double): Double =
+      costs.find((_, cost) => cost - least > from && cost - least < to).getOrElse(fail(s"$costs"))._1
+    for suggested <- Seq(worse(0.03, 0.09), worse(0.11, 0.5)) do
+      val saved = costs.toMap.apply(suggested) - least
+      assertEqualsDouble(begun(suggested, best), if saved < 0.1 then suggested else best, 1e-6)
+
+  test("where nothing was searched for a vehicle for more than half a horizon, its policy decides"):
+    val settings = PlanSettings(horizonSteps = 20, step = Span.ofMillis(50))
+    val joint    = JointPlanning.of(fleet, settings, seed = 3).getOrElse(fail("nobody plans"))
+    val memories = joint.vehicles.map(_ => Memory(0.25, Some(now - Span.ofMillis(200)), 7))
+    val views    = joint.vehicles.map(_ => view)
+    val parts    = joint.pose(memories, views, now)
+    val plans    = JointPlanner().resumed(PlanProblem(joint.planner, parts), None)
+    def byPolicy(unsearchedS: Double*) =
+      val answer = planning.Plan.Answer(plans, Vector(0), unsearchedS.toVector)
+      joint.decide(memories, views, now, parts, answer)._2.map(_.byPolicy)
+    assertEquals(byPolicy(0.5, 0.501), Vector(false, true))
+    assertEquals(byPolicy(0.501, 0), Vector(true, false))
+    assertEquals(
+      JointPlanning.of(Fleet(fleet.agents.map(_.copy(policy = Together))), settings, 3).map(_.vehicles),
+      None
+    )

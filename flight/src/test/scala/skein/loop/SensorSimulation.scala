@@ -120,6 +120,13 @@ class SensorSimulation extends munit.FunSuite:
       assert(late.sensings.nonEmpty)
       assertEquals(times(late), times(without))
 
+  test("sensors are asked a quarter of a period after the vehicle was asked where it is"):
+    val recording = fly(LoopKind.Stream)
+    for vehicle <- Seq("Evader", "Pursuer") do
+      val first  = recording.readings.filter(_.vehicle == vehicle).map(_.state.sentAt).min
+      val sensed = recording.measurements.filter(_.vehicle == vehicle).map(_.sentAt).min
+      assertEquals(sensed.since(first), Span.ofMillis(25))
+
   test("a decision knows how old its sensor's reading is"):
     val recording = fly(LoopKind.Stream, delay = Span.ofSeconds(3))
     // Older than the policy flies by: it hovers.

@@ -5,7 +5,7 @@ import skein.forward.{Asking, LoopTiming, Steering}
 import skein.planning.Geofence
 import skein.scenario.Fence
 import skein.units.*
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel}
 
 /** What loops are flown by: the bounds of every number, and what follows from it. */
 class SettingsSuite extends munit.FunSuite:
@@ -20,6 +20,18 @@ class SettingsSuite extends munit.FunSuite:
         (() => LoopSettings(movesInFlight = 0), "move")
       )
     do assert(intercept[IllegalArgumentException](make()).getMessage.contains(expected))
+
+  test("a decision's deadline leaves it some time"):
+    assertEquals(Deadline(Span.ofNanos(1), Fallback.Hold).within, Span.ofNanos(1))
+    assert(intercept[IllegalArgumentException](Deadline(
+      Span.Zero,
+      Fallback.Hold
+    )).getMessage.contains("deadline"))
+
+  test("settings for the paper's period are those that nobody set"):
+    assertEquals(LoopSettings.every(ms(100)).copy(model = LoopSettings().model), LoopSettings())
+    val slow = LoopSettings.every(ms(300))
+    assertEquals((slow.period, slow.paceInterval, slow.patience), (ms(300), ms(150), ms(300)))
 
   test(
     "as published: asked in turn over the period, answers waited for in order, decided at each, paced by the period"
@@ -42,6 +54,11 @@ class SettingsSuite extends munit.FunSuite:
       case Some(LoopTiming.Stream(_, wait, patience, decideThenPace, asking, _)) =>
         assertEquals((wait, patience, decideThenPace, asking.inOrder), (0.0, 0.0, true, true))
       case other => fail(s"expected a stream, came $other")
+    val models = Vector(ConstantVelocity, ConstantTurn)
+    assertEquals(
+      of(LoopKind.Predictive, settings.copy(model = models(_))),
+      Some(LoopTiming.Predictive(0.2, ConstantVelocity, asking, steering))
+    )
     assertEquals(of(LoopKind.Plan), None)
     assertEquals(Steer.Handover, ms(0.5))
 

@@ -3,6 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
+import skein.forecast.Evidence
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, MemoryRecorder, Samples}
@@ -34,13 +35,27 @@ class TeamViewSuite extends munit.FunSuite:
   private val other = reading(1, 0, 10, 0, 20)
 
   /** What is decided upon, and which readings are noted as stale. */
-  private def seen(events: LoopEvent*): (Vector[DecisionRequest], Vector[String]) = VirtualTime
+  private def seen(events: LoopEvent*): (Vector[DecisionRequest], Vector[String]) = seenBy(_ => ())(events*)
+
+  private def silent(system: ActorSystem): Team =
+    Team(
+      PaperDuel().fleet,
+      Vector(Silent, Silent),
+      Clock.ofNanos(VirtualTime.clock(system)),
+      MemoryRecorder(Samples.heading),
+      LoopSettings()
+    )(using system.dispatcher)
+
+  private def seenBy(prepared: Team => Unit)(
+      events: LoopEvent*
+  ): (Vector[DecisionRequest], Vector[String]) = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
       val recorder           = MemoryRecorder(Samples.heading)
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
+      prepared(team)
       Source(events).via(team.view).runWith(Sink.seq).map: requests =>
         val stale = recorder.recording.events.filter(_.kind == EventKind.Dropped).map(_.detail)
         (requests.toVector, stale)
@@ -108,6 +123,85 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals(seen(LoopEvent.Read(first), LoopEvent.Due(Set(0, 1)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first), Set(0)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
+
+  test("while the team is held nobody decides, and its readings go on into the view"):
+    val held = seenBy(_.hold.hold(): Unit)(
+      LoopEvent.Read(first),
+      LoopEvent.Read(other),
+      LoopEvent.Due(Set(0, 1))
+    )
+    assertEquals(held._1, Vector.empty)
+
+  test("what passes a part of the loop is counted, with the age of the oldest reading in it"):
+    var meter = Option.empty[StageMeter]
+    val _     = seenBy(team => meter = Some(team.meters("view")))(
+      LoopEvent.Read(first),
+      LoopEvent.Read(other),
+      LoopEvent.Due(Set(0, 1)),
+      LoopEvent.Due(Set(0, 1))
+    )
+    assertEquals(meter.map(_.passed), Some(2L))
+    val one = StageMeters()("decide(Evader)")
+    one.pass()
+    assertEquals((one.passed, one.age), (1L, None))
+    one.pass(Some(Span.ofMillis(30)))
+    one.pass(None)
+    assertEquals((one.passed, one.age), (3L, Some(Span.ofMillis(30))))
+    one.called()
+    one.called()
+    one.answered()
+    assertEquals((one.unanswered, one.entered), (1L, 0L))
+
+  test(
+    "a forecast is told what was sent and what did not come to be; a move that flew to its end is no news"
+  ):
+    import scala.util.{Failure, Success}
+    val pursuer  = Decider(PaperDuel().fleet, 1)
+    val view     = TeamView.empty(2).withReading(first).withReading(other)
+    val decision = pursuer.decide(pursuer.start, view, millis(200))._2
+    def ended(result: scala.util.Try[Either[VehicleError, Boolean]]) =
+      Steering(1, skein.flow.Steered.Ended(decision, millis(400), result))
+    val told = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem = system
+        Source(
+          Vector(
+            Steering(1, skein.flow.Steered.Sent(decision, millis(210))),
+            ended(Success(Right(true))),
+            ended(Success(Right(false))),
+            ended(Success(Left(VehicleError.TimedOut("lost")))),
+            ended(Failure(IllegalStateException("gone")))
+          )
+        ).via(silent(system).told).runWith(Sink.seq)
+      .value
+    assertEquals(
+      told,
+      Seq(
+        LoopEvent.Moved(decision.move(millis(210))),
+        LoopEvent.Heard(Evidence.Replaced(1, 0, millis(400))),
+        LoopEvent.Heard(Evidence.Failed(1, 0)),
+        LoopEvent.Heard(Evidence.Failed(1, 0))
+      )
+    )
+
+  test("a command that comes while the team is held is not sent, and its note says so; at the end likewise"):
+    val pursuer  = Decider(PaperDuel().fleet, 1)
+    val view     = TeamView.empty(2).withReading(first).withReading(other)
+    val decision = pursuer.decide(pursuer.start, view, millis(200))._2
+    val noted    = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val recorder           = MemoryRecorder(Samples.heading)
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val team = Team(PaperDuel().fleet, Vector(Silent, Silent), clock, recorder, LoopSettings())
+        team.hold.hold(): Unit
+        val _ = Source.single(decision).concat(Source.maybe).via(team.steer(1)).runWith(Sink.ignore)
+        org.apache.pekko.pattern
+          .after(Span.ofMillis(10).toDuration)(Future.unit)
+          .map(_ => recorder.recording.events.map(event => (event.kind, event.detail)))
+      .value
+    assertEquals(noted, Vector(EventKind.Dropped -> "command 0 not sent while the flight is paused"))
 
   test("everybody is due to decide once a period, in the middle between two questions"):
     val due = VirtualTime

@@ -1,20 +1,25 @@
 package skein.torture
 
+import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
-import skein.record.{Decision, RecordError, TrueAge}
-import skein.scenario.PaperDuel
+import skein.record.{Decision, Event, EventKind, RecordError, TrueAge}
+import skein.policy.*
+import skein.scenario.{PaperDuel, Scenario}
 import skein.signal.Stamped
 import skein.units.*
 
 /** The checks find what they are there to find: a clean flight's trace is forged in one thing at a time. */
 class ChecksSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
 
-  private val clean = TortureFlight.fly(
+  private val clean = undisturbed(LoopKind.Stream)
+
+  private def undisturbed(loop: LoopKind, scenario: Scenario = PaperDuel()): FlightTrace = TortureFlight.fly(
     FaultPlan
       .of(10, Span.ofSeconds(8))
       .copy(
-        loop = LoopKind.Stream,
-        scenario = PaperDuel(),
+        loop = loop,
+        scenario = scenario,
         faults = Vector.empty,
         messageFaults = MessageFaults.None,
         restarts = Vector.empty,
@@ -28,6 +33,38 @@ class ChecksSuite extends munit.FunSuite:
   test("a flight in which nothing goes wrong is clean"):
     assertEquals(Checks.violations(clean), Vector.empty)
     assert(clean.arrivals.size > 50)
+
+  for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Predictive, LoopKind.Paused) do
+    test(s"${loop.label}: undisturbed it is clean, and a decision made at another moment is found"):
+      val seen = undisturbed(loop)
+      assertEquals(Checks.violations(seen), Vector.empty)
+      val decisions = seen.recording.decisions
+      val later     = decisions(30).copy(decidedAt = decisions(30).decidedAt + Span.ofNanos(1))
+      val forged    = seen.copy(recording = seen.recording.copy(decisions = decisions.updated(30, later)))
+      val told = if loop == LoopKind.Predictive || loop == LoopKind.Paused then "had come" else "no round"
+      assert(found(forged).contains(told), found(forged))
+
+  /** Flies to a place, turns, flies on. */
+  private case class Patrol() extends Scenario:
+    private object Policy extends AgentPolicy:
+      type Memory = Unit
+      def start: Unit                                             = ()
+      def choose(seen: Observation, memory: Unit): (Action, Unit) =
+        val action = (seen.decisions / 10) % 3 match
+          case 0 => Action.Position(Vector3(10, 0, -20), MetresPerSecond(3))
+          case 1 => Action.Turn(Yaw.Turning(0.5))
+          case _ => Action.Velocity(Vector3(1, 0, 0))
+        (action, ())
+    def agents: Vector[Agent] =
+      Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Policy))
+
+  test("commands that are no velocities are told apart by their places alone"):
+    val seen = undisturbed(LoopKind.Stream, Patrol())
+    assertEquals(Checks.violations(seen), Vector.empty)
+    assert(
+      seen.arrivals.count(_.north == 0) > 20 && seen.arrivals.exists(_.north == 1),
+      seen.arrivals.toString
+    )
 
   test("a command that arrives after a newer one"):
     val evaders        = clean.arrivals.indices.filter(clean.arrivals(_).vehicle == "Evader")
@@ -108,6 +145,24 @@ class ChecksSuite extends munit.FunSuite:
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.crafts.map(_.sendings.size).sum}"))
 
+  test("of what was written each call was answered, refused or lost"):
+    val stats = clean.stats
+    val mixed = stats.copy(answered = stats.answered - 5, refused = 3, lost = 2)
+    assertEquals(found(clean.copy(stats = mixed)), "")
+    val short = found(clean.copy(stats = mixed.copy(sent = stats.sent - 1)))
+    assert(short.contains(s"${mixed.answered} answered, 3 refused and 2 lost of ${stats.sent - 1}"), short)
+
+  test("a reading that failed is on record as an event of its vehicle"):
+    val recording                            = clean.recording
+    val lost                                 = recording.readings.head
+    def noted(vehicle: String, what: String) =
+      val event = Event(clean.endedAt, EventKind.TimedOut, Some(vehicle), s"$what 0: no answer")
+      val less  = recording.copy(readings = recording.readings.tail, events = recording.events :+ event)
+      found(clean.copy(recording = less)).contains("readings were asked for")
+    val other = clean.vehicles.filterNot(_ == lost.vehicle).head
+    assert(!noted(lost.vehicle, "reading"))
+    assert(noted(other, "reading") && noted(lost.vehicle, "command"))
+
   test("more commands on record than decisions, and more rows than a flight of its length has"):
     val recording = clean.recording
     val less      = recording.copy(decisions = recording.decisions.filterNot(_.vehicle == "Evader"))
@@ -152,6 +207,36 @@ class ChecksSuite extends munit.FunSuite:
     val paused = silent.copy(faultPlan = clean.faultPlan.copy(loop = LoopKind.Paused))
     assert(!found(paused).contains("no command came within"))
 
+  test(
+    "control has to be back and to go on from three seconds into the calm, until the flight's time is over"
+  ):
+    val due    = clean.calmFrom + FaultPlan.ResumesWithin
+    val silent = clean.copy(arrivals =
+      clean.arrivals.filter(arrival => arrival.at < clean.calmFrom || arrival.at >= due)
+    )
+    assert(found(silent.copy(endedAt = due)).contains("no command came within"))
+    // While the last answers are waited for nothing is commanded.
+    val waited = clean.copy(endedAt = clean.endedAt + Span.ofSeconds(3))
+    assert(!found(waited).contains("no command for"), found(waited))
+    val begun = clean.copy(arrivals = clean.arrivals.filter(_.at < due))
+    assert(!found(begun.copy(endedAt = due + Span.ofSeconds(1.5))).contains("no command for"))
+    val late = found(begun.copy(endedAt = due + Span.ofSeconds(1.5) + Span.ofNanos(1)))
+    assert(late.contains("no command for 1.50 s in calm"), late)
+
+  test("from three seconds into the calm the simulator hears what it is told: to run, and vehicles to hover"):
+    val due    = clean.calmFrom + FaultPlan.ResumesWithin
+    val before = due - Span.ofNanos(1)
+    assert(found(clean.copy(leftPaused = true, endedAt = due)).contains("left standing still"))
+    val unheard = clean.copy(lastHovers = Map.empty)
+    assert(found(unheard.copy(endedAt = due)).contains("no command to hover came"))
+    assert(!found(unheard.copy(endedAt = before)).contains("no command to hover came"))
+    val lastMoves = clean.vehicles.map(name => name -> clean.arrivals.filter(_.vehicle == name).map(_.at).max)
+    assertEquals(found(clean.copy(lastHovers = lastMoves.toMap)), "", "at the same moment is in time")
+    val early = lastMoves.toMap.map((name, at) => name -> (at - Span.ofNanos(1)))
+    assert(found(clean.copy(lastHovers = early)).contains("Evader: no command to hover came"))
+    val still = unheard.copy(arrivals = Vector.empty)
+    assert(!found(still).contains("no command to hover came"), "who never moved need not be told")
+
   test("a simulator that is left standing still by a flight that had time to let it run"):
     val still = clean.copy(leftPaused = true)
     assert(found(still).contains("left standing still"))
@@ -177,6 +262,16 @@ class ChecksSuite extends munit.FunSuite:
       assert(!found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
     assert(!found(restarted(7.3, Span.ofSeconds(100))).contains(wrong))
     assertEquals(found(restarted(4, Span.Zero)), "")
+    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be known.
+    val first = found(restarted(4, Span.ofSeconds(100))) match
+      case s"${_}decision $number of $vehicle: ${_}" =>
+        clean.recording.decisions.find(one => one.vehicle == vehicle && one.sequence == number.toLong).get
+      case other => fail(other)
+    assertEqualsDouble(first.decidedAt.since(clean.startedAt).toSeconds, 5.5, 0.1)
+    // Of three runs only two are alike.
+    val again = restarted(4, Span.ofSeconds(0.5))
+    val third = Run(clean.startedAt + Span.ofSeconds(4.5), clean.runs.head.clockOffset + Span.ofSeconds(100))
+    assert(!found(again.copy(runs = again.runs :+ third)).contains(wrong))
 
   test("a vehicle that does not hover after the end"):
     assert(found(clean.copy(drifts =
@@ -217,6 +312,19 @@ class ChecksSuite extends munit.FunSuite:
     assert(!KnowledgeChecks.isNewer(runs)(again, atOnce) && !KnowledgeChecks.isNewer(runs)(atOnce, again))
     assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")
 
+  test("what nobody knows the clock of is newer where both clocks, or the times of asking, say so"):
+    def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
+      def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
+      Stamped((), at(validMs), at(sentMs), at(receivedMs))
+    def newer(one: Stamped[Unit], other: Stamped[Unit]) = KnowledgeChecks.isNewer(Vector.empty)(one, other)
+    val held                                            = answer(100, 80, 90)
+    assert(newer(answer(101, 80, 95), held) && !newer(held, answer(101, 80, 95)))
+    assert(
+      newer(answer(50, 91, 95), held) == newer(held, answer(50, 91, 95)),
+      "one says so, the other does not"
+    )
+    assert(newer(answer(100, 91, 95), held) && !newer(answer(100, 90, 95), held))
+
   test("a reading on record that no vehicle gave"):
     val readings = clean.recording.readings
     val forged   = readings.updated(7, readings(7).copy(sequence = readings(8).sequence + 1))
@@ -237,6 +345,17 @@ class ChecksSuite extends munit.FunSuite:
     do
       val forged = withDecision(40)(decision => decision.copy(trueAge = decision.trueAge.map(change)))
       assert(found(forged).contains("ms old, told were"))
+
+  test("a true age is right up to its uncertainty, to either side"):
+    val decision       = clean.recording.decisions(40)
+    val told           = decision.trueAge.get
+    val old            = decision.decidedAt.since(decision.own.state.validAt + clean.runs.head.clockOffset)
+    def age(off: Span) =
+      found(withDecision(40)(_.copy(trueAge =
+        Some(told.copy(own = old + off))
+      ))).contains("ms old, told were")
+    assert(!age(told.uncertainty) && !age(Span.Zero - told.uncertainty))
+    assert(age(told.uncertainty + Span.ofNanos(1)) && age(Span.Zero - told.uncertainty - Span.ofNanos(1)))
 
   test("rows that were offered and are not on record, or not in the file"):
     val events = clean.recording.decisions

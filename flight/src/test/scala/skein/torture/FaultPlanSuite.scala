@@ -124,6 +124,23 @@ class FaultPlanSuite extends munit.FunSuite:
     assert(refused.getMessage.contains("6.5 s at least"), refused.getMessage)
     for seed <- 1L to 200L do assert(FaultPlan.of(seed, FaultPlan.Shortest).calmFrom > start)
 
+  test("a flight of seven seconds has room for one restart at most"):
+    val short = (1L to 400L).map(FaultPlan.of(_, FaultPlan.Shortest)).flatMap(plan =>
+      plan.restarts.headOption.map(plan -> _)
+    )
+    assert(short.nonEmpty && short.forall((plan, _) => plan.restarts.sizeIs == 1))
+    for (plan, restart) <- short do assert(restart.at + restart.lasts <= plan.calmFrom, plan.toString)
+
+  test("another task is flown by the drawn loop, or by stream where the loop cannot serve so many"):
+    def flown(loop: LoopKind, pairs: Int) =
+      val plan = faultPlans.head.copy(loop = loop).flying(PaperDuel(pairs))
+      assertEquals(plan.scenario, PaperDuel(pairs))
+      plan.loop
+    assertEquals((flown(LoopKind.Paused, 2), flown(LoopKind.Paused, 3)), (LoopKind.Paused, LoopKind.Stream))
+    for loop <- Seq(LoopKind.Sequential, LoopKind.Futures) do
+      assertEquals((flown(loop, 3), flown(loop, 4)), (loop, LoopKind.Stream))
+    assertEquals(flown(LoopKind.Predictive, 10), LoopKind.Predictive)
+
   test("a line for a person names all that will happen, and nothing else"):
     val calm = faultPlans.head.copy(
       loop = LoopKind.Stream,

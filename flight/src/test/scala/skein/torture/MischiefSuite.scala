@@ -94,3 +94,7 @@ class MischiefSuite extends munit.FunSuite:
       told :+= verdict.faultPlan.seed
     )
     assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L))
+    var few = Vector.empty[Verdict]
+    Torture.all(Iterator(5L), FaultPlan.Shortest, threads = 3)(few :+= _)
+    assertEquals(few.map(verdict => (verdict.faultPlan.seed, verdict.isClean)), Vector((5L, true)))
+    assert(!few.head.copy(violations = Vector("a command overtook a newer one")).isClean)

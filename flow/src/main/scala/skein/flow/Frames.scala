@@ -4,24 +4,24 @@ import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.Future
 import skein.signal.Stamped
 
-/** A camera or a LIDAR as a source of frames, each with the moment of its exposure. */
+/** A camera or a lidar as a source of frames, each with the moment of its exposure. */
 object Frames:
 
   /** Why a frame was not emitted. */
   enum Skipped[+E, +A]:
-    /** So many were due while `inFlight` had not come. */
+    /** So many were due while `inFlight` frames were still on their way. */
     case Missed(frames: Int)
 
-    /** It did not come. */
+    /** The call failed. */
     case Failed(error: E)
 
-    /** One exposed later has come before it. */
+    /** One exposed later has arrived before it. */
     case Overtaken(frame: Stamped[A])
 
     /** The sensor gave the exposure that it had given before. */
     case Repeated(frame: Stamped[A])
 
-    /** A newer one came before downstream took it. */
+    /** A newer one arrived before downstream demanded. */
     case Replaced(frame: Stamped[A])
 
   /** Asks for a frame at each element of `ticks`, which says how many were due since the last one, as [[Metronome]] does.

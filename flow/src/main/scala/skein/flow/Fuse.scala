@@ -4,20 +4,20 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 import skein.fusion.{Belief, Fusion, FusionSettings, Measurement}
 
-/** Joins what is measured of vehicles, in the order in which it was true. */
+/** Estimates vehicles' states from measurements, in the order of their valid times. */
 object Fuse:
 
-  /** What is believed of a vehicle after each measurement of it. A measurement enters at its own moment, though newer ones
-    * have come: a detection at the time its image was exposed, not when its recognition ended. The belief is of the newest
-    * measurement's moment; [[skein.fusion.Belief.carriedTo]] carries it on.
+  /** Emits a vehicle's estimate after each measurement of it. A measurement counts at its valid time, even if newer ones
+    * have come before it: a detection at the exposure of its image, not when its recognition ended. The estimate is of the
+    * newest valid time; [[skein.fusion.Belief.carriedTo]] predicts it further.
     *
-    * '''Emits when''' a measurement arrives that is not older than what is remembered. '''Backpressures when''' downstream
+    * '''Emits when''' a measurement arrives that is not too old. '''Backpressures when''' downstream
     * backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream cancels.
     *
     * @tparam K
-    *   of which vehicle; as many as there are keys are remembered
+    *   identifies the vehicle; a filter is kept for each
     * @param onTooOld
-    *   told of every measurement that is older than what is remembered, and is not joined
+    *   called for every measurement that is older than all that are kept; it is not used
     */
   def apply[K](settings: FusionSettings = FusionSettings())(
       onTooOld: (K, Measurement) => Unit

@@ -9,10 +9,10 @@ import scala.util.{Failure, Success, Try}
 import skein.signal.Stamped
 import skein.units.*
 
-/** What was found in a frame.
+/** The result of recognition in a frame.
   *
   * @param found
-  *   with the frame's times: it was so when the frame was exposed
+  *   with the frame's times: valid at its exposure
   * @param startedAt
   *   when recognition began, on the controller's clock
   * @param took
@@ -20,7 +20,7 @@ import skein.units.*
   */
 final case class Recognised[+B](found: Stamped[B], startedAt: Instant, took: Span)
 
-/** Why nothing is known of a frame. */
+/** Why a frame has no result. */
 enum Unrecognised[+A]:
   /** Recognition had not ended at its deadline. */
   case Late(frame: Stamped[A])
@@ -28,33 +28,32 @@ enum Unrecognised[+A]:
   /** It failed. */
   case Failed(frame: Stamped[A], cause: Throwable)
 
-  /** A later exposure was begun or emitted before it. */
+  /** A frame that was exposed later was begun or emitted before it. */
   case Overtaken(frame: Stamped[A])
 
-/** Looks for something in frames, several at a time: the next one is begun before the last is done. Control never waits
-  * for it.
+/** Runs recognition on frames, several at a time: the next one is begun before the last is done.
   *
-  * A worker that is late works on and is given nothing meanwhile, so never more than `workers` frames are worked on. A
-  * worker that never ends is lost.
+  * A late worker goes on and gets no new frame until it has ended, so at most `workers` frames are worked on. A worker that
+  * never ends is lost.
   *
   * '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of exposure, once all
-  * frames before it have ended or are late; or, `newestFirst`, at once, and what was exposed before it is no more emitted.
-  * '''Backpressures when''' all workers work, or twice as many frames wait to be emitted.
+  * frames before it have ended or are late; or, with `newestFirst`, at once, and frames exposed before it are not emitted.
+  * '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
   * '''Completes when''' upstream has completed and every frame has been emitted or skipped.
   * '''Cancels when''' downstream cancels.
   *
   * @param workers
-  *   at work at the same time
+  *   most frames worked on at the same time
   * @param isNewer
-  *   whether one frame is of a later moment than another: over a restart of the simulator
-  *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
+  *   whether one frame was exposed later than another; where the simulator may restart, use
+  *   [[skein.signal.ClockAlignment.isNewer]]
   * @param deadline
   *   of each frame, from when it is begun
   * @param recognise
-  *   begins work on a frame; `worker`, from 0, is not at work meanwhile, so what is not thread-safe may be kept for each.
-  *   It must end by itself and must not do the work on the caller's thread
+  *   begins work on a frame. No two calls with the same `worker`, from 0, overlap, so each may have an object that is not
+  *   thread-safe. The future must complete by itself, and the work must not be done on the caller's thread
   * @param onSkip
-  *   told of every frame of which nothing is emitted
+  *   called for every frame without an emitted result
   */
 final class Recognise[A, B](
     workers: Int,

@@ -3,7 +3,7 @@ package skein.flow
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 
-/** Shows what flows by. */
+/** Copies what flows by to a function. */
 object Tap:
 
   /** Gives every element to `take`, which must not block, and passes it on. Unlike `wireTap` it never drops.

@@ -50,3 +50,10 @@ class JoinLatestSuite extends munit.FunSuite:
       joined(patienceMs = 0)(0 -> ("a", 2), 10 -> ("b", 5), 20 -> ("b", 4), 30 -> ("a", 3))
     assertEquals(emitted, Seq(10L -> Map("a" -> 2, "b" -> 5), 30L -> Map("a" -> 3, "b" -> 5)))
     assertEquals(stale, Vector("b" -> 4))
+
+  test("without patience it does not wait for what comes at the same moment either"):
+    val (emitted, _) = joined(patienceMs = 0)(0 -> ("a", 1), 0 -> ("b", 1), 10 -> ("a", 2), 10 -> ("b", 2))
+    assertEquals(
+      emitted,
+      Seq(0L -> Map("a" -> 1, "b" -> 1), 10L -> Map("a" -> 2, "b" -> 1), 10L -> Map("a" -> 2, "b" -> 2))
+    )

@@ -37,3 +37,6 @@ class MetronomeSuite extends munit.FunSuite:
 
   test("ticks that find downstream slow add up"):
     assertEquals(ticked(0.millis, 260.millis), Seq(0L -> 1, 260L -> 2, 520L -> 3, 780L -> 2))
+
+  test("a period that is none is refused"):
+    intercept[IllegalArgumentException](Metronome(Instant.Epoch, Span.Zero, Clock.ofNanos(() => 0L))): Unit

@@ -23,7 +23,7 @@ class PredictSuite extends munit.FunSuite:
     )
 
   /** Estimates made upon readings every 100 ms, and what became of them. */
-  private def predicted(): (Seq[Vector[Estimate]], Seq[Verified]) =
+  private def predicted(lead: Span = Span.Zero): (Seq[Vector[Estimate]], Seq[Verified]) =
     var verified = Vector.empty[Verified]
     val run      = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
@@ -45,7 +45,7 @@ class PredictSuite extends munit.FunSuite:
           evidence.foldLeft(forecast)(_.withEvidence(_))
         )
         .map(forecast => ((), forecast))
-        .via(Predict.whenActing(clock)(verified :+= _))
+        .via(Predict.whenActing(clock, lead = lead)(verified :+= _))
         .map(_._2)
         .runWith(Sink.seq)
     (run.value, verified)
@@ -54,6 +54,20 @@ class PredictSuite extends munit.FunSuite:
     val (estimates, _) = predicted()
     assertEquals(estimates.size, 10)
     for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))
+
+  test("what is sent later is foreseen so much further ahead"):
+    val (estimates, _) = predicted(lead = Span.ofMillis(25))
+    for vehicles <- estimates do
+      assertEquals(vehicles.map(_.age), Vector.fill(2)(oneWay * 2 + Span.ofMillis(25)))
+
+  test("a prediction is held against a reading of its very moment"):
+    val at       = Instant.Epoch + Span.ofSeconds(1)
+    val forecast = Seq(at - Span.ofMillis(50), at).foldLeft(Forecast(Vector(ConstantVelocity))):
+      (known, read) =>
+        known.withEvidence(Evidence.Seen(0, Stamped(north(Span.Zero), read, read, read)))
+    val waiting = Unverified.none.withMade(at, Vector(Estimate(north(Span.ofSeconds(2)), at, at)), _ => true)
+    val (left, verified) = waiting.heldAgainst(forecast)
+    assertEquals((left.made, verified.map(_.error)), (Vector.empty, Vector(Metres(4))))
 
   test("each prediction is held against the readings around its moment, and its error told"):
     val (_, verified)     = predicted()

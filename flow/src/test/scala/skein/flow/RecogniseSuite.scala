@@ -96,6 +96,9 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
     assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
     assert(newest.emitted.forall(_.ageMs < 5.001))
+    // A later one that is still worked on has overtaken nobody.
+    val both = run(perSecond = 100, count = 2, workers = 2, newestFirst = true)(Vector(15, 50))
+    assertEquals((both.emitted.map(_.frame), both.skipped), (Seq(0, 1), Vector.empty))
 
   test(
     "late and failed frames are told at once and stop nothing, and a late worker gets nothing until it ends"

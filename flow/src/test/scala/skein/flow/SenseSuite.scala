@@ -28,8 +28,10 @@ class SenseSuite extends munit.FunSuite:
         if delay > 500 then after(500.millis)(Future.successful(Left(s"late $number")))
         else after(delay.millis)(Future.successful(Right(number)))
       def skip(answer: Either[String, Int]) = skipped :+= answer
-      def miss(ticks: Int)                  = missed += ticks
-      val answers                           = isNewer match
+      def miss(ticks: Int)                  =
+        assert(ticks > 0, "what was not missed was told")
+        missed += ticks
+      val answers = isNewer match
         case None =>
           Sense.every(Span.ofMillis(100), Span.ofMillis(50), window, early)(() => ask())(skip, miss)
         case Some(newer) =>
@@ -69,3 +71,9 @@ class SenseSuite extends munit.FunSuite:
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes, Some(later))(10, 250, 10, 240, 10)
     assertEquals(emitted.map(_._2), Seq(0, 2, 1, 4, 5, 6))
     assertEquals(skipped, Vector(Right(3)))
+
+  test("an older question's newer answer does not let those in that were overtaken before"):
+    val later                 = (one: Int, other: Int) => one == 1 && other == 3
+    val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes, Some(later))(10, 250, 200, 10, 10)
+    assertEquals(emitted.map(_._2), Seq(0, 3, 1, 4, 5, 6))
+    assertEquals(skipped, Vector(Right(2)))

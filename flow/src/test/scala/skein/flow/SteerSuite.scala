@@ -298,3 +298,23 @@ class SteerSuite extends munit.FunSuite:
         650L -> "hover"
       )
     )
+
+  test("a vehicle that is held from the beginning is parked, and once is enough"):
+    val parked = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        var hovers             = 0
+        def park()             =
+          hovers += 1
+          Future.successful("hovering")
+        val hold = Hold()
+        assert(hold.hold() && !hold.hold() && hold.isHeld)
+        val commands = Source.maybe[Int]
+        val _        = commands
+          .via(Steer(Span.Zero, clock)((_: Int) => park(), () => park(), hold = hold))
+          .runWith(Sink.ignore)
+        after(1.second)(Future(hovers))
+      .value
+    assertEquals(parked, 1)

@@ -25,16 +25,16 @@ import skein.vehicle.ReducedModel;
 final class DragFlights extends LaneFlights {
   // The velocity reached along the command, what it lacks of that at first, along and across; how
   // fast these die away; and the command.
-  private static final int GOAL_X = OWN,
-      GOAL_Y = OWN + 1,
-      LACK_X = OWN + 2,
-      LACK_Y = OWN + 3,
-      RATE = OWN + 4,
-      ALONG_X = OWN + 5,
-      ALONG_Y = OWN + 6,
-      CROSS_X = OWN + 7,
-      CROSS_Y = OWN + 8,
-      CROSS_RATE = OWN + 9;
+  private static final int GOAL_X = PIECE_OWN,
+      GOAL_Y = PIECE_OWN + 1,
+      LACK_X = PIECE_OWN + 2,
+      LACK_Y = PIECE_OWN + 3,
+      RATE = PIECE_OWN + 4,
+      ALONG_X = PIECE_OWN + 5,
+      ALONG_Y = PIECE_OWN + 6,
+      CROSS_X = PIECE_OWN + 7,
+      CROSS_Y = PIECE_OWN + 8,
+      CROSS_RATE = PIECE_OWN + 9;
 
   private final float perLag, perTurnLag, drag, pull;
   private final boolean turns;
@@ -44,7 +44,7 @@ final class DragFlights extends LaneFlights {
   private final Directions along = new Directions(WORLDS);
 
   DragFlights(Duelist duelist, ReducedModel model, double periodS, int keptRows) {
-    super(model.turnLagS() != model.lagS() ? OWN + 10 : OWN + 7, keptRows, periodS, duelist.startX(), duelist.startY());
+    super(duelist, model.turnLagS() != model.lagS() ? PIECE_OWN + 10 : PIECE_OWN + 7, keptRows, periodS);
     perLag = (float) (1 / model.lagS());
     perTurnLag = (float) (1 / model.turnLagS());
     drag = (float) model.dragPerM();
@@ -77,7 +77,7 @@ final class DragFlights extends LaneFlights {
     FloatVector piece = FloatVector.broadcast(SPECIES, (float) ReducedModel.PieceS());
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      FloatVector end = FloatVector.fromArray(SPECIES, chosen, TIME * WORLDS + i).add(piece);
+      FloatVector end = FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i).add(piece);
       VectorMask<Float> isOver = end.compare(LT, FloatVector.fromArray(SPECIES, until, i));
       if (isOver.anyTrue()) {
         over.first[over.count++] = i;
@@ -103,12 +103,12 @@ final class DragFlights extends LaneFlights {
       FloatVector goalX = FloatVector.fromArray(SPECIES, chosen, GOAL_X * WORLDS + i),
           lackX = FloatVector.fromArray(SPECIES, chosen, LACK_X * WORLDS + i);
       goalX
-          .fma(dt, lackX.fma(span, FloatVector.fromArray(SPECIES, chosen, X * WORLDS + i)))
+          .fma(dt, lackX.fma(span, FloatVector.fromArray(SPECIES, chosen, PIECE_X * WORLDS + i)))
           .intoArray(x, i);
       FloatVector goalY = FloatVector.fromArray(SPECIES, chosen, GOAL_Y * WORLDS + i),
           lackY = FloatVector.fromArray(SPECIES, chosen, LACK_Y * WORLDS + i);
       goalY
-          .fma(dt, lackY.fma(span, FloatVector.fromArray(SPECIES, chosen, Y * WORLDS + i)))
+          .fma(dt, lackY.fma(span, FloatVector.fromArray(SPECIES, chosen, PIECE_Y * WORLDS + i)))
           .intoArray(y, i);
       if (withVelocity) {
         lackX.fma(remains, goalX).intoArray(vx, i);
@@ -119,7 +119,7 @@ final class DragFlights extends LaneFlights {
 
   private FloatVector time(int i) {
     return FloatVector.fromArray(SPECIES, until, i)
-        .sub(FloatVector.fromArray(SPECIES, chosen, TIME * WORLDS + i));
+        .sub(FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i));
   }
 
   private void flyAcross(LaneVectors vectors, boolean withVelocity) {
@@ -145,7 +145,7 @@ final class DragFlights extends LaneFlights {
     FloatVector least = FloatVector.broadcast(SPECIES, -80f);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      FloatVector.fromArray(SPECIES, chosen, TIME * WORLDS + i)
+      FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i)
           .sub(FloatVector.fromArray(SPECIES, until, i))
           .mul(FloatVector.fromArray(SPECIES, chosen, rate * WORLDS + i))
           .max(least)
@@ -173,9 +173,9 @@ final class DragFlights extends LaneFlights {
       FloatVector alongX = FloatVector.fromArray(SPECIES, commanded.cos, i),
           alongY = FloatVector.fromArray(SPECIES, commanded.sin, i);
       FloatVector goalX = alongX.mul(goal), goalY = alongY.mul(goal);
-      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + TIME * WORLDS, does);
-      FloatVector.fromArray(SPECIES, x, i).intoArray(pieces, from + X * WORLDS, does);
-      FloatVector.fromArray(SPECIES, y, i).intoArray(pieces, from + Y * WORLDS, does);
+      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + PIECE_TIME * WORLDS, does);
+      FloatVector.fromArray(SPECIES, x, i).intoArray(pieces, from + PIECE_X * WORLDS, does);
+      FloatVector.fromArray(SPECIES, y, i).intoArray(pieces, from + PIECE_Y * WORLDS, does);
       goalX.intoArray(pieces, from + GOAL_X * WORLDS, does);
       goalY.intoArray(pieces, from + GOAL_Y * WORLDS, does);
       north.sub(goalX).intoArray(pieces, from + LACK_X * WORLDS, does);

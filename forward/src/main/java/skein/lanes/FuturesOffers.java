@@ -63,7 +63,7 @@ final class FuturesOffers extends LaneOffers {
    * @param maxDelayS the longest one-way delay of any link
    */
   FuturesOffers(LoopTiming.Futures timing, double maxDelayS) {
-    super(new LaneDelays());
+    super(new LaneDelays(), false);
     double periodS = timing.periodS(), longestS = timing.asking().timeoutS() * 4;
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());

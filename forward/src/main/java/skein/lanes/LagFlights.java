@@ -18,20 +18,23 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
 import skein.forward.Reduced;
 
-/** With a first-order lag: of a piece the velocity that is reached, and what it lacks of that at first. */
+/** With a first-order lag, or none: of a piece the velocity that is reached, and what it lacks of that at first. */
 final class LagFlights extends LaneFlights {
-  private static final int WANTED_X = OWN, WANTED_Y = OWN + 1, EXCESS_X = OWN + 2, EXCESS_Y = OWN + 3;
-  private static final int FIELDS = OWN + 4;
+  private static final int WANTED_X = PIECE_OWN, WANTED_Y = PIECE_OWN + 1, EXCESS_X = PIECE_OWN + 2, EXCESS_Y = PIECE_OWN + 3;
+  private static final int FIELDS = PIECE_OWN + 4;
 
   /** Of powers of two that floats hold. */
   private static final float LEAST_EXPONENT = -120f;
 
+  /** In the place of none: no vehicle gets anywhere within. */
+  private static final double LEAST_LAG_S = 1e-6;
+
   private final float speedMps, lagS;
 
   LagFlights(Duelist duelist, Reduced model, double periodS, int keptRows) {
-    super(FIELDS, keptRows, periodS, duelist.startX(), duelist.startY());
+    super(duelist, FIELDS, keptRows, periodS);
     speedMps = (float) (duelist.speed() * model.gain());
-    lagS = (float) model.lagS();
+    lagS = (float) Math.max(model.lagS(), LEAST_LAG_S);
   }
 
   @Override
@@ -54,7 +57,7 @@ final class LagFlights extends LaneFlights {
       int i = vectors.first[k];
       FloatVector dt =
           FloatVector.fromArray(SPECIES, until, i)
-              .sub(FloatVector.fromArray(SPECIES, chosen, TIME * WORLDS + i));
+              .sub(FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i));
       FloatVector exponent = dt.mul(halvings).max(least);
       FloatVector rounded = exponent.add(round);
       FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
@@ -71,10 +74,10 @@ final class LagFlights extends LaneFlights {
           excessX = FloatVector.fromArray(SPECIES, chosen, EXCESS_X * WORLDS + i),
           excessY = FloatVector.fromArray(SPECIES, chosen, EXCESS_Y * WORLDS + i);
       excessX
-          .fma(carried, wantedX.fma(dt, FloatVector.fromArray(SPECIES, chosen, X * WORLDS + i)))
+          .fma(carried, wantedX.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_X * WORLDS + i)))
           .intoArray(x, i);
       excessY
-          .fma(carried, wantedY.fma(dt, FloatVector.fromArray(SPECIES, chosen, Y * WORLDS + i)))
+          .fma(carried, wantedY.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_Y * WORLDS + i)))
           .intoArray(y, i);
       if (withVelocity) {
         excessX.fma(left, wantedX).intoArray(vx, i);
@@ -97,9 +100,9 @@ final class LagFlights extends LaneFlights {
       FloatVector excessX = FloatVector.fromArray(SPECIES, vx, i).sub(wantedX),
           excessY = FloatVector.fromArray(SPECIES, vy, i).sub(wantedY);
       int from = at + i;
-      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + TIME * WORLDS, does);
-      FloatVector.fromArray(SPECIES, x, i).intoArray(pieces, from + X * WORLDS, does);
-      FloatVector.fromArray(SPECIES, y, i).intoArray(pieces, from + Y * WORLDS, does);
+      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + PIECE_TIME * WORLDS, does);
+      FloatVector.fromArray(SPECIES, x, i).intoArray(pieces, from + PIECE_X * WORLDS, does);
+      FloatVector.fromArray(SPECIES, y, i).intoArray(pieces, from + PIECE_Y * WORLDS, does);
       wantedX.intoArray(pieces, from + WANTED_X * WORLDS, does);
       wantedY.intoArray(pieces, from + WANTED_Y * WORLDS, does);
       excessX.intoArray(pieces, from + EXCESS_X * WORLDS, does);

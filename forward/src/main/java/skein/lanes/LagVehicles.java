@@ -1,5 +1,6 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.EQ;
 import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
@@ -26,7 +27,7 @@ import skein.forward.Reduced;
 
 /**
  * The vehicles of one role in many worlds, with first-order lag, and the commands on their way to
- * them, which act at times of their own in each world. Positions are those at a row's question;
+ * them, which act at times of their own in each world. Positions are those at a row's begin;
  * readings show them at times of their own, through the commands that act before.
  *
  * <p>The response to commanded velocities is linear: position and velocity are those without the
@@ -35,40 +36,43 @@ import skein.forward.Reduced;
  * = exp(−end / lag) · growth(at) one exponential serves all commands. What a world computes depends
  * on its own commands alone, to the bit: those of others only decide whether zeros are added.
  */
-final class LagVehicles {
-  private static final int WORLDS = LanePolicy.WORLDS;
+final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
 
+  /** No reading is taken so long before its row's begin. */
+  private final float earliestS;
+
   private final double periodS;
-  private final float lagS, earliestS, startX, startY;
-  private final float periodGain, periodDecay;
+  private final float lagS, speedMps, periodGain, periodDecay;
 
-  /**
-   * All that is known of the vehicles, in one array, since passes over many arrays spend their time
-   * on their addresses: at the row's question position, the velocity asked for, and what the
-   * velocity lacks of it; position and velocity as read last.
-   */
-  final float[] state = new float[12 * WORLDS];
-
-  static final int X = 0, Y = WORLDS, SEEN_X = 2 * WORLDS, SEEN_Y = 3 * WORLDS;
-  static final int SEEN_VX = 4 * WORLDS, SEEN_VY = 5 * WORLDS;
-  private static final int WANTED_X = 6 * WORLDS,
-      WANTED_Y = 7 * WORLDS,
-      LACK_X = 8 * WORLDS,
-      LACK_Y = 9 * WORLDS;
+  // Of each world at the row's begin the velocity asked for, and what the velocity lacks of it.
+  private static final int WANTED_X = OWN,
+      WANTED_Y = OWN + WORLDS,
+      LACK_X = OWN + 2 * WORLDS,
+      LACK_Y = OWN + 3 * WORLDS;
 
   /** When the readings are taken, and what remains of an error then. */
-  private static final int END = 10 * WORLDS, DECAY = 11 * WORLDS;
+  private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
+
+  /** The velocity commanded last, whether it acts yet or not. */
+  private static final int SENT_X = OWN + 6 * WORLDS, SENT_Y = OWN + 7 * WORLDS;
+
+  private static final int NUMBERS = 8;
+
+  /** The row flown to. */
+  private int row;
+
+  private static final int[] AT_BEGIN = new int[WORLDS];
 
   private final float[] kept = new float[4 * WORLDS];
 
   /**
-   * By slot: when the command acts, from its own row's question, s; e to that time over the lag; and
-   * by how much it changes the velocity asked for.
+   * By slot: when the command acts, from its own row's begin, s; e to that time over the lag; and by
+   * how much it changes the velocity asked for.
    */
-  float[] commands;
+  private float[] commands;
 
-  static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
+  private static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
   private static final int SLOT = 4 * WORLDS;
 
   // Commands by the beat in which they were decided, modulo slots: the oldest that an early reading
@@ -88,24 +92,30 @@ final class LagVehicles {
   /** So many rows in seconds, and what remains of an error after them. */
   private final float[] rowsS, remains;
 
+  /** Whether powers of e hold what is under way for so long. */
+  static boolean canFly(Reduced model, double longestS) {
+    return longestS <= MOST_LAGS * model.lagS();
+  }
+
+  private static final double MOST_LAGS = 80;
+
   /**
-   * @param model lag above 0
-   * @param mostRows how many rows a command is under way at most
-   * @param earliestS no reading is taken so long before its row's question
+   * @param longestS how long a command is under way at most
+   * @param earliestS no reading is taken so long before its row's begin
    */
   LagVehicles(
-      Duelist duelist, Reduced model, double periodS, int mostRows, double earliestS) {
+      Duelist duelist, Reduced model, double periodS, double longestS, double earliestS) {
+    super(duelist, NUMBERS);
     this.periodS = periodS;
     this.earliestS = (float) earliestS;
     allocate(8);
     double lagSeconds = model.lagS();
     lagS = (float) lagSeconds;
-    startX = (float) duelist.startX();
-    startY = (float) duelist.startY();
+    speedMps = (float) (duelist.speed() * model.gain());
     double left = StrictMath.exp(-periodS / lagSeconds);
     periodDecay = (float) left;
     periodGain = (float) (lagSeconds * (1 - left));
-    rowsS = new float[mostRows + 3 + (int) Math.ceil(earliestS / periodS)];
+    rowsS = new float[4 + (int) Math.ceil((longestS + earliestS) / periodS)];
     remains = new float[rowsS.length];
     for (int i = 0; i < remains.length; i++) {
       rowsS[i] = (float) (i * periodS);
@@ -113,29 +123,71 @@ final class LagVehicles {
     }
   }
 
-  /** Back to the start of an episode. */
+  @Override
   void start() {
-    Arrays.fill(state, 0f);
-    Arrays.fill(state, X, X + WORLDS, startX);
-    Arrays.fill(state, Y, Y + WORLDS, startY);
+    super.start();
     oldest = 0;
     first = 0;
     next = 0;
+    row = 0;
   }
 
-  /** Where the commands of a row's beat go, in {@link #commands}. */
-  int slotOf(int row) {
+  @Override
+  void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
     if (next - oldest == slots) makeRoom();
-    rowOf[next & slots - 1] = row;
-    return (next & slots - 1) * SLOT;
+    int number = next & slots - 1, slot = number * SLOT;
+    rowOf[number] = row;
+    if (vectors.count * LANES < WORLDS) Arrays.fill(commands, slot, slot + SLOT, 0f);
+    send(vectors, number, slot, acts, commanded);
+    next++;
   }
 
-  /** The commands in the slot are on their way; they act between these times, s. */
-  void send(float soonestS, float latestS) {
+  private void send(LaneVectors vectors, int number, int slot, int[] acts, Directions commanded) {
+    float[] state = this.state, commands = this.commands, cos = commanded.cos, sin = commanded.sin;
+    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE), soonestOf = none, latestOf = none.not();
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
+        speed = FloatVector.broadcast(SPECIES, speedMps),
+        doublings = FloatVector.broadcast(SPECIES, LOG2_E / lagS),
+        zero = FloatVector.broadcast(SPECIES, 0f),
+        one = FloatVector.broadcast(SPECIES, 1f),
+        round = FloatVector.broadcast(SPECIES, ROUND),
+        power1 = FloatVector.broadcast(SPECIES, POWER_1),
+        power2 = FloatVector.broadcast(SPECIES, POWER_2),
+        power3 = FloatVector.broadcast(SPECIES, POWER_3),
+        power4 = FloatVector.broadcast(SPECIES, POWER_4),
+        power5 = FloatVector.broadcast(SPECIES, POWER_5);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector grains = IntVector.fromArray(INTS, acts, i);
+      VectorMask<Integer> does = grains.compare(LT, none);
+      VectorMask<Float> yes = does.cast(SPECIES);
+      soonestOf = soonestOf.min(grains);
+      latestOf = latestOf.lanewise(VectorOperators.MAX, grains, does);
+      FloatVector at =
+          zero.blend(((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS), yes);
+      at.intoArray(commands, slot + AT + i);
+      FloatVector exponent = at.mul(doublings);
+      FloatVector rounded = exponent.add(round);
+      FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
+      rest.fma(power5, power4)
+          .fma(square, rest.fma(power3, power2))
+          .fma(square, rest.fma(power1, one))
+          .reinterpretAsInts()
+          .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
+          .reinterpretAsFloats()
+          .intoArray(commands, slot + GROWTH + i);
+      FloatVector beforeX = FloatVector.fromArray(SPECIES, state, SENT_X + i),
+          beforeY = FloatVector.fromArray(SPECIES, state, SENT_Y + i);
+      FloatVector nowX = beforeX.blend(FloatVector.fromArray(SPECIES, cos, i).mul(speed), yes),
+          nowY = beforeY.blend(FloatVector.fromArray(SPECIES, sin, i).mul(speed), yes);
+      nowX.sub(beforeX).intoArray(commands, slot + CHANGE_X + i);
+      nowY.sub(beforeY).intoArray(commands, slot + CHANGE_Y + i);
+      nowX.intoArray(state, SENT_X + i);
+      nowY.intoArray(state, SENT_Y + i);
+    }
     // A little wider than floats are exact.
-    soonest[next & slots - 1] = soonestS * 0.999f;
-    latest[next & slots - 1] = latestS * 1.001f;
-    next++;
+    soonest[number] = soonestOf.reduceLanes(VectorOperators.MIN) * LaneViews.GRAIN_S * 0.999f;
+    latest[number] = latestOf.reduceLanes(VectorOperators.MAX) * LaneViews.GRAIN_S * 1.001f;
   }
 
   private void makeRoom() {
@@ -164,24 +216,40 @@ final class LagVehicles {
     nearAged = new float[count];
   }
 
-  /**
-   * Flies on from the row before and reads the vehicles.
-   *
-   * @param sampledAt when, from the row's question, {@link DelayTable#GrainNs}
-   * @param latestSampleS not before the last of these
-   */
-  void flyTo(int row, int[] sampledAt, float latestSampleS) {
-    findNear(row, latestSampleS, true);
-    fly((float) periodS, periodGain, periodDecay, sampledAt);
-    while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
-    while (oldest < first
-        && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
+  @Override
+  void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
+    if (fresh != null) System.arraycopy(state, SEEN_X, kept, 0, kept.length);
+    flyTo(row, at);
+    if (withVelocity) readVelocities();
+    lookBack(at, fresh);
+    if (fresh != null) keep(fresh);
   }
 
-  /** Reads the vehicles again, without flying on. */
-  void lookAgain(int row, int[] sampledAt, float latestSampleS) {
-    findNear(row, latestSampleS, false);
-    fly(0, 0, 1, sampledAt);
+  @Override
+  void flyToRow(int row) {
+    if (this.row < row) flyTo(row, AT_BEGIN);
+  }
+
+  /** Flies on from the row before, if the vehicles are there, and reads them. */
+  private void flyTo(int row, int[] sampledAt) {
+    boolean fliesOn = this.row < row;
+    findNear(row, latestS(sampledAt), fliesOn);
+    if (!fliesOn) fly(0, 0, 1, sampledAt);
+    else {
+      fly((float) periodS, periodGain, periodDecay, sampledAt);
+      while (first < next && latest[first & slots - 1] <= ageS(first & slots - 1, row)) first++;
+      while (oldest < first
+          && latest[oldest & slots - 1] <= ageS(oldest & slots - 1, row) - earliestS) oldest++;
+    }
+    this.row = row;
+  }
+
+  /** Not before the last of these. */
+  private static float latestS(int[] sampledAt) {
+    IntVector latest = IntVector.broadcast(INTS, 0);
+    for (int i = 0; i < WORLDS; i += LANES)
+      latest = latest.max(IntVector.fromArray(INTS, sampledAt, i));
+    return latest.reduceLanes(VectorOperators.MAX) * (LaneViews.GRAIN_S * 1.001f);
   }
 
   private float ageS(int slot, int row) {
@@ -321,8 +389,19 @@ final class LagVehicles {
     }
   }
 
+  /** Of readings that were taken before the row's begin. */
+  private void lookBack(int[] at, int[] fresh) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();
+      for (; early != 0; early &= early - 1) {
+        int world = i + Long.numberOfTrailingZeros(early);
+        if (fresh == null || fresh[world] > 0) lookBack(world, at[world]);
+      }
+    }
+  }
+
   /** Takes commands back that had not acted when an early reading of a world was taken. */
-  void lookBack(int world, int row, int sampledAt) {
+  private void lookBack(int world, int sampledAt) {
     float end = sampledAt * LaneViews.GRAIN_S;
     for (int number = next - 1; number >= oldest; number--) {
       int slot = number & slots - 1, from = slot * SLOT + world;
@@ -339,13 +418,13 @@ final class LagVehicles {
     }
   }
 
-  /** Keeps what was read last. */
-  void keepSeen() {
-    System.arraycopy(state, SEEN_X, kept, 0, kept.length);
-  }
-
-  /** Puts back what was kept of a world. */
-  void restoreSeen(int world) {
-    for (int i = world; i < kept.length; i += WORLDS) state[SEEN_X + i] = kept[i];
+  /** Puts back what was read before, where nothing was read now. */
+  private void keep(int[] fresh) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Float> isOld = IntVector.fromArray(INTS, fresh, i).compare(EQ, 0).cast(SPECIES);
+      if (isOld.anyTrue())
+        for (int from = i; from < kept.length; from += WORLDS)
+          FloatVector.fromArray(SPECIES, kept, from).intoArray(state, SEEN_X + from, isOld);
+    }
   }
 }

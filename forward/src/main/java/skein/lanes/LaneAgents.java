@@ -1,7 +1,9 @@
 package skein.lanes;
 
 import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
+import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
@@ -14,6 +16,7 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
 import skein.forward.Rollout;
 import skein.forward.Steering;
+import skein.simd.WorldRandom;
 
 /**
  * The vehicles of one role in many worlds, and their controllers, as {@code skein.flow.Pace} and
@@ -29,11 +32,11 @@ final class LaneAgents {
   /** Times count no longer ago than this. */
   private static final int LONG_PAST = -1_000_000_000;
 
-  final LaneFlights flights;
+  final LaneVehicles vehicles;
   final LanePolicy policy;
   private final int self, line, periodGrains, intervalGrains, handoverGrains, deadGrains;
   private final float startHeading, periodS;
-  private final boolean decidesFirst;
+  private final boolean decidesFirst, together;
 
   // When it may be commanded again, when the last command reaches it, and when that was sent.
   private final int[] ready = new int[WORLDS], reaches = new int[WORLDS], sentAt = new int[WORLDS];
@@ -44,15 +47,16 @@ final class LaneAgents {
   /** How long before the period's begin it decided, s. */
   private final float[] decidedBefore = new float[WORLDS];
 
-  private final int[] places = new int[WORLDS], there = new int[WORLDS], back = new int[WORLDS];
+  private final int[] drawn = new int[2 * LANES];
   private final LaneObservation sight = new LaneObservation();
 
   /** What was sent last and before that, what was decided last, and what is now. */
   final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
 
-  private final Directions known = new Directions(WORLDS),
-      decided = new Directions(WORLDS),
-      decidedNow = new Directions(WORLDS);
+  private final Directions known = new Directions(WORLDS), decidedNow = new Directions(WORLDS);
+
+  /** That which is sent, unless what waits is the decision. */
+  private final Directions decided;
 
   /** The sum of the decided headings' changes. */
   private final float[] effort;
@@ -61,6 +65,8 @@ final class LaneAgents {
    * @param self 0 for the evader, 1 for the pursuer
    * @param intervalS between two decisions, or between two commands if it decides first
    * @param decidesFirst whether it decides at every offer, and what waits is the decision
+   * @param together whether the opponent is offered the same at the same time: then all that it has sent
+   *     was sent before
    * @param deadTimeS from a command's arrival until the vehicle follows it
    * @param effort where the sums of the decided headings' changes go, rad
    */
@@ -71,15 +77,18 @@ final class LaneAgents {
       Steering steering,
       double intervalS,
       boolean decidesFirst,
+      boolean together,
       double deadTimeS,
-      LaneFlights flights,
+      LaneVehicles vehicles,
       LanePolicy policy,
       float[] effort) {
     this.self = self;
-    this.flights = flights;
+    this.vehicles = vehicles;
     this.policy = policy;
     this.effort = effort;
     this.decidesFirst = decidesFirst;
+    this.together = together;
+    decided = decidesFirst ? new Directions(WORLDS) : sent;
     this.periodS = (float) periodS;
     line = Rollout.CommandPlace() + 2 * self;
     startHeading = (float) duelist.startHeadingRad();
@@ -97,7 +106,7 @@ final class LaneAgents {
     for (Directions each : new Directions[] {sent, sentBefore, decided})
       each.fill(0, WORLDS, startHeading);
     policy.start(startHeading);
-    flights.start();
+    vehicles.start();
   }
 
   /** To the next period. */
@@ -107,7 +116,7 @@ final class LaneAgents {
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector.fromArray(INTS, ready, i).sub(period).max(past).intoArray(ready, i);
       IntVector.fromArray(INTS, reaches, i).sub(period).max(past).intoArray(reaches, i);
-      IntVector.fromArray(INTS, sentAt, i).sub(period).max(past).intoArray(sentAt, i);
+      if (!together) IntVector.fromArray(INTS, sentAt, i).sub(period).max(past).intoArray(sentAt, i);
       FloatVector.fromArray(SPECIES, decidedBefore, i).add(seconds).intoArray(decidedBefore, i);
     }
   }
@@ -120,23 +129,41 @@ final class LaneAgents {
   void decide(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(opponents, vectors, offers.joinedAt, offers.nextAt);
     if (policy.needsVelocity()) {
-      difference(vectors, opponents.flights.seenVx, flights.seenVx, sight.dvx);
-      difference(vectors, opponents.flights.seenVy, flights.seenVy, sight.dvy);
+      difference(vectors, opponents.vehicles, LaneVehicles.SEEN_VX, sight.dvx);
+      difference(vectors, opponents.vehicles, LaneVehicles.SEEN_VY, sight.dvy);
     }
     if (policy.needsAges()) {
       age(readAt[self], sight.ownAge);
       age(readAt[1 - self], sight.opponentAge);
     }
-    policy.decide(sight, decided, 0, known, 0, decidedNow, 0);
+    if (!together) know(opponents, vectors, offers.joinedAt);
+    policy.decide(sight, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
   }
 
-  /** When each decides and sends; what of the opponent is known by then, and how far away it was read. */
+  /** What the opponent sends after the offer was made is not known in it. */
+  private void know(LaneAgents opponents, LaneVectors vectors, int[] joinedAt) {
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Float> isKnown =
+          IntVector.fromArray(INTS, opponents.sentAt, i)
+              .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
+              .cast(SPECIES);
+      FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
+          .blend(FloatVector.fromArray(SPECIES, opponents.sent.cos, i), isKnown)
+          .intoArray(known.cos, i);
+      FloatVector.fromArray(SPECIES, opponents.sentBefore.sin, i)
+          .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
+          .intoArray(known.sin, i);
+    }
+  }
+
+  /** When each decides and sends, and how far away the opponent was read. */
   private void look(LaneAgents opponents, LaneVectors vectors, int[] joinedAt, int[] nextAt) {
     IntVector none = IntVector.broadcast(INTS, NONE);
     FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
         grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
-    LaneFlights theirs = opponents.flights;
+    float[] ours = vehicles.state, theirs = opponents.vehicles.state;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector joined = IntVector.fromArray(INTS, joinedAt, i);
@@ -149,24 +176,21 @@ final class LaneAgents {
       FloatVector time = (FloatVector) deciding.convertShape(VectorOperators.I2F, SPECIES, 0);
       FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
       zero.blend(time.fma(grainS, before), before.compare(LT, undecided)).intoArray(sight.elapsed, i);
-      // What the opponent sends after the offer was made is not known in it.
-      VectorMask<Float> isKnown =
-          IntVector.fromArray(INTS, opponents.sentAt, i).compare(LE, joined).cast(SPECIES);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.cos, i), isKnown)
-          .intoArray(known.cos, i);
-      FloatVector.fromArray(SPECIES, opponents.sentBefore.sin, i)
-          .blend(FloatVector.fromArray(SPECIES, opponents.sent.sin, i), isKnown)
-          .intoArray(known.sin, i);
+      FloatVector.fromArray(SPECIES, theirs, LaneVehicles.SEEN_X + i)
+          .sub(FloatVector.fromArray(SPECIES, ours, LaneVehicles.SEEN_X + i))
+          .intoArray(sight.dx, i);
+      FloatVector.fromArray(SPECIES, theirs, LaneVehicles.SEEN_Y + i)
+          .sub(FloatVector.fromArray(SPECIES, ours, LaneVehicles.SEEN_Y + i))
+          .intoArray(sight.dy, i);
     }
-    difference(vectors, theirs.seenX, flights.seenX, sight.dx);
-    difference(vectors, theirs.seenY, flights.seenY, sight.dy);
   }
 
-  private static void difference(LaneVectors vectors, float[] of, float[] and, float[] into) {
+  private void difference(LaneVectors vectors, LaneVehicles opponents, int of, float[] into) {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      FloatVector.fromArray(SPECIES, of, i).sub(FloatVector.fromArray(SPECIES, and, i)).intoArray(into, i);
+      FloatVector.fromArray(SPECIES, opponents.state, of + i)
+          .sub(FloatVector.fromArray(SPECIES, vehicles.state, of + i))
+          .intoArray(into, i);
     }
   }
 
@@ -186,69 +210,79 @@ final class LaneAgents {
    * @param endGrains of the episode
    */
   void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
-    int here = LaneDelays.placeOf(row);
-    int[] place = offers.place[self];
-    for (int i = 0; i < WORLDS; i += LANES)
-      IntVector.fromArray(INTS, place, i).add(here).intoArray(places, i);
-    offers.delays.draw(vectors, places, line, there);
-    offers.delays.draw(vectors, places, line + 1, back);
-    send(vectors);
-    remember(vectors, endGrains);
-    flights.act(row, vectors, acts, sent);
+    send(LaneDelays.placeOf(row) + line * WorldRandom.STRIDE, offers.delays, offers.place[self], vectors, endGrains);
+    if (vectors.count * LANES < WORLDS) forget(vectors);
+    policy.rememberBefore(decides, 0, NONE);
+    vehicles.act(row, vectors, acts, sent);
   }
 
-  private void send(LaneVectors vectors) {
-    IntVector none = IntVector.broadcast(INTS, NONE),
+  /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
+  private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors, int endGrains) {
+    int[] keys = delays.keys, tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
+    IntVector here = IntVector.broadcast(INTS, place),
+        next = IntVector.broadcast(INTS, place + WorldRandom.STRIDE),
+        multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
+        multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2),
+        none = IntVector.broadcast(INTS, NONE),
         interval = IntVector.broadcast(INTS, intervalGrains),
         handover = IntVector.broadcast(INTS, handoverGrains),
-        dead = IntVector.broadcast(INTS, deadGrains);
-    FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2);
+        dead = IntVector.broadcast(INTS, deadGrains),
+        end = IntVector.broadcast(INTS, endGrains);
+    FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
+        minusGrainS = FloatVector.broadcast(SPECIES, -LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      IntVector when = IntVector.fromArray(INTS, sends, i);
+      IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
+          begin = IntVector.fromArray(INTS, tableOf, i);
+      IntVector a = key.add(here), b = key.add(next);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
+      a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+      b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
+      a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
+      b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+      IntVector there = IntVector.fromArray(INTS, table, 0, drawn, 0),
+          back = IntVector.fromArray(INTS, table, 0, drawn, LANES);
+      IntVector when = IntVector.fromArray(INTS, sends, i), time = IntVector.fromArray(INTS, decides, i);
       VectorMask<Integer> goes = when.compare(LT, none);
-      VectorMask<Integer> isLater =
-          FloatVector.fromArray(SPECIES, decidedBefore, i).compare(LT, undecided).cast(INTS);
+      VectorMask<Float> sending = goes.cast(SPECIES), deciding = time.compare(LT, none).cast(SPECIES);
+      FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
       IntVector reachedBefore = IntVector.fromArray(INTS, reaches, i);
       // Commands to one vehicle keep their order.
-      IntVector arrives = when.add(IntVector.fromArray(INTS, there, i)).max(reachedBefore);
+      IntVector arrives = when.add(there).max(reachedBefore);
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
       // The command before is answered when this one has replaced it; the very first replaces none.
       IntVector again = when.add(interval);
-      IntVector answered = arrives.add(IntVector.fromArray(INTS, back, i)).add(handover).max(again);
-      again = again.blend(answered, isLater);
+      again =
+          again.blend(
+              arrives.add(back).add(handover).max(again), before.compare(LT, undecided).cast(INTS));
       reachedBefore.blend(arrives, goes).intoArray(reaches, i);
       IntVector.fromArray(INTS, ready, i).blend(again, goes).intoArray(ready, i);
-      IntVector.fromArray(INTS, sentAt, i).blend(when, goes).intoArray(sentAt, i);
-      VectorMask<Float> yes = goes.cast(SPECIES);
-      FloatVector cos = FloatVector.fromArray(SPECIES, sent.cos, i),
+      FloatVector newCos = FloatVector.fromArray(SPECIES, decidedNow.cos, i),
+          newSin = FloatVector.fromArray(SPECIES, decidedNow.sin, i),
+          cos = FloatVector.fromArray(SPECIES, sent.cos, i),
           sin = FloatVector.fromArray(SPECIES, sent.sin, i);
-      cos.intoArray(sentBefore.cos, i, yes);
-      sin.intoArray(sentBefore.sin, i, yes);
-      FloatVector.fromArray(SPECIES, decidedNow.cos, i).intoArray(sent.cos, i, yes);
-      FloatVector.fromArray(SPECIES, decidedNow.sin, i).intoArray(sent.sin, i, yes);
-    }
-  }
-
-  private void remember(LaneVectors vectors, int endGrains) {
-    IntVector none = IntVector.broadcast(INTS, NONE), end = IntVector.broadcast(INTS, endGrains);
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      IntVector when = IntVector.fromArray(INTS, decides, i);
-      VectorMask<Float> yes = when.compare(LT, none).cast(SPECIES);
-      FloatVector time = (FloatVector) when.convertShape(VectorOperators.I2F, SPECIES, 0);
-      time.mul(grainS).neg().intoArray(decidedBefore, i, yes);
-      FloatVector spent = FloatVector.fromArray(SPECIES, effort, i);
-      spent
-          .add(FloatVector.fromArray(SPECIES, policy.turned, i), when.compare(LT, end).cast(SPECIES))
+      if (!together) {
+        IntVector.fromArray(INTS, sentAt, i).blend(when, goes).intoArray(sentAt, i);
+        cos.intoArray(sentBefore.cos, i, sending);
+        sin.intoArray(sentBefore.sin, i, sending);
+      }
+      cos.blend(newCos, sending).intoArray(sent.cos, i);
+      sin.blend(newSin, sending).intoArray(sent.sin, i);
+      if (decidesFirst) {
+        newCos.intoArray(decided.cos, i, deciding);
+        newSin.intoArray(decided.sin, i, deciding);
+      }
+      FloatVector.fromArray(SPECIES, policy.heading, i)
+          .blend(FloatVector.fromArray(SPECIES, policy.newHeading, i), deciding)
+          .intoArray(policy.heading, i);
+      before
+          .blend(((FloatVector) time.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(minusGrainS), deciding)
+          .intoArray(decidedBefore, i);
+      FloatVector.fromArray(SPECIES, effort, i)
+          .add(FloatVector.fromArray(SPECIES, policy.turned, i), time.compare(LT, end).cast(SPECIES))
           .intoArray(effort, i);
-      FloatVector.fromArray(SPECIES, policy.newHeading, i).intoArray(policy.heading, i, yes);
-      FloatVector.fromArray(SPECIES, decidedNow.cos, i).intoArray(decided.cos, i, yes);
-      FloatVector.fromArray(SPECIES, decidedNow.sin, i).intoArray(decided.sin, i, yes);
     }
-    if (vectors.count * LANES < WORLDS) forget(vectors);
-    policy.rememberBefore(decides, 0, NONE);
   }
 
   /** Nobody decides in the other vectors. */

@@ -31,13 +31,9 @@ final class LaneDelays {
   private final DelayTable[] tables = new DelayTable[WORLDS];
   private int tableCount = 0;
 
-  /** Longest delay of any link, s. */
-  float maxS;
-
   void start(int[] worldKeys, DelayTable[] links) {
     keys = worldKeys;
     int count = 0;
-    maxS = 0;
     for (int i = 0; i < WORLDS; i++) {
       int table = i > 0 && links[i] == links[i - 1] ? tableOf[i - 1] / DelayTable.Size() : count;
       if (table == count) {
@@ -47,7 +43,6 @@ final class LaneDelays {
           links[i].copyGrains(delays, count * DelayTable.Size());
           tables[count] = links[i];
         }
-        maxS = Math.max(maxS, links[i].maxS());
         count++;
       }
       tableOf[i] = table * DelayTable.Size();

@@ -10,6 +10,7 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
+import skein.forward.Duelist;
 
 /**
  * The vehicles of one role in many worlds, whose commands act at times of their own in each. They fly
@@ -17,19 +18,11 @@ import jdk.incubator.vector.VectorOperators;
  * be read at any moment of it. A slot holds the piece that was the newest in each world when it was
  * filled. Times are in seconds from the begin of a period.
  */
-abstract class LaneFlights {
-  static final int WORLDS = LanePolicy.WORLDS;
-
+abstract class LaneFlights extends LaneVehicles {
   /** Of a piece: when it begins, where the vehicle is then; what follows, the kind of vehicle says. */
-  static final int TIME = 0, X = 1, Y = 2, OWN = 3;
+  static final int PIECE_TIME = 0, PIECE_X = 1, PIECE_Y = 2, PIECE_OWN = 3;
 
   private static final float FUTURE = 1e9f;
-
-  /** How the vehicles answered last: m and m/s, north and east. */
-  final float[] seenX = new float[WORLDS],
-      seenY = new float[WORLDS],
-      seenVx = new float[WORLDS],
-      seenVy = new float[WORLDS];
 
   /** Where they are flown to, and how fast they fly there. */
   final float[] x = new float[WORLDS],
@@ -39,7 +32,6 @@ abstract class LaneFlights {
 
   private final int fields, keptRows;
   private final double periodS;
-  private final float startX, startY;
   float[] pieces;
 
   /** A power of two. */
@@ -68,21 +60,21 @@ abstract class LaneFlights {
    * @param fields numbers of a piece
    * @param keptRows periods before, of which a reading may ask for the pieces that were the newest
    */
-  LaneFlights(int fields, int keptRows, double periodS, double startX, double startY) {
+  LaneFlights(Duelist duelist, int fields, int keptRows, double periodS) {
+    super(duelist, 0);
     this.fields = fields;
     this.keptRows = keptRows;
     this.periodS = periodS;
-    this.startX = (float) startX;
-    this.startY = (float) startY;
     pieces = new float[slots * fields * WORLDS];
     chosen = new float[fields * WORLDS];
   }
 
-  /** Back to the start of an episode, where they rest. */
+  @Override
   final void start() {
+    super.start();
     Arrays.fill(pieces, 0, fields * WORLDS, 0f);
-    Arrays.fill(pieces, X * WORLDS, (X + 1) * WORLDS, startX);
-    Arrays.fill(pieces, Y * WORLDS, (Y + 1) * WORLDS, startY);
+    System.arraycopy(state, X, pieces, PIECE_X * WORLDS, WORLDS);
+    System.arraycopy(state, Y, pieces, PIECE_Y * WORLDS, WORLDS);
     rest(pieces);
     rowOf[0] = 0;
     filled = 1;
@@ -103,11 +95,7 @@ abstract class LaneFlights {
   /** Pieces that begin by themselves before the times there, if this kind of vehicle has such. */
   void goOn(int row, LaneVectors vectors) {}
 
-  /**
-   * Reads the vehicles where {@code fresh} is 1, or everywhere.
-   *
-   * @param at when, from the row's begin, in grains
-   */
+  @Override
   final void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
@@ -123,30 +111,32 @@ abstract class LaneFlights {
       time.intoArray(until, i);
     }
     flyTo(row, vectors, withVelocity);
-    keep(vectors, x, seenX, fresh);
-    keep(vectors, y, seenY, fresh);
+    keep(vectors, x, SEEN_X, fresh);
+    keep(vectors, y, SEEN_Y, fresh);
     if (withVelocity) {
-      keep(vectors, vx, seenVx, fresh);
-      keep(vectors, vy, seenVy, fresh);
+      keep(vectors, vx, SEEN_VX, fresh);
+      keep(vectors, vy, SEEN_VY, fresh);
     }
   }
 
-  private static void keep(LaneVectors vectors, float[] now, float[] seen, int[] fresh) {
+  private void keep(LaneVectors vectors, float[] now, int seen, int[] fresh) {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       FloatVector value = FloatVector.fromArray(SPECIES, now, i);
       if (fresh != null)
         value =
-            FloatVector.fromArray(SPECIES, seen, i)
+            FloatVector.fromArray(SPECIES, state, seen + i)
                 .blend(value, IntVector.fromArray(INTS, fresh, i).compare(GT, 0).cast(SPECIES));
-      value.intoArray(seen, i);
+      value.intoArray(state, seen + i);
     }
   }
 
-  /** Flies to a row's begin. */
+  @Override
   final void flyToRow(int row) {
     Arrays.fill(until, 0f);
     flyTo(row, all, false);
+    System.arraycopy(x, 0, state, X, WORLDS);
+    System.arraycopy(y, 0, state, Y, WORLDS);
   }
 
   private void flyTo(int row, LaneVectors vectors, boolean withVelocity) {
@@ -155,11 +145,7 @@ abstract class LaneFlights {
     fly(vectors, withVelocity);
   }
 
-  /**
-   * Lets commands act, none earlier than the one before.
-   *
-   * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
-   */
+  @Override
   final void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
@@ -227,7 +213,7 @@ abstract class LaneFlights {
     }
     if (back == filled - 1)
       System.arraycopy(pieces, slot * fields * WORLDS + WORLDS, chosen, WORLDS, (fields - 1) * WORLDS);
-    else for (int field = X; field < fields; field++) copy(field * WORLDS);
+    else for (int field = PIECE_X; field < fields; field++) copy(field * WORLDS);
   }
 
   private void findFrom(int from, float shiftS) {

@@ -22,6 +22,9 @@ abstract class LaneOffers {
 
   final LaneDelays delays;
 
+  /** Whether every offer is made to both. */
+  final boolean together;
+
   /** Whose beat it is. */
   int whose = BOTH;
 
@@ -37,7 +40,8 @@ abstract class LaneOffers {
   /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
   final int[][] place = new int[2][];
 
-  LaneOffers(LaneDelays delays) {
+  LaneOffers(LaneDelays delays, boolean together) {
+    this.together = together;
     this.delays = delays;
   }
 

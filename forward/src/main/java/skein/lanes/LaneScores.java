@@ -41,10 +41,9 @@ final class LaneScores {
   /**
    * Adds the distances of two vehicles at the end of a period, counted from 1.
    *
-   * @param at where the positions east begin; those north begin at 0
+   * @param evaders and pursuers: positions as {@link LaneVehicles#state} has them
    */
-  void add(
-      int period, float[] evaderX, float[] evaderY, float[] pursuerX, float[] pursuerY, int at) {
+  void add(int period, float[] evaders, float[] pursuers) {
     FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
         radius = FloatVector.broadcast(SPECIES, captureRadiusM),
         infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
@@ -53,11 +52,11 @@ final class LaneScores {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
           x =
-              FloatVector.fromArray(SPECIES, evaderX, i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuerX, i)),
+              FloatVector.fromArray(SPECIES, evaders, LaneVehicles.X + i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuers, LaneVehicles.X + i)),
           y =
-              FloatVector.fromArray(SPECIES, evaderY, at + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuerY, at + i));
+              FloatVector.fromArray(SPECIES, evaders, LaneVehicles.Y + i)
+                  .sub(FloatVector.fromArray(SPECIES, pursuers, LaneVehicles.Y + i));
       FloatVector now = x.fma(x, y.mul(y)).sqrt();
       FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);

@@ -92,19 +92,11 @@ final class LaneViews {
   /** Whether a world has no view in this beat, or one with an old reading. */
   boolean hasOld;
 
-  /**
-   * Worlds with no view in this beat, or one with a reading that is old, older than the row or
-   * asked as another.
-   */
-  final int[] odd = new int[WORLDS];
-
-  int oddCount;
+  /** Whether some reading was asked as another than the row's. */
+  private boolean hasOther;
 
   /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
   final int[][] isFresh = new int[VEHICLES][WORLDS];
-
-  /** No reading of the beat is taken later, s. */
-  float latestSampleS;
 
   private int row;
 
@@ -144,8 +136,7 @@ final class LaneViews {
     Arrays.fill(irregularUpTo, -1);
     Arrays.fill(hasNext, false);
     row = -1;
-    oddCount = 0;
-    for (int[] places : place) Arrays.fill(places, 0);
+    hasOther = true;
     for (int step = 0; step < ahead; step++) ask(step);
   }
 
@@ -265,10 +256,9 @@ final class LaneViews {
     nextAt = nextBoth[slot];
     sampledAt[0] = reached[slot][0];
     sampledAt[1] = reached[slot][1];
-    for (int i = 0; i < oddCount; i++) for (int[] places : place) places[odd[i]] = 0;
+    if (hasOther) for (int[] places : place) Arrays.fill(places, 0);
+    hasOther = false;
     hasOld = false;
-    oddCount = 0;
-    latestSampleS = delays.maxS;
     more = irregularCount > 0;
     if (more) {
       Arrays.fill(isFresh[0], 1);
@@ -284,16 +274,7 @@ final class LaneViews {
     Arrays.fill(isFresh[0], 0);
     Arrays.fill(isFresh[1], 0);
     hasOld = true;
-    oddCount = 0;
-    boolean any = irregularBeat(false);
-    for (int i = 0; i < WORLDS; i++) odd[i] = i;
-    oddCount = WORLDS;
-    return any;
-  }
-
-  /** Whether the beat is the last of its row. */
-  boolean isLastBeat() {
-    return !more;
+    return irregularBeat(false);
   }
 
   /** Puts the beat's views of irregular worlds where the others' are; whether there were any. */
@@ -322,7 +303,6 @@ final class LaneViews {
         isFresh[0][world] = 0;
         isFresh[1][world] = 0;
         hasOld = true;
-        odd[oddCount++] = world;
       } else if (isFirst) nextAt[world] = fromTick(source.joinedAt);
       if (hasNext[world]) irregular[kept++] = world;
     }
@@ -332,20 +312,14 @@ final class LaneViews {
 
   private void put(int world, ViewSource source) {
     joinedAt[world] = fromTick(source.joinedAt);
-    boolean isOdd = false;
     for (int v = 0; v < VEHICLES; v++) {
       int at = fromTick(source.sampledAt[v]);
       sampledAt[v][world] = at;
       place[v][world] = LaneDelays.placeOf(source.question[v]) - LaneDelays.placeOf(row);
-      isOdd |= place[v][world] != 0;
+      hasOther |= place[v][world] != 0;
       isFresh[v][world] = source.isFresh[v] ? 1 : 0;
       hasOld |= !source.isFresh[v];
-      isOdd |= !source.isFresh[v] || at < 0;
-      // A question that had to wait was sent after its tick.
-      if (source.isFresh[v])
-        latestSampleS = Math.max(latestSampleS, at * (GRAIN_S * 1.001f));
     }
-    if (isOdd) odd[oddCount++] = world;
   }
 
   private int fromTick(long timeNs) {

@@ -8,6 +8,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 import skein.forward.Duel;
+import skein.forward.Duelist;
 import skein.forward.LoopTiming;
 import skein.forward.Reduced;
 import skein.forward.ReducedResponse;
@@ -18,14 +19,16 @@ import skein.forward.VelocityResponse;
  * Duels of many worlds at a time, each with delays of its own, under the full event timing of {@code
  * stream}, {@code sequential} or {@code futures}, with a reduced model of the vehicles. A loop tells
  * what is offered when ({@link LaneOffers}), {@link LaneAgents} decide upon it and send, {@link
- * LaneFlights} fly. {@link skein.forward.Rollout} is the scalar reference: both draw the same delays
- * from a world's key, and every event happens at the same nanosecond in both. {@link
- * StreamDuelKernel} is the faster way for its loop and vehicles. Nothing is allocated after
- * construction but where links need more room than any before; one instance per thread.
+ * LaneVehicles} fly. {@link skein.forward.Rollout} is the scalar reference: both draw the same delays
+ * from a world's key, and every event happens at the same nanosecond in both. Nothing is allocated
+ * after construction but where links need more room than any before; one instance per thread.
  */
 final class LoopDuelKernel extends DuelKernel {
   /** Times stay within what integers of grains can hold. */
   private static final double MOST_S = 3.5;
+
+  /** Below, too many periods' commands are under way for {@link LagVehicles}. */
+  private static final double LEAST_PERIOD_S = 0.02;
 
   private final int steps;
   private final double periodS;
@@ -47,10 +50,7 @@ final class LoopDuelKernel extends DuelKernel {
     Steering steering = LoopTiming.steeringOf(timing);
     double deadTimeS;
     switch (model) {
-      case Reduced lag -> {
-        if (!(lag.lagS() >= TimetableModel.LeastLagS())) return "the lanes need vehicles that lag";
-        deadTimeS = lag.deadTimeS();
-      }
+      case Reduced lag -> deadTimeS = lag.deadTimeS();
       case ReducedResponse drag -> {
         if (Math.min(drag.model().lagS(), drag.model().turnLagS()) < TimetableModel.LeastLagS())
           return "the lanes fly models with lags of " + TimetableModel.LeastLagS() + " s at least";
@@ -103,6 +103,21 @@ final class LoopDuelKernel extends DuelKernel {
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy) {
+    this(duel, timing, model, maxDelayS, pursuerPolicy, evaderPolicy, true);
+  }
+
+  /**
+   * @param shortCut whether regular stretches of {@code stream} are told by lanes; without, the same is
+   *     told world by world
+   */
+  LoopDuelKernel(
+      Duel duel,
+      LoopTiming timing,
+      VelocityResponse model,
+      double maxDelayS,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy,
+      boolean shortCut) {
     periodS = timing.periodS();
     steps = (int) Math.round(duel.durationS() / periodS);
     double intervalS = 0;
@@ -110,42 +125,54 @@ final class LoopDuelKernel extends DuelKernel {
     if (timing instanceof LoopTiming.Stream stream) {
       intervalS = periodS - stream.toleranceS();
       decidesFirst = stream.decideThenPace();
-      offers = new StreamOffers(stream, duel.durationS());
+      offers = new StreamOffers(stream, duel.durationS(), shortCut);
     } else if (timing instanceof LoopTiming.Sequential sequential)
       offers = new SequentialOffers(sequential);
     else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
-    // From a reading to its decision, and from the decision before that to when its command acts.
-    double timeoutS = LoopTiming.askingOf(timing).timeoutS();
-    double kept = Math.min(2 * timeoutS, 4 * maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5;
-    int keptRows = 2 + (int) Math.ceil(kept / periodS);
-    LaneFlights[] flights = new LaneFlights[2];
-    double deadTimeS = 0;
-    for (int v = 0; v < 2; v++) {
-      var duelist = v == 0 ? duel.evader() : duel.pursuer();
-      switch (model) {
-        case Reduced lag -> {
-          flights[v] = new LagFlights(duelist, lag, periodS, keptRows);
-          deadTimeS = lag.deadTimeS();
-        }
-        case ReducedResponse drag -> {
-          flights[v] = new DragFlights(duelist, drag.model(), periodS, keptRows);
-          deadTimeS = drag.model().deadTimeS();
-        }
-        default -> throw new IllegalArgumentException("no lanes fly " + model);
-      }
-    }
+    LaneVehicles evaders = vehicles(duel.evader(), timing, model, maxDelayS),
+        pursuers = vehicles(duel.pursuer(), timing, model, maxDelayS);
+    double deadTimeS = deadTimeS(model);
     Steering steering = LoopTiming.steeringOf(timing);
     evader =
         new LaneAgents(
-            0, duel.evader(), periodS, steering, intervalS, decidesFirst, deadTimeS, flights[0],
+            0, duel.evader(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, evaders,
             evaderPolicy, evaderEffortRad);
     pursuer =
         new LaneAgents(
-            1, duel.pursuer(), periodS, steering, intervalS, decidesFirst, deadTimeS, flights[1],
+            1, duel.pursuer(), periodS, steering, intervalS, decidesFirst, offers.together, deadTimeS, pursuers,
             pursuerPolicy, pursuerEffortRad);
     withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
     withAges = evaderPolicy.needsAges() || pursuerPolicy.needsAges();
     scores = new LaneScores(duel.durationS(), periodS, this);
+  }
+
+  private static double deadTimeS(VelocityResponse model) {
+    return switch (model) {
+      case Reduced lag -> lag.deadTimeS();
+      case ReducedResponse drag -> drag.model().deadTimeS();
+      default -> throw new IllegalArgumentException("no lanes fly " + model);
+    };
+  }
+
+  /** The way of a lag alone is the faster one where hardly a reading is of a period before. */
+  private static LaneVehicles vehicles(
+      Duelist duelist, LoopTiming timing, VelocityResponse model, double maxDelayS) {
+    double periodS = timing.periodS();
+    if (timing instanceof LoopTiming.Stream stream
+        && model instanceof Reduced lag
+        && periodS >= LEAST_PERIOD_S
+        && LagVehicles.canFly(lag, 2 * MOST_S))
+      return new LagVehicles(
+          duelist, lag, periodS, 2 * MOST_S, stream.asking().timeoutS() + stream.patienceS() + periodS);
+    // From a reading to its decision, and from the decision before that to when its command acts.
+    double timeoutS = LoopTiming.askingOf(timing).timeoutS();
+    double kept = Math.min(2 * timeoutS, 4 * maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5;
+    int keptRows = 2 + (int) Math.ceil(kept / periodS);
+    return switch (model) {
+      case Reduced lag -> new LagFlights(duelist, lag, periodS, keptRows);
+      case ReducedResponse drag -> new DragFlights(duelist, drag.model(), periodS, keptRows);
+      default -> throw new IllegalArgumentException("no lanes fly " + model);
+    };
   }
 
   /**
@@ -162,16 +189,19 @@ final class LoopDuelKernel extends DuelKernel {
     scores.start(captureRadiusM);
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
-        score(row);
         evader.nextRow();
         pursuer.nextRow();
         if (withAges) growOlder();
       }
       offers.startRow(row);
+      boolean isScored = row == 0;
       while (offers.nextBeat()) {
         vectors.take(offers.joinedAt, LaneOffers.NONE);
-        read(row, 0, evader.flights);
-        read(row, 1, pursuer.flights);
+        read(row, 0, evader.vehicles);
+        read(row, 1, pursuer.vehicles);
+        // Reading them has flown the vehicles to the row's begin, if that is their way.
+        if (!isScored) score(row);
+        isScored = true;
         boolean forPursuer = offers.whose != LaneOffers.EVADER,
             forEvader = offers.whose != LaneOffers.PURSUER;
         if (forPursuer) pursuer.decide(evader, offers, vectors, readAt);
@@ -180,14 +210,15 @@ final class LoopDuelKernel extends DuelKernel {
         if (forPursuer) pursuer.command(row, offers, vectors, end);
         if (forEvader) evader.command(row, offers, vectors, end);
       }
+      if (!isScored) score(row);
     }
     score(steps);
     scores.finish();
   }
 
-  private void read(int row, int vehicle, LaneFlights flights) {
+  private void read(int row, int vehicle, LaneVehicles vehicles) {
     int[] at = offers.sampledAt[vehicle], fresh = offers.fresh[vehicle];
-    flights.read(row, vectors, at, fresh, withVelocity);
+    vehicles.read(row, vectors, at, fresh, withVelocity);
     if (withAges)
       for (int i = 0; i < WORLDS; i += LANES) {
         IntVector now = IntVector.fromArray(INTS, at, i), held = IntVector.fromArray(INTS, readAt[vehicle], i);
@@ -203,10 +234,9 @@ final class LoopDuelKernel extends DuelKernel {
   }
 
   private void score(int row) {
-    evader.flights.flyToRow(row);
-    pursuer.flights.flyToRow(row);
-    scores.add(
-        row, evader.flights.x, evader.flights.y, pursuer.flights.x, pursuer.flights.y, 0);
+    evader.vehicles.flyToRow(row);
+    pursuer.vehicles.flyToRow(row);
+    scores.add(row, evader.vehicles.state, pursuer.vehicles.state);
   }
 
   /** From a row's begin to the end of the episode, as far as integers count. */

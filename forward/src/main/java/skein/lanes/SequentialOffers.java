@@ -44,7 +44,7 @@ final class SequentialOffers extends LaneOffers {
   private final LaneVectors searching = new LaneVectors();
 
   SequentialOffers(LoopTiming.Sequential timing) {
-    super(new LaneDelays());
+    super(new LaneDelays(), true);
     periodGrains = LaneViews.grains(timing.periodS());
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     joinedAt = new int[WORLDS];

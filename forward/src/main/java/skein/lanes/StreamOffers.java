@@ -8,12 +8,12 @@ final class StreamOffers extends LaneOffers {
   private final LaneViews views;
   private boolean isFirst;
 
-  StreamOffers(LoopTiming.Stream timing, double durationS) {
-    this(new LaneViews(timing, durationS, true));
+  StreamOffers(LoopTiming.Stream timing, double durationS, boolean shortCut) {
+    this(new LaneViews(timing, durationS, shortCut));
   }
 
   private StreamOffers(LaneViews views) {
-    super(views.delays);
+    super(views.delays, true);
     this.views = views;
   }
 

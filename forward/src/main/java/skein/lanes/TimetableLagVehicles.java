@@ -16,7 +16,6 @@ import skein.forward.Reduced;
  * over the error, and what remains of it. The scalar reference is {@link Reduced}'s vehicle.
  */
 final class TimetableLagVehicles extends TimetableVehicles {
-  private final float perLag;
   private final FloatVector speed;
   private final float[] x = new float[WORLDS],
       y = new float[WORLDS],
@@ -25,14 +24,8 @@ final class TimetableLagVehicles extends TimetableVehicles {
       errorX = new float[WORLDS],
       errorY = new float[WORLDS];
 
-  /**
-   * @param model lag above 0
-   */
   TimetableLagVehicles(Duelist duelist, Reduced model) {
     super(duelist);
-    if (!(model.lagS() > 0))
-      throw new IllegalArgumentException("the kernel needs a lag above 0, got " + model.lagS());
-    perLag = (float) (1 / model.lagS());
     speed = constant((float) (duelist.speed() * model.gain()));
   }
 
@@ -53,7 +46,7 @@ final class TimetableLagVehicles extends TimetableVehicles {
   @Override
   void look(float[] times, int at, int into, boolean withVelocity) {
     lookAtPosition(into, times[at], times[at + 1]);
-    if (withVelocity) lookAtVelocity(into, times[at + 1]);
+    if (withVelocity) lookAtVelocity(into, times[at + 2]);
   }
 
   private void lookAtPosition(int into, float dtS, float gainS) {
@@ -68,9 +61,8 @@ final class TimetableLagVehicles extends TimetableVehicles {
     }
   }
 
-  private void lookAtVelocity(int into, float gainS) {
-    // What is left of the error, for the error's way is lag times what has died away.
-    FloatVector keep = constant(1 - gainS * perLag);
+  private void lookAtVelocity(int into, float keepShare) {
+    FloatVector keep = constant(keepShare);
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector.fromArray(SPECIES, errorX, i)
           .fma(keep, FloatVector.fromArray(SPECIES, askedX, i))

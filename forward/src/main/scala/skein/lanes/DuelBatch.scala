@@ -1,17 +1,16 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, QuadrotorResponse, Reduced, VelocityResponse}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, QuadrotorResponse, VelocityResponse}
 import skein.policy.Policy
 import skein.simd.LaneMath
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
-  * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes with every model of a lag
-  * and with the quadrotor, under any loop ([[TimetableKernel]]); other worlds with these models under `stream`,
-  * `sequential` and `futures` ([[LoopDuelKernel]], and [[StreamDuelKernel]] where it can). Other worlds' quadrotors fly by lanes under the scalar loops
-  * ([[QuadrotorBatch]]). All else flies by the scalar reference ([[Rollout]]). Which engine flies a world depends on the
-  * world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
-  * One call at a time.
+  * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by [[TimetableKernel]],
+  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[QuadrotorBatch]]). All
+  * else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the table. Which engine flies a world depends on
+  * the world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
+  * order. One call at a time.
   *
   * @param duel
   *   start, speeds and duration; the policies come from the worlds
@@ -34,18 +33,19 @@ final class DuelBatch(
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
-    val alone: DuelFlyer  = (timing, model) match
-      case _ if plant.isLeft                             => scalar
-      case (stream: LoopTiming.Stream, reduced: Reduced) =>
-        StreamFlyer(duel, stream, reduced, LoopFlyer(duel, timing, model, scalar))
-      case (_, quadrotor: QuadrotorResponse) => QuadrotorBatch(duel, timing, quadrotor)
-      case _                                 => LoopFlyer(duel, timing, model, scalar)
+    val alone: DuelFlyer  = model match
+      case _ if plant.isLeft            => scalar
+      case quadrotor: QuadrotorResponse => QuadrotorBatch(duel, timing, quadrotor)
+      case _                            => LoopFlyer(duel, timing, model, scalar)
     val together: DuelFlyer = lanes match
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
       case _           => alone
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
+
+  /** A world that waits meets no delays: all worlds share their episode. */
+  private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
 
   /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
@@ -55,10 +55,10 @@ final class DuelBatch(
     *   that the worlds fly over: where delays are long for the period, or change in stretches, no lanes know them
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
-    lanesOf(pursuer, evader, shareEpisodes) match
+    lanesOf(pursuer, evader, shares(shareEpisodes)) match
       case Left(reason) => s"scalar: $reason"
       case Right(lanes) =>
-        val refused = refusals(shareEpisodes, links)
+        val refused = refusals(shares(shareEpisodes), links)
         if refused.isEmpty then s"SIMD, $lanes"
         else if refused.size == links.size then s"scalar: ${refused.head}"
         else
@@ -66,7 +66,7 @@ final class DuelBatch(
 
   /** Whether all worlds of these policies fly by lanes, over any of the links. */
   def fliesByLanes(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): Boolean =
-    lanesOf(pursuer, evader, shareEpisodes).isRight && refusals(shareEpisodes, links).isEmpty
+    lanesOf(pursuer, evader, shares(shareEpisodes)).isRight && refusals(shares(shareEpisodes), links).isEmpty
 
   /** Why no lanes fly over links, for each link over which none do. */
   private def refusals(shareEpisodes: Boolean, links: Seq[Delays]): Seq[String] = model match
@@ -78,10 +78,8 @@ final class DuelBatch(
         case _ => Some("worlds of their own fly by lanes where a link's delays do not come in stretches")
 
   /** Why worlds with delays of their own do not fly by lanes over a link this slow. */
-  private def refusal(maxDelayS: Double): Option[String] = (timing, model) match
-    case (stream: LoopTiming.Stream, reduced: Reduced)
-        if StreamDuelKernel.refusal(stream, maxDelayS, reduced) == null => None
-    case _ => Option(LoopDuelKernel.refusal(timing, maxDelayS, model))
+  private def refusal(maxDelayS: Double): Option[String] =
+    Option(LoopDuelKernel.refusal(timing, maxDelayS, model))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
@@ -115,12 +113,17 @@ final class DuelBatch(
       isCancelled: () => Boolean = () => false
   ): DuelOutcomes =
     val outcomes = DuelOutcomes(worlds.size)
+    val together = shares(worlds.shareEpisodes)
     val batches  =
       if worlds.shareEpisodes then
         WorldBatches.byEpisode(worlds.size, worlds.link, worlds.key, workers.head.together.batch)
-      else WorldBatches.inOrder(worlds.size, workers.head.alone.batch)
+      else
+        WorldBatches.inOrder(
+          worlds.size,
+          (if together then workers.head.together else workers.head.alone).batch
+        )
     outcomes.flown = LaneThreads.run(workers, batches, isCancelled, onProgress): (worker, numbers) =>
-      val flyer = if worlds.shareEpisodes then worker.together else worker.alone
+      val flyer = if together then worker.together else worker.alone
       flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
     outcomes
 

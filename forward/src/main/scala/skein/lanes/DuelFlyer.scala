@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced, Rollout, VelocityResponse}
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponse}
 import skein.policy.Policy
 
 /** Flies a batch of worlds on one thread. Mutable. */
@@ -64,20 +64,18 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       // Lanes that no world needs fly the last one again.
       for lane <- filled until batch do put(lane, worlds, ofLane(filled - 1))
       fly(captureRadiusM)
+      val flown = kernel
       for lane <- 0 until filled do
         val world = ofLane(lane)
-        into.minDistanceM(world) = kernel.minDistance(lane)
-        into.meanDistanceM(world) = kernel.meanDistance(lane)
-        into.meanLast10sM(world) = kernel.meanLast10s(lane)
-        into.captureS(world) = kernel.captureS(lane)
-        into.pursuerEffortRad(world) = kernel.pursuerEffortRad(lane)
-        into.evaderEffortRad(world) = kernel.evaderEffortRad(lane)
+        into.minDistanceM(world) = flown.minDistance(lane)
+        into.meanDistanceM(world) = flown.meanDistance(lane)
+        into.meanLast10sM(world) = flown.meanLast10s(lane)
+        into.captureS(world) = flown.captureS(lane)
+        into.pursuerEffortRad(world) = flown.pursuerEffortRad(lane)
+        into.evaderEffortRad(world) = flown.evaderEffortRad(lane)
       filled = 0
 
   protected def lanes(pursuer: Policy, evader: Policy): Lanes
-
-  /** Whether the lanes tell policies of this form all that they ask for. */
-  protected def canFly(form: PolicyLanes): Boolean = true
 
   /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
@@ -90,34 +88,13 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     for world <- numbers do
       val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
       val forms             = (PolicyLanes.of(pursuer), PolicyLanes.of(evader))
-      if forms._1.exists(canFly) && forms._2.exists(canFly) && canFly(worlds.link(world)) then
+      if forms._1.isRight && forms._2.isRight && canFly(worlds.link(world)) then
         val chosen = byForm.getOrElseUpdate(forms, lanes(pursuer, evader))
         chosen.add(worlds, world)
         filled += chosen
       else unknown += world
     other.fly(worlds, unknown.result(), captureRadiusM, into)
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
-
-/** By [[StreamDuelKernel]], where a world's link allows. */
-private final class StreamFlyer(duel: Duel, timing: LoopTiming.Stream, model: Reduced, other: DuelFlyer)
-    extends LaneFlyer(other):
-
-  override protected def canFly(form: PolicyLanes): Boolean = !form.needsAges
-
-  protected def canFly(link: Delays): Boolean = link match
-    case table: DelayTable => StreamDuelKernel.canFly(timing, table, model)
-    case _                 => false
-
-  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
-    protected val kernel: StreamDuelKernel = StreamDuelKernel(duel, timing, model, pursuers, evaders, true)
-    private val keys                       = Array.ofDim[Int](batch)
-    private val links                      = Array.ofDim[DelayTable](batch)
-
-    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
-      keys(lane) = worlds.key(world)
-      links(lane) = worlds.link(world).asInstanceOf[DelayTable]
-
-    protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
 /** By [[LoopDuelKernel]], where a world's link allows. */
 private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse, other: DuelFlyer)
@@ -150,7 +127,7 @@ private object LoopFlyer:
   /** One-way, s. */
   private val FastestS = 0.02
 
-/** By [[TimetableKernel]]. All worlds of a batch have one key and one link. */
+/** By [[TimetableKernel]]. All worlds of a batch have one key and one link, or meet no delays. */
 private final class TimetableFlyer(
     duel: Duel,
     timing: LoopTiming,
@@ -168,8 +145,9 @@ private final class TimetableFlyer(
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then
         val (link, key) = (worlds.link(world), worlds.key(world))
+        val episode     = if timing.isInstanceOf[LoopTiming.Paused] then () else (link, key)
         timetable =
-          timetables.getOrMake((link, key))(Timetable.of(2, duel.durationS, timing, link, key, model))
+          timetables.getOrMake(episode)(Timetable.of(2, duel.durationS, timing, link, key, model))
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 

@@ -4,15 +4,15 @@ import java.util.Arrays
 import skein.forward.Duelist
 
 /** What several vehicles of a team compute of one view, in many worlds. Mutable. */
-private[lanes] final class TeamPictures(val lanes: TeamLanes):
+private[lanes] final class TeamViews(val lanes: TeamLanes):
   private val worlds = TimetableAgents.WORLDS
-  private val shown  = PictureCall(lanes.shared, lanes.reading)
-  private var last   = TeamPictures.Nothing
+  private val shown  = ViewCall(lanes.shared, lanes.reading)
+  private var last   = TeamViews.Nothing
 
   val values: Array[Float] = Array.ofDim(lanes.shared.outputs * worlds)
   for number <- 0 until lanes.shared.outputs do shown.call.output(number, values, number * worlds)
 
-  def start(): Unit = last = TeamPictures.Nothing
+  def start(): Unit = last = TeamViews.Nothing
 
   /** Computes [[values]] of a view, unless they stand there already. */
   def show(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
@@ -21,18 +21,18 @@ private[lanes] final class TeamPictures(val lanes: TeamLanes):
       shown.look(all, views, view)
       shown.call.apply()
 
-private object TeamPictures:
+private object TeamViews:
   private val Nothing = -1
 
 /** One vehicle of a team in many worlds, each with a start and a policy of its own. */
-private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: TimetableModel, team: TeamPictures)
+private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: TimetableModel, team: TeamViews)
     extends TimetableAgents(model.vehicles(duelist.copy(speed = 1))):
   import TeamLanes.Source
   import TimetableAgents.WORLDS
 
   private val lanes              = team.lanes
   private val bound              = lanes.functions(self)
-  private val decision           = PictureCall(bound, lanes.reading)
+  private val decision           = ViewCall(bound, lanes.reading)
   private val parameters         = Array.ofDim[Float](lanes.parameters(self) * WORLDS)
   private val elapsed            = Array.ofDim[Float](WORLDS)
   private val startCos, startSin = Array.ofDim[Float](WORLDS)

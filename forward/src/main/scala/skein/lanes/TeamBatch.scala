@@ -104,7 +104,7 @@ final class TeamBatch(
   /** Candidates of one form, by lanes. */
   private final class Flight(form: Form, first: TeamCandidate):
     private val count  = form.team.count
-    private val views  = TeamPictures(form.team)
+    private val views  = TeamViews(form.team)
     private val agents = Array.tabulate(count): self =>
       TeamAgents(self, first.engagement.agents(self), form.vehicles, views)
     private val scores  = TeamScores(form.quantities, first.judged)

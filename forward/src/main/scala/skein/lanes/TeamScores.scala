@@ -10,7 +10,7 @@ import skein.forward.Duelist
 private[lanes] final class TeamScores(lanes: QuantityLanes, judged: Vector[Judged]) extends TimetableScores:
   private val worlds     = TimetableAgents.WORLDS
   private val bound      = lanes.function
-  private val shown      = PictureCall(bound, lanes.reading)
+  private val shown      = ViewCall(bound, lanes.reading)
   private val values     = Array.ofDim[Float](judged.size * worlds)
   private val altitudes  = Array.ofDim[Float](lanes.count * worlds)
   private val parameters =

@@ -167,7 +167,7 @@ private[skein] object Timetable:
       note(LOOK, vehicle, timeS, looks(vehicle))
       looks(vehicle)
 
-    private def pictureOf(seen: Array[Int]): Int =
+    private def viewOf(seen: Array[Int]): Int =
       numberOf.getOrElseUpdate(
         mutable.ArraySeq.make(seen), {
           views += seen
@@ -200,7 +200,7 @@ private[skein] object Timetable:
         predictedOf = forecast
         predictedAtNs = atNs
         val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
-        predicted = pictureOf(Array.tabulate(vehicles): vehicle =>
+        predicted = viewOf(Array.tabulate(vehicles): vehicle =>
           val start = newest(vehicle, forecast)
           courses += start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
           looks(vehicle) += 1
@@ -213,7 +213,7 @@ private[skein] object Timetable:
     override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: Grounds): Unit =
       val seen = upon.forecast match
         case Some(forecast) => predict(forecast, atNs)
-        case None => pictureOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+        case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
       note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
       decisions(vehicle) += 1
       view(size - 1) = seen
@@ -238,7 +238,7 @@ private[skein] object Timetable:
       placed(vehicle) = look(vehicle, timeS)
       if vehicle == vehicles - 1 then
         note(SCORE, 0, timeS, 0)
-        view(size - 1) = pictureOf(placed.clone)
+        view(size - 1) = viewOf(placed.clone)
 
   /** A reading in the forecast.
     *
@@ -337,7 +337,7 @@ private[skein] object Timetable:
       val seen = notes.views(view)
       for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
 
-    private def releasePicture(view: Int, at: Int): Unit =
+    private def releaseView(view: Int, at: Int): Unit =
       val seen = notes.views(view)
       for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
 
@@ -378,7 +378,7 @@ private[skein] object Timetable:
       times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
       times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
       took(notes.elapsedS(event))
-      releasePicture(view, at)
+      releaseView(view, at)
       headings(agent).release(own, at)
       if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
       headings(agent).release(own + 1, at)
@@ -417,7 +417,7 @@ private[skein] object Timetable:
       val isLast = Rollout.isLast10s(notes.atS(event), durationS)
       operation(SCORE, 0, tell(view), if isLast then 1 else 0)
       took(notes.atS(event))
-      releasePicture(view, at)
+      releaseView(view, at)
 
     private def operation(
         kind: Int,

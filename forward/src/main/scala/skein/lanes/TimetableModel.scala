@@ -54,8 +54,8 @@ private[skein] object TimetableModel:
     *   or why these do not fly by lanes with this model
     */
   def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, TimetableModel] = model match
-    case lag: Reduced if lag.lagS > 0 => Right(LagTimetables(lag))
-    case ReducedResponse(drag)        =>
+    case lag: Reduced          => Right(LagTimetables(lag))
+    case ReducedResponse(drag) =>
       Either.cond(
         drag.lagS.min(drag.turnLagS) >= LeastLagS,
         DragTimetables(drag),
@@ -76,7 +76,7 @@ private[skein] object TimetableModel:
         )
       yield QuadrotorTimetables(quadrotor)
     case PlantResponse(plant) => PlantLanes.of(plant).map(PlantTimetables(_))
-    case _                    => Left("the lanes fly only models with a lag")
+    case _                    => Left("the lanes do not know the vehicle")
 
   /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
     *
@@ -127,8 +127,8 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val dt = atS - actedS
       into(at) = dt.toFloat
-      into(at + 1) = (-model.lagS * StrictMath.expm1(-dt / model.lagS)).toFloat
-      into(at + 2) = StrictMath.exp(-dt / model.lagS).toFloat
+      into(at + 1) = if model.lagS == 0 then 0 else (-model.lagS * StrictMath.expm1(-dt / model.lagS)).toFloat
+      into(at + 2) = if model.lagS == 0 then 0 else StrictMath.exp(-dt / model.lagS).toFloat
       if acts then actedS = atS
 
 /** By [[TimetableDragVehicles]]. */

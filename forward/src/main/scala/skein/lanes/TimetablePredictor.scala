@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.Duelist
 import skein.units.Span
-import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{ConstantVelocity, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
@@ -38,12 +38,23 @@ private[skein] object TimetablePredictor:
     *   or why this model does not predict by lanes
     */
   def of(model: VehicleModel[?]): Either[String, TimetablePredictor] = model match
-    case ReducedVehicleModel(reduced) if reduced.lagS.min(reduced.turnLagS) >= LeastLagS =>
-      Right(
-        if reduced.dragPerM == 0 && reduced.turnLagS == reduced.lagS then LagPredictor(reduced)
-        else DragPredictor(reduced)
+    case ReducedVehicleModel(lag) if lag.dragPerM == 0 && lag.turnLagS == lag.lagS => Right(LagPredictor(lag))
+    case ReducedVehicleModel(drag)                                                 =>
+      Either.cond(
+        drag.lagS.min(drag.turnLagS) >= LeastLagS,
+        DragPredictor(drag),
+        s"the lanes predict by models with lags of $LeastLagS s at least"
       )
-    case _ => Left(s"the lanes predict by models with lags of ${LeastLagS} s at least")
+    case ConstantVelocity => Right(CoastPredictor)
+    case _                => Left("the lanes predict by reduced models and constant velocity")
+
+/** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
+private object CoastPredictor extends TimetablePredictor, CoursePlotter:
+  def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
+  def plotter: CoursePlotter                               = this
+  def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter = this
+  def predicted(legs: Vector[CoursePlotter.Leg]): Course   =
+    Course(Vector.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
   * command, how long it carries the vehicle, and how much of its velocity is reached.

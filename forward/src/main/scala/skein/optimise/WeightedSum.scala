@@ -67,6 +67,9 @@ object WeightedSum:
   def unit[M](terms: Vector[(Double, M)])(of: M => String): String =
     if terms.map((_, measure) => of(measure)).distinct.size == 1 then of(terms.head._2) else ""
 
+  /** What is measured, for the axis of a picture. */
+  def withUnit(formula: String, unit: String): String = if unit.isEmpty then formula else s"$formula, $unit"
+
   /** As [[parse]] reads it back, without the direction. */
   def formula[M](terms: Vector[(Double, M)])(text: M => String): String = terms.zipWithIndex
     .map:

@@ -9,6 +9,7 @@ import skein.forward.{
   Duel,
   LinkDelays,
   LoopTiming,
+  PlantResponse,
   Reduced,
   ReducedResponse,
   Rollout,
@@ -44,9 +45,7 @@ class DuelBatchSuite extends munit.FunSuite:
   for
     (timing, model) <- Seq(
       LoopTiming.Predictive(predictor = lag.predictor) -> lag,
-      LoopTiming.Paused()                              -> lag,
-      LoopTiming.Stream()                              -> VelocityResponses.Ideal,
-      LoopTiming.Sequential()                          -> VelocityResponses.Ideal
+      LoopTiming.Stream()                              -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
     )
   do
     test(s"single worlds of $timing with $model fly by the scalar reference, and the engine says so"):

@@ -4,11 +4,11 @@ import skein.forward.{
   DelayTable,
   Duel,
   LoopTiming,
-  Outcome,
   Reduced,
   ReducedResponse,
   Rollout,
-  VelocityResponse
+  VelocityResponse,
+  VelocityResponses
 }
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
@@ -20,6 +20,7 @@ class LoopDuelKernelSuite extends munit.FunSuite:
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val models = Seq[(String, VelocityResponse)](
     "lag"           -> lag,
+    "no lag"        -> VelocityResponses.Ideal,
     "drag"          -> ReducedResponse(ReducedModel.AirSim),
     "drag and turn" -> ReducedResponse(ReducedModel(0.95, 0.9, 0.04, 0.5, 0.02))
   )
@@ -82,21 +83,9 @@ class LoopDuelKernelSuite extends munit.FunSuite:
   ): Boolean =
     def scalar(asideM: Double) =
       Rollout(duel(world, durationS, asideM), timing, link, model).fly(keys(world), captureM)
-    val reference          = scalar(0)
-    def off(from: Outcome) = Vector(
-      from.minDistanceM - reference.minDistanceM,
-      from.meanDistanceM - reference.meanDistanceM,
-      from.pursuerEffortRad - reference.pursuerEffortRad,
-      from.evaderEffortRad - reference.evaderEffortRad
-    ).map(_.abs).max
-    val apart = Vector(
-      kernel.minDistance(world) - reference.minDistanceM,
-      kernel.meanDistance(world) - reference.meanDistanceM,
-      kernel.pursuerEffortRad(world) - reference.pursuerEffortRad,
-      kernel.evaderEffortRad(world) - reference.evaderEffortRad
-    ).map(_.abs).max
-    // A decision lies at a threshold if the scalar engine too decides otherwise from hundredths of a millimetre aside.
-    def atThreshold = (-4 to 4).exists(k => off(scalar(k * 5e-6)) >= 2e-3)
+    val reference   = scalar(0)
+    val apart       = ScalarWitness.apart(kernel, world, reference)
+    def atThreshold = ScalarWitness.isAtThreshold(reference)(scalar)
     assert(apart < 2e-3 || atThreshold, s"world $world: $apart apart, and at no threshold")
     apart < 2e-3
 

@@ -61,7 +61,7 @@ class PlantSuite extends munit.FunSuite:
       bicycle.plant,
       shared = true,
       LoopTiming.Predictive()
-    ).startsWith("scalar: the lanes predict"))
+    ).startsWith("scalar: the lanes predict by reduced models and constant velocity"))
     val told = engine(Gusty, shared = true)
     assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
 

@@ -36,7 +36,7 @@ class TeamAgreementSuite extends munit.FunSuite:
       val key     = WorldRandom.key(2, 0, 0)
       val model   = TimetableModel.of(plant, drawn.head.agents).fold(fail(_), identity)
       val lanes   = TeamLanes.of(policies(drawn.head)).fold(throw _, identity)
-      val team    = TeamPictures(lanes)
+      val team    = TeamViews(lanes)
       val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))
       val numbers =
         drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.parametersOf(self, policy)))
@@ -142,7 +142,7 @@ object TeamAgreementSuite:
         val either = of(false)
         Difference(self, k, apart(either), either.undecided(north))
 
-  final class Logged(self: Int, duelist: Duelist, model: TimetableModel, team: TeamPictures)
+  final class Logged(self: Int, duelist: Duelist, model: TimetableModel, team: TeamViews)
       extends TeamAgents(self, duelist, model, team):
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 

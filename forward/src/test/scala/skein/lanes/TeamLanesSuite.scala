@@ -102,7 +102,7 @@ class TeamLanesSuite extends munit.FunSuite:
     val model  = TimetableModel.under(timing, plant, all.head.agents).fold(fail(_), identity)
     val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
     val count  = lanes.count
-    val team   = TeamPictures(lanes)
+    val team   = TeamViews(lanes)
     val agents = Array.tabulate(count)(self => TeamAgents(self, all.head.agents(self), model, team))
     val places = PlacesByWorld(count)
     for (each, world) <- all.zipWithIndex do

@@ -2,7 +2,7 @@ package skein.learn
 
 import java.nio.ByteBuffer
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
-import skein.policy.{LearnedPolicy, NeuralShape}
+import skein.policy.LearnedPolicy
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
@@ -51,6 +51,9 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
 object DuelTask:
   private val RewardScale = 0.1f
 
+  /** Of a distance, as environments reward it once a period. */
+  private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
+
   /** @param opponent
     *   of the other role; without one, as the settings name it
     * @return
@@ -87,9 +90,6 @@ object DuelTask:
         (0 until widths(layer)).map(input => actor.parameters(actor.weightsAt(layer) + input * outs + neuron))
       weight <- weights :+ actor.parameters(actor.biasesAt(layer) + neuron)
     yield weight.toDouble
-
-  /** What the hidden layers of an actor make a policy. */
-  def shape(hidden: Vector[Int]): NeuralShape = NeuralShape(hidden, LearnedPolicy.Inputs)
 
   /** Of what is seen, how long ago things were: a learner that is shown no ages does not depend upon them. */
   val times: Range = 6 until 9

@@ -14,7 +14,7 @@ class DuelTaskSuite extends munit.FunSuite:
 
   test("a policy made of an actor decides as the actor"):
     val actor  = drawn(16, 8)
-    val policy = LearnedPolicy(DuelTask.shape(Vector(16, 8)), DuelTask.parameters(actor), 1, 0)
+    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 8)), DuelTask.parameters(actor), 1, 0)
     val seen   = PlanarObservation(3, 9, -4, 2, 0.7, -2, 0.1, 0.15, 0.2)
     val pass   = Pass(actor.widths, 1)
     for (number, at) <- seen.fromOwnHeading.zip(LearnedPolicy.scales).map(_ / _).zipWithIndex do
@@ -27,7 +27,7 @@ class DuelTaskSuite extends munit.FunSuite:
     test(s"the $side's episode is that of its policy in forward simulation"):
       val actor      = drawn(8)
       val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
-      val policy     = LearnedPolicy(DuelTask.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
+      val policy     = LearnedPolicy(LearnedPolicy.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
       // Without a network, delays are no matter of chance.
       val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
       val task     = DuelTask.of(settings, None, 1, 1).fold(fail(_), identity)
@@ -50,7 +50,7 @@ class DuelTaskSuite extends munit.FunSuite:
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
   test("a learned policy flies by lanes as by the scalar reference"):
-    val policy = LearnedPolicy(DuelTask.shape(Vector(16, 16)), DuelTask.parameters(drawn(16, 16)), 1, 0)
+    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), DuelTask.parameters(drawn(16, 16)), 1, 0)
     val duel   = Duel.paperAt(20, 20)
     val worlds = new DuelWorlds:
       def size                        = 4

@@ -9,7 +9,7 @@ enum Fault:
   /** For this long nothing arrives; then everything that was sent meanwhile does, in order. */
   case Stall(lasts: Span)
 
-  /** Every open connection breaks at once, and both sides are told. New ones may be opened. */
+  /** Every open connection breaks at once, with an error on both sides. New ones may be opened. */
   case Reset
 
   /** The other side is gone without a word: for this long whatever is sent, or under way, is lost and nobody is told

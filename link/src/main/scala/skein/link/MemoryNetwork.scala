@@ -18,7 +18,8 @@ import skein.units.*
   *
   * A host's name serves as its address; `127.0.0.1` and `localhost` mean the host itself. Connecting takes a round
   * trip of the link. As with TCP, each direction of a connection closes for itself; a side that fails breaks both;
-  * while a host is silent, nobody is told, and attempts to connect end with [[TransportError.NoAnswer]].
+  * while a host is silent, connections stay open without an error, and attempts to connect end with
+  * [[TransportError.NoAnswer]].
   *
   * On one thread everything follows from the seed.
   *

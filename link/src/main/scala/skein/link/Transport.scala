@@ -5,12 +5,12 @@ import org.apache.pekko.util.ByteString
 import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.Future
 
-/** A host and port; `127.0.0.1` unless somebody asked for more. */
+/** A host and port. */
 final case class Address(host: String, port: Int):
   override def toString: String = s"$host:$port"
 
 /** Where connections come from: TCP in live flight, the in-memory network in virtual time. Everything above it works
-  * on byte streams and cannot tell which it has.
+  * on byte streams and is the same for both.
   */
 trait Transport:
 

@@ -25,6 +25,7 @@ final class MavlinkLink private (
     origin: Option[GeoLocation],
     clock: Clock,
     settings: OffboardSettings,
+    isDatagrams: Boolean,
     queue: BoundedSourceQueue[ByteString]
 )(using system: ActorSystem):
   import MavlinkLink.*
@@ -73,7 +74,8 @@ final class MavlinkLink private (
 
   private def receive(bytes: ByteString): Unit =
     val now    = clock.now()
-    val frames = synchronized(reader.read(bytes.toArrayUnsafe()))
+    val frames = synchronized:
+      if isDatagrams then reader.readDatagram(bytes.toArrayUnsafe()) else reader.read(bytes.toArrayUnsafe())
     for frame <- frames if frame.component == 1 && controls.contains(frame.system) do
       val isNew = controls(frame.system).heardAt.isEmpty
       change(frame.system)(_.heard(frame.message, now))
@@ -146,6 +148,8 @@ object MavlinkLink:
     *   takes bytes for the vehicles and gives theirs
     * @param within
     *   which all are to be heard
+    * @param isDatagrams
+    *   whether it gives datagrams, of which each ends where it ends, and not pieces of a stream
     * @return
     *   or which vehicles were not heard
     */
@@ -155,11 +159,12 @@ object MavlinkLink:
       clock: Clock,
       origin: Option[GeoLocation] = None,
       settings: OffboardSettings = OffboardSettings(),
-      within: Span = Span.ofSeconds(15)
+      within: Span = Span.ofSeconds(15),
+      isDatagrams: Boolean = false
   )(using system: ActorSystem): Future[Either[VehicleError, MavlinkLink]] =
     import system.dispatcher
     val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
-    val link         = MavlinkLink(systems, origin, clock, settings, queue)
+    val link         = MavlinkLink(systems, origin, clock, settings, isDatagrams, queue)
     val ended        = out.via(connection).toMat(Sink.foreach(link.receive))(Keep.right).run()
     ended.onComplete: how =>
       link.end(VehicleError.Lost(

@@ -9,7 +9,8 @@ import skein.units.*
 
 /** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode. Not for real aircraft.
   *
-  * A reading is the next sample that the vehicle tells. An action ends as replaced when the vehicle has its successor.
+  * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has received its
+  * successor.
   */
 final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSystem) extends VehiclePort:
   import system.dispatcher

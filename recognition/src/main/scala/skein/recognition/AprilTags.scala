@@ -33,7 +33,7 @@ final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
   * @param facingFrd
   *   which way it faces: of unit length, away from what it is on
   * @param deviationPx
-  *   how exactly its edges were found, standard deviation
+  *   standard deviation with which its edges were found
   */
 final case class Tag(
     id: Long,
@@ -44,8 +44,7 @@ final case class Tag(
     deviationPx: Double
 ):
 
-  /** Azimuth and elevation vary as the edges do, the range by as much of itself as the edges vary of the tag's apparent
-    * width.
+  /** Azimuth and elevation deviate as the edges do. The range deviates by the same share as the tag's apparent width.
     */
   def sighting: Sighting =
     val angle   = Radians(deviationPx / camera.focalPx)
@@ -56,16 +55,16 @@ final case class Tag(
       (azimuth = angle, elevation = angle, range = Metres(range * deviationPx / widthPx))
     )
 
-  /** Where it was when the image was exposed, which says where its camera was. */
+  /** The tag's position at the exposure, by the camera's pose that the image carries. */
   def measured(image: Stamped[Image]): Measurement =
     sighting.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
-/** Finds AprilTags of the family 36h11 in raw pictures, by BoofCV. Keeps memory of its own: one for each thread.
+/** Finds AprilTags of the family 36h11 in raw images, by BoofCV. Keeps memory of its own: make one for each thread.
   *
   * @param size
   *   of the tags' black squares, from edge to edge
   * @param deviationPx
-  *   how exactly edges are found; `AprilTagsSuite` holds the default to what is found in rendered pictures
+  *   standard deviation with which edges are found; `AprilTagsSuite` checks the default on rendered images
   */
 final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = AprilTags.DeviationPx):
   private val gray                               = GrayU8(camera.width, camera.height)
@@ -84,7 +83,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     )
     made
 
-  /** All tags in a picture; or why it is none of this camera's. */
+  /** All tags in an image; or why it is not one of this camera's. */
   def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")

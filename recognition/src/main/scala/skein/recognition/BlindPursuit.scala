@@ -15,7 +15,7 @@ import skein.units.*
   * @param takes
   *   how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of times that were measured
   * @param everyMs
-  *   between two pictures
+  *   period of the images
   */
 final case class BlindPursuit(
     blind: Boolean = true,

@@ -38,7 +38,7 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
                   entry.getKey -> OnnxModel.outputOf(entry.getValue.asInstanceOf[OnnxTensor])
               .toMap
 
-  /** Runs it on a picture, brought into the form that the model was trained on. */
+  /** Runs it on an image, brought into the form that the model was trained on. */
   def run(image: Image, form: InputForm): Either[String, Outputs] =
     form.tensor(image).flatMap(run(_, Vector(1, 3, form.height, form.width)))
 
@@ -53,7 +53,7 @@ object OnnxModel:
   private lazy val environment = OrtEnvironment.getEnvironment()
 
   /** @param threads
-    *   that one picture is worked on by; several pictures at once (`Recognise`) need one each
+    *   that work on one image; several images at once (`Recognise`) need one each
     * @return
     *   or why the file is no such model
     */
@@ -101,7 +101,7 @@ object OnnxModel:
     try Right(call)
     catch case error: OrtException => Left(error.getMessage)
 
-/** How a picture becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of each place,
+/** How an image becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of each place,
   * (value − mean) · scale of each channel.
   *
   * @param redFirst

@@ -1,7 +1,7 @@
 package skein.record
 
 import java.io.IOException
-import java.nio.file.{Files, Path}
+import java.nio.file.{Files, Path, StandardCopyOption}
 import org.duckdb.DuckDBConnection
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
@@ -27,7 +27,18 @@ object McapRecording:
   def write(recording: Path, file: Path): Either[RecordError, Unit] =
     for
       rows <- RecordingReader.records(recording)
-      _    <- attempt(RecordError.ExportFailed(file, _))(McapFile.write(file, options)(write(rows, _)))
+      _    <- attempt(RecordError.ExportFailed(file, _)):
+        if Files.exists(file) && !Files.isRegularFile(file) then McapFile.write(file, options)(write(rows, _))
+        else
+          // What was there stays until all of the new file is.
+          val folder = Files.createTempDirectory(file.toAbsolutePath.getParent, ".skein")
+          val made   = folder.resolve("made.mcap")
+          try
+            McapFile.write(made, options)(write(rows, _))
+            val _ = Files.move(made, file, StandardCopyOption.REPLACE_EXISTING)
+          finally
+            val _ = Files.deleteIfExists(made)
+            Files.delete(folder)
     yield ()
 
   private[record] val options = WriterOptions(library = "skein")
@@ -93,7 +104,8 @@ object McapRecording:
     * text beside the recording meanwhile.
     */
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
-    if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
+    if Files.isDirectory(file) then Left(RecordError.NotARecording(file, "it is a folder"))
+    else if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
     else if Files.exists(recording) then Left(RecordError.AlreadyExists(recording))
     else
       attempt(RecordError.CannotCreate(recording, _)):

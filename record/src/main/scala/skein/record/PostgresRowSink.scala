@@ -10,7 +10,7 @@ import scala.util.control.NonFatal
 
 /** Writes a flight into a Postgres database beside its recording: the same tables, with the same columns, in a schema that
   * bears the flight's name. A thread of its own writes; where the database is slower than the flight, rows beyond
-  * [[PostgresRowSink.Capacity]] are left out, and how many is told at the end.
+  * [[PostgresRowSink.Capacity]] are left out; their number is reported at the end.
   */
 final class PostgresRowSink private (connection: Connection, schema: String, target: PostgresAddress)
     extends RowSink:

@@ -6,7 +6,7 @@ import skein.units.*
 
 /** One row of a recording; each case class below is one table. Column names are the field names with the unit behind
   * them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`, `Mps`, `Rad`,
-  * `RadPerS`. Fields named `validAt` are on the simulator's clock, all other instants on the controller's.
+  * `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other instants on the controller's.
   *
   * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order in
   * which all records of the flight were accepted.
@@ -16,7 +16,7 @@ sealed trait Record
 /** What was flown: exactly one row a recording.
   *
   * @param loop
-  *   the label of a [[LoopKind]], or the name of a loop of somebody's own
+  *   the label of a [[LoopKind]], or the name of a user's own loop
   * @param id
   *   names the flight in tables and pictures, for example `stream-vpn`
   * @param clock
@@ -54,7 +54,7 @@ final case class Parameter(name: String, value: String) extends Record
 /** A vehicle of the flight.
   *
   * @param role
-  *   the name of a [[skein.policy.Role]], or of one of somebody's own
+  *   the name of a [[skein.policy.Role]], Skein's or a user's own
   * @param startNed
   *   the origin of its own frame in the world frame
   */
@@ -126,11 +126,11 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
   * @param trueAge
   *   absent until the clocks' offset is known
   * @param predicted
-  *   where both vehicles were expected to be, if that was decided upon instead of the readings
+  *   the predicted states of both vehicles, if the decision was made from them instead of the readings
   * @param speed
   *   the one chosen; absent where the vehicle always commands its own
   * @param action
-  *   what was decided to do; absent where it is told by heading and speed at the altitude of the start
+  *   the action decided; absent where heading and speed say it, at the altitude of the start
   */
 final case class Decision(
     sequence: Long,
@@ -219,7 +219,7 @@ final case class Observations(
   */
 final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
 
-/** What a decision took for true instead of the readings.
+/** The predicted states that a decision was made from instead of the readings.
   *
   * @param actsAt
   *   when the command was expected to act, on the simulator's clock
@@ -296,12 +296,13 @@ final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instan
 /** One round trip over a link. */
 final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends Record
 
-/** Something that the loop did not want: every drop, skip, timeout, reconnect.
+/** Something out of the ordinary: every drop, skip, timeout, reconnect, pause.
   *
   * @param vehicle
   *   absent where it concerns all
   * @param decision
-  *   where a deadline was missed, the sequence of the decision that the fallback made instead; absent where it made none
+  *   where a deadline was missed, the sequence of the decision that the fallback made instead; absent where it made none.
+  *   Where something was learned, the sequence of the first decision after it
   */
 final case class Event(
     at: Instant,
@@ -328,7 +329,7 @@ enum EndingKind:
   /** It flew its whole time. */
   case Completed
 
-  /** Somebody stopped it. */
+  /** It was stopped from outside. */
   case Stopped
 
   /** It could not go on. */
@@ -381,10 +382,13 @@ enum EventKind:
   /** A call was given up because the flight had ended. */
   case Cancelled
 
+  /** A policy that learns in flight has a new version, or what else its learner says. */
+  case Learned
+
   /** Somebody paused the flight: its vehicles hover and nobody decides, while its time runs on. */
   case Paused
 
-  /** Somebody let a paused flight go on. */
+  /** A paused flight was continued from outside. */
   case Continued
 
   /** The flight ended before its time. */

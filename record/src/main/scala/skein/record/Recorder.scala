@@ -2,7 +2,7 @@ package skein.record
 
 import scala.concurrent.Future
 
-/** Takes down what a flight does. */
+/** Records what a flight does. */
 trait Recorder:
 
   /** Takes one record; never blocks, from any thread. A record that cannot be kept makes [[failure]] complete; after

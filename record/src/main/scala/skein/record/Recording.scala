@@ -21,9 +21,12 @@ final case class Recording(
 
 object Recording:
 
+  /** Parameters that came in flight count as the heading's, as in a file. */
   def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
-      heading,
+      heading.copy(parameters = heading.parameters ++ records.collect { case parameter: Parameter =>
+        parameter
+      }),
       records.collect { case reading: Reading => reading }.toVector,
       records.collect { case decision: Decision => decision }.toVector,
       records.collect { case sighting: Sighting => sighting }.toVector,

@@ -41,7 +41,8 @@ object RecordingReader:
   private[record] def withRecording[A](file: Path)(
       action: Connection => Either[RecordError, A]
   ): Either[RecordError, A] =
-    if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
+    if Files.isDirectory(file) then Left(RecordError.NotARecording(file, "it is a folder"))
+    else if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
     else if !isDuckDb(file) then Left(RecordError.NotARecording(file, "it is not a DuckDB file"))
     else
       RecordingFile

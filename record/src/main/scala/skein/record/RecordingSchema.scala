@@ -14,9 +14,9 @@ object RecordingSchema:
   private val introduction =
     """# What a recording contains
       |
-      |A recording is one DuckDB file. Open it with any DuckDB client, or turn it into Parquet: `./skein export FILE --parquet DIR`, or look at it in [Foxglove](guides/foxglove.md): `./skein export FILE --mcap FILE`.
+      |A recording is one DuckDB file. Open it with any DuckDB client. `./skein export FILE --parquet DIR` turns it into Parquet, `./skein export FILE --mcap FILE` into a file for [Foxglove](guides/foxglove.md).
       |
-      |Units are the ends of the names: `Ns` whole nanoseconds, `Ms` milliseconds, `M` metres, `Mps` metres per second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are the world frame; `Front`, `Right`, `Down` the body's. Columns that begin with `validAt` are on the simulator's clock, all other instants on the controller's. Every table begins with `row`, the order in which all rows of the flight were accepted.
+      |Names of columns end in their unit: `Ns` whole nanoseconds, `Ms` milliseconds, `M` metres, `Mps` metres per second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are the world frame; `Front`, `Right`, `Down` the body's. `validAtNs` (also `ownValidAtNs` and the like), `actsAtNs` and `predictedForNs` are on the simulator's clock, all other instants on the controller's. `sequence` counts the rows of a vehicle; other tables refer to it. Every table begins with `row`, the order in which all rows of the flight were accepted.
       |
       |```sql
       |-- how old the data of each vehicle's decisions was, by the simulator's clock
@@ -26,21 +26,22 @@ object RecordingSchema:
 
   private def meaning(table: String): String = table match
     case "flight"    => "What was flown: one row."
-    case "parameter" => "Run parameters without a column in `flight`."
-    case "vehicle"   => "One row a vehicle; `start…` is the origin of its own frame in the world frame."
-    case "reading"   => "One row an answer of the simulator."
+    case "parameter" => "Further settings of the flight, such as those of its scenario."
+    case "vehicle"   => "One row for each vehicle; `start…` is its own frame's origin in the world frame."
+    case "reading"   => "One row for each answer of the simulator."
     case "decision"  =>
-      "One row a decision, with the readings it was made from. `own…Age` counts from arrival, as the paper published it; `ownTrueAge` from the valid time."
+      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count from a reading's arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the bound of their error. `relativeX` and `relativeY` are the evader seen from the pursuer, along its commanded heading and to the right of it (for other roles, the opponent seen from the vehicle). `elapsed` is the time since the vehicle's last decision, `actsAt` when the command acts by the forecast."
     case "sighting"    => "The readings of the other vehicles that a decision for a team was made from."
-    case "measurement" => "One row an answer of a sensor; `quantities` names its numbers, with their units."
+    case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
       "The measurements that a decision was made from: one row for each sensor that its policy reads."
-    case "plan"            => "How a decision was planned."
-    case "prediction"      => "Predictions whose moment was read, with their error."
-    case "command"         => "One row a command as it was sent."
+    case "plan"            => "How a plan was found: candidates, slices of each search, cost, broken limits."
+    case "prediction"      => "Predictions that a later reading could be compared with, and their errors."
+    case "command"         => "One row for each command as it was sent."
     case "acknowledgement" => "How each command ended."
     case "latency"         => "Round trips over the link."
-    case "event"           => "What the loop did not want: every drop, skip, time-out, reconnect."
-    case "truth"           => "Where vehicles were, where that is sampled apart from the readings."
-    case "ending"          => "How the flight ended: one row, none where the recording broke off before."
-    case other             => throw IllegalArgumentException(s"table $other has no description")
+    case "event"           =>
+      "What the loop did not want: every drop, skip, time-out, reconnect; and what a learner beside it says."
+    case "truth"  => "Where vehicles were, where that is sampled apart from the readings."
+    case "ending" => "How the flight ended: one row, none where the recording broke off before."
+    case other    => throw IllegalArgumentException(s"table $other has no description")

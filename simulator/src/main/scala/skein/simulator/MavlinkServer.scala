@@ -29,7 +29,7 @@ final case class MavlinkPort(at: Address, tells: Option[Address] = None, systems
 
 object MavlinkSettings:
   /** As PX4's simulation has them (`px4-rc.mavlink`): a ground station finds all vehicles at its port 14550, a program
-    * vehicle `i` at 14540 + i, both on this machine; and whoever speaks to 18570 first has all, too.
+    * vehicle `i` at 14540 + i, both on this machine; and whoever speaks to 18570 has all, too.
     */
   def asPx4(vehicles: Int, host: String = "127.0.0.1"): MavlinkSettings = MavlinkSettings(udp =
     MavlinkPort(Address(host, GroundStation), Some(Address("127.0.0.1", 14550))) +:
@@ -47,7 +47,15 @@ object MavlinkSettings:
 
 /** What is done with what peers send. Each call may come from any thread. */
 private[simulator] trait MavlinkPeers:
-  def joined(channel: Long, systems: Vector[Int], out: BoundedSourceQueue[ByteString]): Unit
+  /** @param isDatagrams
+    *   whether it speaks by datagrams, and not by a stream
+    */
+  def joined(
+      channel: Long,
+      systems: Vector[Int],
+      isDatagrams: Boolean,
+      out: BoundedSourceQueue[ByteString]
+  ): Unit
 
   /** Completes `done` when it has been dealt with. */
   def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit
@@ -59,7 +67,14 @@ private[simulator] trait MavlinkPeers:
   * @param address
   *   where it listens by the simulator's transport
   */
-private[simulator] final class MavlinkServer(val address: Option[Address], closing: () => Future[Done]):
+private[simulator] final class MavlinkServer(
+    val address: Option[Address],
+    sockets: Vector[UdpSocket],
+    closing: () => Future[Done]
+):
+  /** Datagrams of peers beyond the limit of a port, or for which the simulator was not quick enough. */
+  def ignored: Long = sockets.map(_.dropped.sum).sum
+
   def close(): Future[Done] = closing()
 
 private[simulator] object MavlinkServer:
@@ -83,13 +98,13 @@ private[simulator] object MavlinkServer:
     val numbers            = AtomicLong()
     val present            = AtomicInteger()
 
-    def serve(systems: Vector[Int])(flow: Flow[ByteString, ByteString, ?]): Unit =
+    def serve(systems: Vector[Int], isDatagrams: Boolean)(flow: Flow[ByteString, ByteString, ?]): Unit =
       val (queue, out) = Source.queue[ByteString](Waiting).preMaterialize()
       val channel      = numbers.getAndIncrement()
       if present.incrementAndGet() > MostPeers then
         counters.turnedAway.incrementAndGet(): Unit
         queue.complete()
-      else peers.joined(channel, systems, queue)
+      else peers.joined(channel, systems, isDatagrams, queue)
       out
         .via(switch.flow)
         .via(flow)
@@ -106,8 +121,8 @@ private[simulator] object MavlinkServer:
       settings.udp.foldLeft(Vector.empty[UdpSocket]): (opened, port) =>
         try
           val socket = UdpSocket.bind(port.at)
-          socket.onPeer(incoming => serve(port.systems)(incoming.flow))
-          port.tells.foreach(to => serve(port.systems)(socket.peer(to)))
+          socket.onPeer(incoming => serve(port.systems, isDatagrams = true)(incoming.flow))
+          port.tells.foreach(to => serve(port.systems, isDatagrams = true)(socket.peer(to)))
           opened :+ socket
         catch
           case error: Throwable =>
@@ -119,7 +134,7 @@ private[simulator] object MavlinkServer:
       case Some(at) =>
         transport
           .listen(at)
-          .toMat(Sink.foreach(incoming => serve(Vector.empty)(incoming.flow)))(Keep.left)
+          .toMat(Sink.foreach(incoming => serve(Vector.empty, isDatagrams = false)(incoming.flow)))(Keep.left)
           .run()
           .map(Some(_))
 
@@ -128,6 +143,7 @@ private[simulator] object MavlinkServer:
       listening <- listen()
     yield MavlinkServer(
       listening.map(_.address),
+      sockets,
       () =>
         switch.shutdown()
         sockets.foreach(_.close())

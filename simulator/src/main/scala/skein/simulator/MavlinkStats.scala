@@ -10,8 +10,10 @@ import java.util.concurrent.atomic.AtomicLong
   *   datagrams to peers that did not take them in time
   * @param turnedAway
   *   peers beyond the most at a time
+  * @param ignored
+  *   datagrams of peers beyond the most at a port, or that came faster than they were dealt with
   */
-final case class MavlinkStats(damaged: Long = 0, dropped: Long = 0, turnedAway: Long = 0)
+final case class MavlinkStats(damaged: Long = 0, dropped: Long = 0, turnedAway: Long = 0, ignored: Long = 0)
 
 private[simulator] final class MavlinkCounters:
   val damaged: AtomicLong    = AtomicLong()

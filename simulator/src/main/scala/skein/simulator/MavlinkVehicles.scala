@@ -25,10 +25,12 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
 
   /** @param systems
     *   that the peer sees; none is all
+    * @param isDatagrams
+    *   whether it speaks by datagrams, and not by a stream
     */
-  def join(channel: Long, systems: Vector[Int]): Unit =
+  def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
     val seen = if systems.isEmpty then autopilots.map(_.system) else systems
-    channels(channel) = Channel(seen, sinceBoot)
+    channels(channel) = Channel(seen, sinceBoot, isDatagrams)
 
   def leave(channel: Long): Unit = channels.remove(channel).foreach(gone => damagedBefore += gone.damaged)
 
@@ -36,7 +38,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
   def receive(channel: Long, bytes: Array[Byte]): Unit =
     for
       peer  <- channels.get(channel)
-      frame <- peer.reader.read(bytes)
+      frame <- peer.read(bytes)
       (system, component) = targetOf(frame.message)
       one <- autopilots
       if peer.systems.contains(

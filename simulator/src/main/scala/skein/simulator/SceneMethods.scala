@@ -105,7 +105,7 @@ private[simulator] object SceneMethods:
 
   private val LongestName = 100
 
-  /** The world has no edge; this far from the origin, and this high, is told, m. */
+  /** Extent that is answered, from the origin and upwards, m; the world itself has no edge. */
   private val ExtentM = 10_000.0
 
   private val Nowhere =

@@ -84,8 +84,8 @@ private[simulator] object Shots:
     val asked = requests.map(wanted(simulation, vehicle, _))
     val size  = asked.iterator.collect { case Right(shot) => bytesOf(shot) }.sum
     if requests.size > MostPictures then
-      Left(s"at most $MostPictures pictures are drawn at once, not ${requests.size}")
-    else if size > MostBytes then Left(s"pictures of $size bytes in one answer; at most $MostBytes are sent")
+      Left(s"at most $MostPictures images are rendered at once, not ${requests.size}")
+    else if size > MostBytes then Left(s"images of $size bytes in one answer; at most $MostBytes are sent")
     else
       asked.collectFirst { case Left(refusal) => refusal }.toLeft:
         Shots(

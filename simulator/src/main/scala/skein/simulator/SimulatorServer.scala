@@ -46,7 +46,7 @@ final class SimulatorServer private (
 
   def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
 
-  def mavlinkStats: MavlinkStats = counters.stats
+  def mavlinkStats: MavlinkStats = counters.stats.copy(ignored = mavlink.fold(0L)(_.ignored))
 
   /** Completes if it ends without having been closed, with the reason. */
   val failed: Future[Throwable] =
@@ -115,8 +115,12 @@ object SimulatorServer:
       system.log.error(failure, "the simulator has failed; it closes its port")
       server.close()
     val peers = new MavlinkPeers:
-      def joined(channel: Long, systems: Vector[Int], out: BoundedSourceQueue[ByteString]): Unit =
-        simulator ! Message.Joined(channel, systems, out)
+      def joined(
+          channel: Long,
+          systems: Vector[Int],
+          isDatagrams: Boolean,
+          out: BoundedSourceQueue[ByteString]
+      ): Unit = simulator ! Message.Joined(channel, systems, isDatagrams, out)
       def heard(channel: Long, bytes: Array[Byte], done: Promise[Done]): Unit =
         simulator ! Message.Heard(channel, bytes, done)
       def left(channel: Long): Unit = simulator ! Message.Left(channel)
@@ -141,7 +145,12 @@ object SimulatorServer:
     case Stop
 
     /** Peers of MAVLink. */
-    case Joined(channel: Long, systems: Vector[Int], out: BoundedSourceQueue[ByteString])
+    case Joined(
+        channel: Long,
+        systems: Vector[Int],
+        isDatagrams: Boolean,
+        out: BoundedSourceQueue[ByteString]
+    )
     case Heard(channel: Long, bytes: Array[Byte], done: Promise[Done])
     case Left(channel: Long)
 
@@ -214,11 +223,11 @@ object SimulatorServer:
             simulation.advance(clock.now())
             answer.success(truth): Unit
             goOn()
-        case Message.Stop                          => Behaviors.stopped
-        case Message.Joined(channel, systems, out) =>
+        case Message.Stop                                       => Behaviors.stopped
+        case Message.Joined(channel, systems, isDatagrams, out) =>
           outs.update(channel, out)
           orEnd:
-            mavlink.foreach(_.join(channel, systems))
+            mavlink.foreach(_.join(channel, systems, isDatagrams))
             goOn()
         case Message.Heard(channel, bytes, done) =>
           orEnd:

@@ -7,7 +7,7 @@ import skein.units.*
 
 /** The simulator's vehicles by MAVLink, without sockets and without a clock. */
 class MavlinkVehiclesSuite extends munit.FunSuite:
-  private final class Flown(vehicles: Int = 1):
+  private final class Flown(vehicles: Int = 1, isDatagrams: Boolean = false):
     val simulation = Simulation(
       SimulatorSettings(WorldSettings(Vector.tabulate(vehicles)(index =>
         VehicleSettings(s"v$index", Vector3(0, 10 * index, 0))
@@ -19,7 +19,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     private val writer  = FrameWriter(245, 190)
     var heard           = Vector.empty[Frame]
     var now             = Instant.Epoch
-    mavlink.join(0, Vector.empty)
+    mavlink.join(0, Vector.empty, isDatagrams)
 
     def send(message: Message): Unit = send(writer.write(message))
 
@@ -53,6 +53,31 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       flown.send(command(system, 22, 0, 0, 0, 0, 0, 0, Float.NaN))
     flown.run(Span.ofSeconds(8))
     flown
+
+  test("a datagram that was cut off holds back nothing of those behind it"):
+    val flown = Flown(isDatagrams = true)
+    flown.send(Array(0xfd, 0xff, 0, 0, 0, 0xff, 0xbe, 0x4c, 0, 0, 1, 2, 3).map(_.toByte))
+    flown.send(command(1, 400, 1))
+    assertEquals(flown.last[CommandAck].result, 0)
+
+  test("numbers that no vehicle can fly by are refused with a text, and nothing of them is flown"):
+    val flown = takenOff()
+    for (order, result) <- Seq(
+        command(1, 511, 32, Float.NaN)                                    -> 2,
+        command(1, 511, 32, Float.PositiveInfinity)                       -> 2,
+        command(1, 192, -1, 0, 0, 3e38f, Float.NaN, Float.NaN, Float.NaN) -> 2,
+        command(1, 192, -1, 0, 0, Float.NaN, 3e38f, Float.NaN, Float.NaN) -> 2,
+        command(1, 192, -1, 0, 0, Float.NaN, Float.NaN, Float.NaN, 3e38f) -> 2,
+        command(1, 22, 0, 0, 0, 0, 0, 0, 3e38f)                           -> 2
+      )
+    do
+      flown.send(order)
+      assertEquals(flown.last[CommandAck].result, result, order.toString)
+    flown.send(SetAttitudeTarget(0, 1, 1, 128, Vector(1, 0, 0, 0), 3e38f, 0, 0, 0.5f))
+    assert(clue(flown.last[Statustext].text).contains("attitude"))
+    val before = flown.last[LocalPositionNed]
+    flown.run(Span.ofSeconds(3))
+    assertEqualsFloat(flown.last[LocalPositionNed].z, before.z, 0.3f)
 
   test("a vehicle arms, takes off, flies a velocity, returns, lands and disarms; all of it is told"):
     val flown = takenOff()

@@ -105,7 +105,7 @@ class PictureSuite extends munit.FunSuite:
       10
     )).contains("an image type is 0 to 9, not 10"))
     assert(refusal(request(ImageType.Scene, camera = "nosuch")).contains("No camera with name nosuch exist"))
-    assert(refusal(Seq.fill(65)(request(ImageType.Scene))*).contains("at most 64 pictures"))
+    assert(refusal(Seq.fill(65)(request(ImageType.Scene))*).contains("at most 64 images"))
 
   test("detections are the objects looked for that show a pixel, with the box around their pixels"):
     val bench = this.bench()

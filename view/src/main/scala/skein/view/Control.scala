@@ -2,7 +2,7 @@ package skein.view
 
 /** What may be done to a flight from the page. */
 enum Control:
-  /** Its vehicles hover and nobody decides, until it continues or ends. */
+  /** Its vehicles hover and no decisions are made, until it continues or ends. */
   case Pause
 
   case Continue

@@ -4,7 +4,7 @@ import org.apache.pekko.http.scaladsl.model.*
 import org.apache.pekko.http.scaladsl.model.headers.RawHeader
 import scala.util.Using
 
-/** The page and what it needs. It asks nobody else for anything, and its browser is told to hold it to that. */
+/** The page and its files. It loads nothing from elsewhere, and its Content-Security-Policy enforces that. */
 private[view] object Page:
   private val css  = MediaTypes.`text/css`.withCharset(HttpCharsets.`UTF-8`)
   private val code = MediaTypes.`application/javascript`.withCharset(HttpCharsets.`UTF-8`)

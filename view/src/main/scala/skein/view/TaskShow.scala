@@ -5,7 +5,7 @@ import scala.collection.immutable.VectorMap
 import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
-/** Work that is no flight, while it is done: a search, a sweep, a training. Whoever does the work says what is new, from
+/** Shows work other than a flight: a search, a sweep, a training. The one who does the work publishes what is new, from
   * any thread, and waits for nothing; of what is said again before a viewer's turn, the newest is shown.
   *
   * @param id

@@ -18,8 +18,8 @@ import skein.units.Clock
   * viewers and flights share no threads.
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
-  * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` do that to one
-  * ([[Control]]), and `POST /hover` pauses all.
+  * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
+  * flight ([[Control]]), and `POST /hover` pauses all.
   */
 final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
     system: ActorSystem
@@ -47,7 +47,7 @@ object ViewServer:
     * @param threads
     *   what it runs on
     * @param origins
-    *   pages of other sites that may look
+    *   other sites whose pages may connect
     * @return
     *   fails where it cannot listen
     */

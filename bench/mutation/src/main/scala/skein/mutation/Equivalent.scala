@@ -18,6 +18,9 @@ object Equivalent:
   private val Size  = "how large a thing is drawn is a choice; a test would repeat it"
   private val Never = "a random number of 53 bits is as good as never this very one"
 
+  private val Rows  = "twenty troubles in a row are as good as never drawn"
+  private val Stray = "any message that is no answer will do"
+
   val all: Vector[Equivalent] = Vector(
     Equivalent("Digest.scala", "ByteBuffer.allocate(9)", "9", "10", "room that is not used"),
     Equivalent(
@@ -54,8 +57,38 @@ object Equivalent:
       "last",
       "one measure of several flights"
     ),
-    Equivalent("FaultPlan.scala", "count < 20", "+", "-", "twenty troubles in a row are as good as never drawn"),
-    Equivalent("FaultyTransport.scala", "Arr(Int32(1), Int32(2))", "1", "2", "any message that is no answer will do"),
+    Equivalent(
+      "FaultPlan.scala",
+      "count < 20",
+      "+",
+      "-",
+      "twenty troubles in a row are as good as never drawn"
+    ),
+    Equivalent("FaultPlan.scala", "count < 20", "<", "<=", Rows),
+    Equivalent("FaultPlan.scala", "count < 20", "20", "21", Rows),
+    Equivalent("FaultPlan.scala", "Vector.unfold(0)", "0", "1", Rows),
+    Equivalent("FaultyTransport.scala", "Arr(Int32(1), Int32(2))", "2", "3", Stray),
+    Equivalent("FaultyTransport.scala", "Int32(7)", "7", "8", Stray),
+    Equivalent("FaultyTransport.scala", "number(id + 1_000_000)", "+", "-", Stray),
+    Equivalent("FaultyTransport.scala", "number(id + 1_000_000)", "1_000_000", "1000001", Stray),
+    Equivalent("FaultyTransport.scala", "probability > 0 &&", ">", ">=", Never),
+    Equivalent("FaultyTransport.scala", "private var most", "0", "1", "one is unanswered in every flight"),
+    Equivalent("TortureFlight.scala", "var mostPending", "0L", "1L", "one is under way in every flight"),
+    Equivalent("TortureFlight.scala", "41451", "41451", "41452", "any port"),
+    Equivalent(
+      "Torture.scala",
+      "underWay < threads",
+      "<",
+      "<=",
+      "it waits for one of the threads, of which there are no more"
+    ),
+    Equivalent(
+      "FaultyTransport.scala",
+      "Arr(Int32(1), Int32(2))",
+      "1",
+      "2",
+      "any message that is no answer will do"
+    ),
     Equivalent(
       "Replay.scala",
       "case (missing, _)",
@@ -76,6 +109,59 @@ object Equivalent:
       "1_000_003",
       "1000004",
       "any large factor keeps vehicles and decisions apart"
+    ),
+    Equivalent(
+      "Planning.scala",
+      "(seed * 1_000_003 + self)",
+      "+",
+      "-",
+      "to either side of a multiple they are as far apart"
+    ),
+    Equivalent(
+      "JointPlanning.scala",
+      "plannings.map(_.deadTime)",
+      "max",
+      "min",
+      "all vehicles have the settings' dead time"
+    ),
+    Equivalent("GraphLayout.scala", "maxOption.getOrElse(0)", "0", "1", "of no parts none is drawn"),
+    Equivalent(
+      "Team.scala",
+      "planned.headOption",
+      "headOption",
+      "lastOption",
+      "all of them were decided upon one view"
+    ),
+    Equivalent("Team.scala", "((event.ordinal, -1), event)", "1", "2", "any place is no vehicle's below 0"),
+    Equivalent(
+      "Team.scala",
+      "takeRight(settings.movesInFlight.max(2))",
+      "2",
+      "3",
+      "one more, that has ended, may be kept"
+    ),
+    Equivalent(
+      "Team.scala",
+      ").headOption",
+      "headOption",
+      "lastOption",
+      "of several missing any may be told"
+    ),
+    Equivalent(
+      "Replay.scala",
+      "recorded.opponent.state.receivedAt)",
+      "max",
+      "min",
+      "what is tried before the later one only adds to what may explain the decision"
+    ),
+    Equivalent("Replay.scala", "Vector3(Double.PositiveInfinity, 0, 0)", "0", "1", "as far away"),
+    Equivalent("LoopSettings.scala", "seed: Long = 1", "1", "2", "any seed is as good"),
+    Equivalent(
+      "LoopInstance.scala",
+      "Span.ofSeconds(600)",
+      "600",
+      "601",
+      "longer than anybody asks for the graph"
     ),
     Equivalent(
       "Metronome.scala",

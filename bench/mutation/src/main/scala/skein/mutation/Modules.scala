@@ -17,6 +17,9 @@ private object Modules:
         "skein.loop.*Suite",
         "skein.loop.planning.*",
         "skein.loop.*Simulation",
+        "skein.loop.RunningGraphLiveSuite",
+        "skein.loop.planning.BackgroundThreadLiveSuite",
+        "skein.loop.planning.PlanWorkersLiveSuite",
         "skein.flight.FailureTellingSimulation",
         "skein.flight.OutsidePolicySimulation",
         "skein.flight.ReplaySimulation"
@@ -34,7 +37,11 @@ private object Modules:
       "core/src/main/scala/skein/scenario",
       Vector("skein.scenario.*", "skein.measure.*", "skein.report.*")
     ),
-    Module("torture", "flight/src/main/scala/skein/torture", Vector("skein.torture.*Suite"))
+    Module(
+      "torture",
+      "flight/src/main/scala/skein/torture",
+      Vector("skein.torture.*Suite", "skein.torture.RestartSimulation")
+    )
   )
 
   /** Without those that nobody can notice. */

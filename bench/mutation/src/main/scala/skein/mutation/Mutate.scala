@@ -46,7 +46,7 @@ enum Fate:
   val scores =
     for (module, all) <- work yield
       val chosen  = Random(seed).shuffle(all).filter(mutant => lines.forall(_(mutant.toString)))
-      val session = Session(module)
+      val session = Session(module, quick = arguments.contains("--quick"))
       val judged  =
         try
           session.checkUnchanged()
@@ -87,13 +87,16 @@ object Score:
         (if endless > 0 then s", $endless by not ending" else "")
 
 /** Runs mutants of one module, one after the other, in a [[Worker]] that is started again where one does not end. */
-private final class Session(module: Module):
+private final class Session(module: Module, quick: Boolean):
   private val pool               = Executors.newCachedThreadPool()
   private given ExecutionContext = ExecutionContext.fromExecutor(pool)
   private val changed            = Files.createTempDirectory("mutation")
   private val (jars, own) = System.getProperty("java.class.path").split(File.pathSeparator).toVector.distinct
     .partition(entry => entry.endsWith(".jar") || entry.contains("mutation"))
-  private val suites = module.suites.flatMap(pattern => Modules.suites(own, pattern)).distinct
+  private val suites = module.suites
+    .flatMap(pattern => Modules.suites(own, pattern))
+    .distinct
+    .filterNot(quick && _.endsWith("Simulation"))
   private var worker = start()
   private var limit  = 10.minutes
 
@@ -163,6 +166,7 @@ private final class Session(module: Module):
     val command = Vector(java) ++ options ++ Vector(
       "-Xmx1200m",
       s"-Dmutation.folders=${own.mkString(File.pathSeparator)}",
+      s"-Dmutation.changed=${own.filter(module.compilesTo).mkString(File.pathSeparator)}",
       "-cp",
       jars.mkString(File.pathSeparator),
       "skein.mutation.Worker"

@@ -2,6 +2,8 @@ package skein.mutation
 
 import dotty.tools.dotc.reporting.StoreReporter
 import java.io.{BufferedReader, File, InputStreamReader, PrintStream}
+import java.lang.classfile.ClassFile
+import java.lang.classfile.constantpool.ClassEntry
 import java.net.URLClassLoader
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeoutException
@@ -17,20 +19,23 @@ import scala.util.Using
   * time limit, or `survived`.
   *
   * The first question is for no change. From it on it knows which classes each suite loads and how long it takes, and
-  * runs only those upon a change that load a class of the changed file, the quickest first.
+  * runs only those upon a change that load a class of the changed file, the quickest first. What cannot know of the
+  * changed file is loaded once for all of them.
   */
 object Worker:
 
   /** The folders of the project's own classes, in the order of the class path. */
-  private val folders =
-    System.getProperty("mutation.folders").split(File.pathSeparator).toVector.map(Path.of(_))
+  private val folders = paths("mutation.folders")
+
+  private def paths(property: String): Vector[Path] =
+    System.getProperty(property).split(File.pathSeparator).toVector.map(Path.of(_))
 
   private val answers = System.out
 
   private val known = mutable.Map.empty[String, Known]
 
   /** @param classes
-    *   of the project's own, that a suite loads
+    *   that a change may reach, and that a suite loads
     */
   private final case class Known(classes: Set[String], tookNanos: Long)
 
@@ -57,7 +62,7 @@ object Worker:
           val able    = suites
             .filter(suite => known.get(suite).forall(_.classes.exists(changed)))
             .sortBy(known.get(_).fold(0L)(_.tookNanos))
-          Using.resource(Loader(overlay +: folders))(loader => told(able, passes(_, loader)))
+          Using.resource(Loader(overlay +: affected, unaffected))(loader => told(able, passes(_, loader)))
       finally
         Using.resource(Files.walk(overlay))(
           _.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_))
@@ -77,14 +82,39 @@ object Worker:
 
   /** Another suite's classes are not loaded for this one. */
   private def passesAlone(suite: String): Passed =
-    Using.resource(Loader(folders)): loader =>
-      val from   = System.nanoTime()
-      val passed = passes(suite, loader)
+    Using.resource(Loader(affected, unaffected)): loader =>
+      val from = System.nanoTime()
+      // The first time, nothing is compiled yet.
+      val passed = passes(suite, loader) match
+        case Passed.Late => passes(suite, loader)
+        case told        => told
       known(suite) = Known(loader.loaded, System.nanoTime() - from)
       passed
 
-  private final class Loader(folders: Vector[Path])
-      extends URLClassLoader(folders.map(_.toUri.toURL).toArray, Worker.getClass.getClassLoader):
+  /** The folders of the classes that are changed, and those that name any class of these. */
+  private lazy val affected: Vector[Path] =
+    def wider(found: Set[Path]): Set[Path] =
+      val all = found ++ folders.filter(uses(_).exists(found))
+      if all.size == found.size then all else wider(all)
+    folders.filter(wider(paths("mutation.changed").toSet))
+
+  /** What no change reaches stays loaded, and so compiled. */
+  private lazy val unaffected = Loader(folders.filterNot(affected.contains), Worker.getClass.getClassLoader)
+
+  private lazy val home: Map[String, Path] =
+    folders.flatMap(folder => classesIn(folder).map(_ -> folder)).toMap
+
+  /** By folder, those whose classes its own name. */
+  private lazy val uses: Map[Path, Set[Path]] =
+    folders.map(folder => folder -> files(folder).flatMap(named).flatMap(home.get).toSet).toMap
+
+  private def named(file: Path): Vector[String] =
+    ClassFile.of().parse(file).constantPool.iterator.asScala.collect { case one: ClassEntry =>
+      one.asInternalName.replace('/', '.')
+    }.toVector
+
+  private final class Loader(folders: Vector[Path], parent: ClassLoader)
+      extends URLClassLoader(folders.map(_.toUri.toURL).toArray, parent):
     private val found = java.util.concurrent.ConcurrentHashMap.newKeySet[String]()
 
     override def findClass(name: String): Class[?] =
@@ -94,11 +124,12 @@ object Worker:
 
     def loaded: Set[String] = found.asScala.toSet
 
-  private def classesIn(folder: Path): Set[String] = Using.resource(Files.walk(folder)):
-    _.iterator.asScala
-      .filter(_.toString.endsWith(".class"))
-      .map(folder.relativize(_).toString.stripSuffix(".class").replace('/', '.'))
-      .toSet
+  private def classesIn(folder: Path): Set[String] =
+    files(folder).map(folder.relativize(_).toString.stripSuffix(".class").replace('/', '.')).toSet
+
+  private def files(folder: Path): Vector[Path] =
+    if !Files.isDirectory(folder) then Vector.empty
+    else Using.resource(Files.walk(folder))(_.iterator.asScala.filter(_.toString.endsWith(".class")).toVector)
 
   /** Why it does not compile, in a line. */
   private def error(source: Path, overlay: Path): Option[String] =

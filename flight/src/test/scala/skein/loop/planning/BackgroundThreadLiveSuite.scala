@@ -15,6 +15,7 @@ final class BackgroundThreadLiveSuite extends FunSuite:
     var policy = -1
     val thread =
       BackgroundThread.factory("background").newThread(() => policy = policyOf(Path.of("/proc/thread-self")))
+    assert(thread.isDaemon, "no program waits for its end")
     thread.start()
     thread.join()
     assertEquals(policy, BackgroundThread.SchedIdle)

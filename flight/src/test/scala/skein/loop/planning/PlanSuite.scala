@@ -68,6 +68,13 @@ class PlanSuite extends munit.FunSuite:
     )
     assertEquals(Seq(best, next, last).map(_.unsearchedS), Seq(Vector(0.0), Vector(0.1), Vector(0.2)))
 
+  test("several vehicles share the slices that are set, and each gets as many as the others"):
+    val problem = PlanProblem(settings, Vector.tabulate(2)(n => Part(objective, situation(n), n)))
+    val warm    = JointPlanner().resumed(problem, None)
+    for (slices, each) <- Seq(0 -> 0, 1 -> 1, 2 -> 1, 3 -> 2) do
+      val found = CountedPlanWorkers(1, slices).begin(problem, warm).finish().head
+      assertEquals((found.slices, found.plans.map(_.slices)), (2 * each, Vector(each, each)))
+
   test("where nothing was ever searched, that is for ever"):
     val answers = planned(CountedPlanWorkers(1, 0), ticks = 2).map(_._2.unsearchedS)
     assertEquals(answers, Seq.fill(2)(Vector(Double.PositiveInfinity)))

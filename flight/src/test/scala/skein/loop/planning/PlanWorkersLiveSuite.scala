@@ -1,5 +1,6 @@
 package skein.loop.planning
 
+import scala.jdk.CollectionConverters.*
 import skein.planning.*
 import skein.vehicle.ReducedModel
 
@@ -62,3 +63,13 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
     val later  = finished(workers, problem(2))
     assert(later.forall(_.slices > 3))
     assertEquals(search.finish().map(_.slices), found.map(_.slices))
+
+  test("threads end when they are no longer wanted"):
+    def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
+    val before  = ours
+    val closing = ThreadedPlanWorkers(2)
+    val begun   = ours -- before
+    assertEquals(begun.size, 2)
+    closing.close()
+    begun.foreach(_.join(60_000))
+    assert(!begun.exists(_.isAlive))

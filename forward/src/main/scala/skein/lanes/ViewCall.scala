@@ -3,7 +3,7 @@ package skein.lanes
 import skein.simd.LaneFunction
 
 /** A function of what a view shows, and of other numbers that stay where they are. */
-private[lanes] final class PictureCall(bound: BoundFunction, lanes: Int => Option[(Int, Int)]):
+private[lanes] final class ViewCall(bound: BoundFunction, lanes: Int => Option[(Int, Int)]):
   val call: LaneCall = LaneCall(bound)
 
   // The function's inputs that are read from views, with the vehicle and the field.

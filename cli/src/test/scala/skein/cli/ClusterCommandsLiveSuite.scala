@@ -11,8 +11,8 @@ import scala.jdk.OptionConverters.*
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 
-/** Searches by processes of this machine, over loopback. */
-class ClusterSearchLiveSuite extends munit.FunSuite:
+/** Searches and flights through faults by processes of this machine, over loopback. */
+class ClusterCommandsLiveSuite extends munit.FunSuite:
   override val munitTimeout: Duration = 10.minutes
   private given ExecutionContext      = ExecutionContext.global
 
@@ -92,6 +92,16 @@ class ClusterSearchLiveSuite extends munit.FunSuite:
     // Of the round under way; those before it stand in the search's own state.
     assert(clue(had) > 0)
     assertSame(out)
+
+  test("flights through faults are flown by two processes, each once, and not again by the same command"):
+    val out   = folder("torture").toString
+    val words = "torture --seeds 6 --duration 15s --workers 2 --out".split(' ').toSeq :+ out
+    for found <- Seq("3 blocks counted, 0 more", "0 blocks counted, 3 more") do
+      val said   = ByteArrayOutputStream()
+      val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
+      assertEquals(status, 0, said.toString(UTF_8))
+      assert(clue(said.toString(UTF_8)).contains(found))
+      assert(said.toString(UTF_8).contains("6 of 6 flights of 15s, 0 failed"))
 
   test("who cannot compute is told: options that need workers, and workers that cannot start"):
     def refused(words: String*): String =

@@ -6,7 +6,8 @@ import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-class StreamDuelKernelSuite extends munit.FunSuite:
+/** [[LoopDuelKernel]] under `stream` with a lag, for which it has a way of its own ([[LagVehicles]]). */
+class LagDuelsSuite extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
@@ -15,6 +16,9 @@ class StreamDuelKernelSuite extends munit.FunSuite:
   private val radii     = Array.tabulate(worlds)(i => 7f + 0.02f * i)
 
   private val captureRadiusM = 3.9f
+
+  /** Of any link here. */
+  private val MaxDelayS = 1.0
 
   private def duel(world: Int, durationS: Double): Duel = Duel(
     Duel.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
@@ -29,15 +33,15 @@ class StreamDuelKernelSuite extends munit.FunSuite:
       model: Reduced = lag,
       shortCut: Boolean = true,
       periodS: Double = 0.1
-  ): StreamDuelKernel =
+  ): LoopDuelKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, PaperPursuer(turnRates(world)))
       evaders.take(world, PaperEvader(radii(world)))
     val duel = Duel.paper.copy(durationS = durationS)
-    StreamDuelKernel(duel, LoopTiming.stream(periodS), model, pursuers, evaders, shortCut)
+    LoopDuelKernel(duel, LoopTiming.stream(periodS), model, MaxDelayS, pursuers, evaders, shortCut)
 
-  private def fly(link: DelayTable, durationS: Double): StreamDuelKernel =
+  private def fly(link: DelayTable, durationS: Double): LoopDuelKernel =
     val kernel = kernelOf(turnRates, radii, durationS)
     kernel.fly(keys, Array.fill(worlds)(link), captureRadiusM)
     kernel
@@ -92,7 +96,11 @@ class StreamDuelKernelSuite extends munit.FunSuite:
     val link = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
     test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
-      assert(StreamDuelKernel.canFly(LoopTiming.stream(0.1), link, lag), s"up to ${link.maxS} s")
+      assertEquals(
+        LoopDuelKernel.refusal(LoopTiming.stream(0.1), link.maxS, lag),
+        null,
+        s"up to ${link.maxS} s"
+      )
       val kernel                             = fly(link, 10)
       def scalar(world: Int, asideM: Double) =
         val moved = duel(world, 10)
@@ -103,21 +111,9 @@ class StreamDuelKernelSuite extends munit.FunSuite:
           lag
         ).fly(keys(world))
       for world <- 0 until worlds do
-        val reference          = scalar(world, 0)
-        def off(from: Outcome) = Vector(
-          from.minDistanceM - reference.minDistanceM,
-          from.meanDistanceM - reference.meanDistanceM,
-          from.pursuerEffortRad - reference.pursuerEffortRad,
-          from.evaderEffortRad - reference.evaderEffortRad
-        ).map(_.abs).max
-        val apart = Vector(
-          kernel.minDistance(world) - reference.minDistanceM,
-          kernel.meanDistance(world) - reference.meanDistanceM,
-          kernel.pursuerEffortRad(world) - reference.pursuerEffortRad,
-          kernel.evaderEffortRad(world) - reference.evaderEffortRad
-        ).map(_.abs).max
-        // A decision lies at a threshold if the scalar engine too decides otherwise from hundredths of a millimetre aside.
-        val atThreshold = apart >= 2e-3 && (-4 to 4).exists(k => off(scalar(world, k * 5e-6)) >= 2e-3)
+        val reference   = scalar(world, 0)
+        val apart       = ScalarWitness.apart(kernel, world, reference)
+        val atThreshold = apart >= 2e-3 && ScalarWitness.isAtThreshold(reference)(scalar(world, _))
         assert(apart < 2e-3 || atThreshold, s"world $world: $apart apart, and at no threshold")
 
     test(s"at $meanMs ms and $jitterMs ms of jitter telling views by lanes is but a short cut"):

@@ -1,0 +1,52 @@
+package skein.budget
+
+import java.nio.ByteBuffer
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import skein.optimise.RunningStats
+import skein.search.StatsBytes
+import skein.signal.LatencyDistribution
+import skein.units.Span
+import upickle.default.{ReadWriter, read as readJson, readwriter, write as writeJson}
+
+/** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
+  *
+  * @param number
+  *   of the one that is swept, from 0
+  * @param episodes
+  *   of each link
+  */
+final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int)
+    derives ReadWriter:
+
+  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+
+  /** Of each link what it came to, as [[StatsBytes]].
+    *
+    * @return
+    *   or why there is none
+    */
+  def answer(swept: Vector[Swept]): Either[String, ArraySeq[Byte]] =
+    for
+      one <- swept.lift(number).toRight(s"expected one of ${swept.size} that are swept, came number $number")
+      tallies <- one.tallies(links, episodes, _ => (), () => false)
+    yield StatsBytes.write(tallies)
+
+  /** What an answer says. */
+  def tallies(answer: ArraySeq[Byte]): Either[String, Vector[RunningStats]] =
+    val expected = StatsBytes.Each * links.size
+    val in       = ByteBuffer.wrap(answer.toArray)
+    Either.cond(
+      answer.length == expected,
+      Vector.fill(links.size)(StatsBytes.read(in)),
+      s"expected an answer of $expected bytes to a block, came ${answer.length}"
+    )
+
+object BudgetBlock:
+  private given ReadWriter[Span]                = readwriter[Long].bimap(_.toNanos, Span.ofNanos)
+  private given ReadWriter[LatencyDistribution] = ReadWriter.derived
+
+  /** @return or what was expected, and what came */
+  def read(bytes: ArraySeq[Byte]): Either[String, BudgetBlock] =
+    try Right(readJson[BudgetBlock](String(bytes.toArray, UTF_8)))
+    catch case mistake: Exception => Left(s"expected a block of a budget, came: ${mistake.getMessage}")

@@ -1,0 +1,62 @@
+package skein.budget
+
+import skein.optimise.Objective
+import skein.policy.Role
+import skein.scenario.Scenarios
+import skein.search.{Conditions, TeamQuestion}
+import skein.settings.PolicyFile
+import upickle.default.ReadWriter
+
+/** What a budget is asked of, in the words of the user: enough for another process to fly the same. */
+sealed trait BudgetQuestion derives ReadWriter:
+  /** @return or what was expected, what came, and in which option */
+  def swept(threads: Int)(using Scenarios): Either[String, Swept]
+
+object BudgetQuestion:
+
+  /** Of a policy in the paper's duel.
+    *
+    * @param policy
+    *   and `opponent`: as [[PolicyFile.text]] writes them
+    * @param role
+    *   of the policy
+    */
+  final case class OfDuel(
+      role: String,
+      policy: String,
+      opponent: String,
+      objective: String,
+      conditions: Conditions,
+      seed: Long
+  ) extends BudgetQuestion:
+    def swept(threads: Int)(using Scenarios): Either[String, Swept] =
+      for
+        role      <- PolicyFile.role(role)
+        policy    <- PolicyFile.parse(role, policy).left.map("--policy: " + _)
+        opponent  <- PolicyFile.parse(Role.opponentOf(role), opponent).left.map("--opponent: " + _)
+        objective <- Objective.parse(objective, role).left.map("--objective: " + _)
+        flown     <- conditions.resolved
+      yield DuelSwept(conditions, flown, policy, opponent, objective, seed, threads)
+
+  /** Of a scenario.
+    *
+    * @param set
+    *   settings by their keys
+    * @param objective
+    *   a sum of its measures; without one, the first
+    */
+  final case class OfScenario(
+      scenario: String,
+      set: Map[String, String],
+      objective: Option[String],
+      conditions: Conditions,
+      plantIsTold: Boolean,
+      seed: Long
+  ) extends BudgetQuestion:
+    def swept(threads: Int)(using scenarios: Scenarios): Either[String, Swept] =
+      for
+        kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
+        stated <- TeamQuestion.read(kind, set).left.map("--set: " + _)
+        asked  <- ScenarioQuestion.of(stated, objective, conditions, seed, threads)
+        swept  <- asked.swept(plantIsTold)
+      yield swept

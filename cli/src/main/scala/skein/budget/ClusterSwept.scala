@@ -1,0 +1,91 @@
+package skein.budget
+
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import skein.cluster.Solvers
+import skein.optimise.RunningStats
+import skein.scenario.Scenarios
+import skein.search.{Elsewhere, UntilWrong}
+import skein.signal.LatencyDistribution
+import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+
+/** Flown elsewhere, in blocks of some cells each, to the same bits as here.
+  *
+  * @param number
+  *   of it among all that the question asks
+  * @param blockEpisodes
+  *   of a block, about; without it, as many as take seconds at most
+  */
+final class ClusterSwept(
+    here: Swept,
+    number: Int,
+    elsewhere: Elsewhere,
+    share: () => Double,
+    blockEpisodes: Option[Int]
+) extends Swept(here.loop, here.periodMs, here.durationS, here.vehicles, here.label, here.formula, here.unit):
+
+  export here.{cellEpisodes, engine, truth}
+
+  /** A map at once: there are always enough workers. */
+  override def rowsTogether: Int = Int.MaxValue
+
+  def tallies(
+      links: Vector[LatencyDistribution],
+      episodes: Int,
+      onProgress: Long => Unit,
+      isCancelled: () => Boolean
+  ): Either[String, Vector[RunningStats]] =
+    val most   = blockEpisodes.getOrElse(ClusterSwept.CellsOfBlock * here.cellEpisodes(links))
+    val blocks = links.grouped((most / episodes).max(1)).map(BudgetBlock(number, _, episodes)).toVector
+    val total  = links.size.toLong * episodes
+    for
+      answered <- elsewhere.computed(blocks.map(_.bytes), isCancelled)(onProgress((total * share()).toLong))
+      answers  <- answered.toRight(Swept.Stopped)
+      tallies <- UntilWrong.each(blocks.zip(answers))((block, answer) => block.tallies(answer)).map(_.flatten)
+    yield tallies
+
+object ClusterSwept:
+  /** Of the size that a cell has unless told otherwise. */
+  private val CellsOfBlock = 8
+
+  /** The question as workers get it.
+    *
+    * @param probes
+    *   what each came to at the coordinator in one episode: a worker that comes to anything else, by a file of another
+    *   content for example, does not answer the question
+    */
+  private final case class Posed(questions: Vector[BudgetQuestion], probes: Vector[Long]) derives ReadWriter
+
+  def bytes(questions: Vector[BudgetQuestion], swept: Vector[Swept]): Either[String, ArraySeq[Byte]] =
+    probes(swept).map(came => ArraySeq.unsafeWrapArray(writeJson(Posed(questions, came)).getBytes(UTF_8)))
+
+  private def probes(swept: Vector[Swept]): Either[String, Vector[Long]] =
+    UntilWrong.each(swept)(_.tallies(Vector(LatencyDistribution.Vpn), 1, _ => (), () => false).map(tallies =>
+      java.lang.Double.doubleToLongBits(tallies.head.mean)
+    ))
+
+  /** Answers the questions of budgets whose scenarios are known here. */
+  def solvers(using Scenarios): Solvers = asked =>
+    for
+      posed <-
+        try Right(readJson[Posed](String(asked.toArray, UTF_8)))
+        catch case mistake: Exception => Left(s"expected a budget's question, came: ${mistake.getMessage}")
+      came <- swept(posed).flatMap(probes)
+      _    <- Either.cond(
+        came == posed.probes,
+        (),
+        "one episode does not come to the same here and at the coordinator; has a file that --plant names another content here?"
+      )
+    yield () =>
+      val own = swept(posed)
+      block =>
+        val answer =
+          for
+            read     <- BudgetBlock.read(block)
+            swept    <- own
+            answered <- read.answer(swept)
+          yield answered
+        answer.fold(wrong => throw IllegalArgumentException(wrong), identity)
+
+  private def swept(posed: Posed)(using Scenarios) =
+    UntilWrong.each(posed.questions)(_.swept(threads = 1))

@@ -1,0 +1,128 @@
+package skein.cli
+
+import java.nio.file.Path
+import java.security.MessageDigest
+import java.util.concurrent.atomic.AtomicReference
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.{ExecutionContext, Future}
+import skein.blocks.Ledger
+import skein.cluster.{CoordinatorNode, WorkerProcesses}
+import skein.report.TextTable
+import skein.search.{Elsewhere, ElsewhereFailed}
+
+/** A coordinator for one question, and the workers that it started. */
+private[cli] final class ClusterRun private (
+    node: CoordinatorNode,
+    options: ClusterOptions.Checked,
+    program: String,
+    folder: Path,
+    threads: Int,
+    shown: Shown
+) extends Elsewhere:
+  private val startedAt = System.nanoTime()
+  private val failure   = AtomicReference(Option.empty[String])
+
+  private val processes = WorkerProcesses(
+    options.workers,
+    WorkerProcesses.likeThis(
+      program,
+      Seq("worker", "--join", node.address.toString, "--attached", "--threads") :+
+        (threads / options.workers.max(1)).max(1).toString
+    ),
+    number => folder.resolve(s"worker-$number.log"),
+    node.ended,
+    reason =>
+      failure.set(Some(reason))
+      node.cancel()
+  )
+
+  private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
+    shown.say(s"workers join by ./skein worker --join ${node.address}")
+    try
+      processes.start()
+      val done = body(this)
+      shown.say(account)
+      done
+    catch case failed: ElsewhereFailed => Left(failed.getMessage)
+    finally
+      val closing = node.close()
+      processes.close()
+      Edge.await(closing)
+
+  def compute(
+      works: Vector[ArraySeq[Byte]],
+      onAnswer: ArraySeq[Byte] => Unit
+  ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
+    node
+      .compute(works, onAnswer)
+      .map(_.flatMap(answers => withReason(answers)))(using ExecutionContext.parasitic)
+
+  /** A call that was cancelled since nobody is left has a reason. */
+  private def withReason[A](answers: Option[A]) =
+    if answers.isDefined then Right(answers) else failure.get.toLeft(answers)
+
+  def cancel(): Unit = node.cancel()
+
+  /** The share of the call under way that is done, 0 to 1. */
+  def share: Double =
+    val now = node.progress
+    now.done.toDouble / now.of.max(1)
+
+  /** How it goes, in a line. */
+  def status: String =
+    val now     = node.progress
+    val seconds = (System.nanoTime() - startedAt) * 1e-9
+    val rate    = now.coordinator.counts.accepted / seconds / now.here.max(1)
+    f"${now.done} of ${now.of} blocks; ${now.here} workers, $rate%.2f blocks/s each; ${now.coordinator.workers.size} joined, ${now.died} lost"
+
+  /** Who did how much. */
+  private def account: String =
+    val now    = node.progress
+    val counts = now.coordinator.counts
+    val rows   = now.coordinator.workers.toVector.sortBy((name, record) => (-record.accepted, name)).map:
+      (name, record) =>
+        Vector(
+          name,
+          record.cores.toString,
+          record.accepted.toString,
+          record.repeated.toString,
+          f"${record.busyNanos * 1e-9}%.1f"
+        )
+    s"""${counts.accepted} blocks counted, ${now.resumed} more were in the ledger; ${counts.repeated} answers came twice, ${counts.lost} blocks were lost with their workers and given out again
+       |${TextTable(
+        Vector("<worker", "cores", "counted", "repeated", "busy, s"),
+        rows.take(ClusterRun.MostRows)
+      ).render}${
+        if rows.size > ClusterRun.MostRows then s"\nand ${rows.size - ClusterRun.MostRows} more" else ""
+      }""".stripMargin
+
+private[cli] object ClusterRun:
+  private val MostRows = 40
+
+  /** Runs with a coordinator and workers, and ends them.
+    *
+    * @param program
+    *   the class whose `main` starts the commands
+    * @param folder
+    *   for the ledger and the workers' logs
+    * @param threads
+    *   of all workers that it starts
+    */
+  def using[A](
+      options: ClusterOptions.Checked,
+      program: String,
+      question: ArraySeq[Byte],
+      folder: Path,
+      threads: Int,
+      shown: Shown
+  )(body: ClusterRun => Either[String, A]): Either[String, A] =
+    val name = ArraySeq.unsafeWrapArray(MessageDigest.getInstance("SHA-256").digest(question.toArray))
+    for
+      ledger <- Ledger.open(folder.resolve(Ledger.Name), name)
+      ended  <-
+        try
+          CoordinatorNode
+            .start(options.listen, options.tls, question, ledger)(news => Console.err.println(news.text))
+            .flatMap(node => ClusterRun(node, options, program, folder, threads, shown).run(body))
+        finally ledger.close()
+    yield ended

@@ -1,0 +1,101 @@
+package skein.cli
+
+import java.nio.file.Path
+import mainargs.{ParserForClass, arg}
+import skein.learn.LearnerInFlight
+import skein.loop.LoopKind
+import skein.loop.learning.Learning
+import skein.policy.LearnedPolicy
+import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
+import skein.training.LearnFile
+
+/** Whether a policy learns while it flies. */
+final case class LearnInFlight(
+    @arg(doc =
+      "a folder of the command learn, by sac or ddpg: its policy flies in the place of the scenario's and learns on beside the flight"
+    )
+    learn: Option[String],
+    @arg(
+      name = "learn-updates",
+      doc = "of the networks, for each decision that it learns from (default: 1)"
+    )
+    learnUpdates: Option[Double],
+    @arg(
+      name = "learn-version",
+      doc = "decisions after which a new version flies (default: 20)"
+    )
+    learnVersion: Option[Int],
+    @arg(
+      name = "learn-noise",
+      doc = "by which it tries out: deviation, as a share of the most that it turns (default: 0.1)"
+    )
+    learnNoise: Option[Double]
+):
+  import LearnInFlight.*
+
+  /** Who learns, in the flights of these settings.
+    *
+    * @return
+    *   or what was expected, what came, and in which option
+    */
+  def chosen(settings: FlySettings): Either[String, Option[ChosenPolicy]] =
+    val alone =
+      Seq("--learn-updates" -> learnUpdates, "--learn-version" -> learnVersion, "--learn-noise" -> learnNoise)
+        .collectFirst { case (option, Some(_)) => s"$option: expected with --learn FOLDER" }
+    (learn, alone) match
+      case (None, Some(mistake)) => Left(mistake)
+      case (None, None)          => Right(None)
+      case (Some(folder), _)     => of(Path.of(folder), settings).map(Some(_))
+
+  private def of(folder: Path, settings: FlySettings): Either[String, ChosenPolicy] =
+    val (updates, every, noise) =
+      (learnUpdates.getOrElse(1.0), learnVersion.getOrElse(20), learnNoise.getOrElse(0.1))
+    for
+      _ <- within("--learn-updates", updates, 0.001, 1000)
+      _ <- within("--learn-version", every, 1, 1_000_000)
+      _ <- within("--learn-noise", noise, 0, 1)
+      _ <- Either.cond(
+        !settings.loops.contains(LoopKind.Plan),
+        (),
+        "--learn: in the loop plan no policy decides; expected other loops"
+      )
+      _ <- Either.cond(
+        settings.policies.isEmpty,
+        (),
+        "--learn: expected no --policy beside it, came one; fly it apart"
+      )
+      file  <- LearnFile.read(folder).left.map("--learn: " + _)
+      setup <- file.question.setup.left.map(mistake => s"--learn: $folder: $mistake")
+      count = settings.fleet.agents.count(_.role == setup.role)
+      _ <- Either.cond(
+        count == 1,
+        (),
+        s"--learn: expected a scenario with one ${PolicyFile.name(setup.role)}, who learns, came $count"
+      )
+      begun = (seed: Long) =>
+        LearnerInFlight.of(
+          setup.algorithm,
+          file.question.learner,
+          setup.role,
+          LearnedPolicy.mostTurn(setup.role, file.question.turnRateRadPerS),
+          updates,
+          every,
+          seed
+        )(LearnFile.load(folder, file.state, _))
+      first <- begun(settings.seed).left.map("--learn: " + _)
+      again = (seed: Long) => begun(seed).fold(reason => throw IllegalStateException(reason), _._2)
+    yield ChosenPolicy(
+      "learning",
+      PolicyFile(setup.role, setup.family, first._1),
+      Some(Learning.Beside(noise, again))
+    )
+
+object LearnInFlight:
+  given ParserForClass[LearnInFlight] = ParserForClass[LearnInFlight]
+
+  private def within(option: String, value: Double, least: Double, most: Double): Either[String, Unit] =
+    Either.cond(
+      value >= least && value <= most,
+      (),
+      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}, came $value"
+    )

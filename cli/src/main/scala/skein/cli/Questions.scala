@@ -1,0 +1,33 @@
+package skein.cli
+
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import skein.budget.ClusterSwept
+import skein.cluster.{Solver, Solvers}
+import skein.scenario.Scenarios
+import skein.search.PosedQuestion
+
+/** What commands ask their workers. A question's first line says of which kind it is. */
+private[cli] object Questions:
+  private val Search  = "search"
+  private val Torture = "torture"
+  private val Budget  = "budget"
+
+  def search(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Search, question)
+
+  def budget(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Budget, question)
+
+  def torture(question: TortureQuestion): ArraySeq[Byte] = of(Torture, question.bytes)
+
+  private def of(kind: String, question: ArraySeq[Byte]) =
+    ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
+
+  /** Answers every kind, about scenarios that are known here. */
+  def solvers(using Scenarios): Solvers = asked =>
+    val (kind, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
+    String(kind.toArray, UTF_8) match
+      case Search  => PosedQuestion.solvers.of(question.drop(1))
+      case Budget  => ClusterSwept.solvers.of(question.drop(1))
+      case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
+      case other   =>
+        Left(s"expected a question of $Search, $Budget or $Torture, came one of '${other.take(40)}'")

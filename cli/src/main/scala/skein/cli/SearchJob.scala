@@ -1,0 +1,103 @@
+package skein.cli
+
+import java.nio.file.Path
+import skein.optimise.SearchState
+import skein.search.*
+import skein.settings.PolicyFile.brief
+import skein.view.TaskShow
+
+/** A search in a terminal, to its end or until it is stopped. */
+private[cli] final class SearchJob(
+    ready: ReadySearch,
+    question: SearchFile.Question,
+    folder: Path,
+    threads: Int,
+    fliers: Fliers,
+    shown: Shown,
+    task: TaskShow
+):
+  import SearchJob.*
+
+  private val onShow = SearchOnShow(task, ready.title, ready.search.expected, ready.measure)
+
+  def run(from: SearchState): Either[String, Unit] =
+    say(introduction)
+    @volatile var stopped = false
+    Edge.untilInterrupted(() => stopped = true):
+      val startedAt = System.nanoTime()
+      val line      = ProgressLine(ready.search.expected, Console.err, from.flown)
+      var last      = from
+      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
+      val searched =
+        SearchRun(ready.search, question, fliers(Judge.Candidates), folder, () => System.nanoTime())
+          .run(from, () => stopped): state =>
+            last = state
+            line.show(state.flown, progress(state))
+            onShow.step(state, progress(state))
+      line.end()
+      fliers.onWait((_, _) => ())
+      searched.flatMap: state =>
+        val seconds = (System.nanoTime() - startedAt) * 1e-9
+        val flown   = state.flown - from.flown
+        say(
+          f"$flown%,d episodes of ${ready.conditions.duel.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
+        )
+        val goOn = s"stopped; ./skein search --resume $folder goes on"
+        if state.best.isEmpty then Right(shown.tables(Nil, goOn))
+        else conclude(state).map(_ => if !state.isDone then say(goOn))
+
+  private def introduction: String =
+    val shownAxes =
+      ready.space.axes.take(MostAxes).map(axis => s"${axis.name} ${brief(axis.least)} … ${brief(axis.most)}")
+    val more = ready.space.dimension - shownAxes.size
+    val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
+    s"""${ready.text}: ${ready.subject(axes)}
+       |loop ${ready.under}, every ${brief(
+        ready.conditions.timing.periodS * 1000
+      )} ms; ${ready.conditions.vehicle.description}
+       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engine(
+        threads
+      )}""".stripMargin
+
+  private def progress(state: SearchState): String =
+    state.best.fold("no candidate measured yet"): best =>
+      s"best ${brief(best.tally.mean)} ${ready.unit} with ${ready.label(best.candidate)}"
+
+  /** Measures the winner on fresh episodes and writes it with pictures. */
+  private def conclude(state: SearchState): Either[String, Unit] =
+    val effort = ready.effort
+    // Somebody who stops a search does not wait for long.
+    val most         = if state.isDone then Int.MaxValue else effort.freshEpisodes
+    val fresh        = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
+    val found        = SearchResult.measured(ready, fliers(_), state, fresh)
+    val result       = SearchResult(ready, found)
+    val (name, text) = ready.file(found)
+    for
+      file <- OutFolder.write(folder, Seq(OutFolder.text(name, text)))
+      _ = shown.tables(Seq(result.section), lines(result.summary))
+      pictures <- if state.isDone then landscape(found.best, effort.within(fresh)) else Right(Vector.empty)
+    yield say(s"written: ${(file ++ pictures).mkString(", ")}")
+
+  private def landscape(best: Vector[Double], effort: Effort): Either[String, Vector[Path]] =
+    say("drawing the landscape")
+    val land = Landscape.of(
+      ready.space,
+      best,
+      fliers(Judge.Candidates),
+      SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
+      onMap = effort.onMap,
+      onRow = onShow.landscape
+    )
+    val title = s"${ready.title}, model ${ready.conditions.vehicle.name}"
+    OutFolder.write(
+      folder,
+      OutFolder.picture("landscape", LandscapeFigure(land, title, ready.measure), title) :+
+        OutFolder.text("landscape.csv", land.csv)
+    )
+
+  private def say(text: String): Unit = shown.say(lines(text))
+
+  private def lines(text: String): String = text.linesIterator.map(_.stripTrailing).mkString("\n")
+
+private[cli] object SearchJob:
+  private val MostAxes = 4

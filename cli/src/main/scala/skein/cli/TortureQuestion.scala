@@ -1,0 +1,97 @@
+package skein.cli
+
+import java.nio.ByteBuffer
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import skein.scenario.{Scenario, Scenarios}
+import skein.settings.NamedScene
+import skein.torture.{Torture, Verdict}
+import skein.units.Span
+import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+
+/** What flies through faults, as workers get it. A block is a range of seeds.
+  *
+  * @param scenario
+  *   by its name; without one, duels
+  * @param scene
+  *   what a recording keeps of it; without one, what the scenario says
+  */
+private[cli] final case class TortureQuestion(
+    durationNanos: Long,
+    scenario: Option[String],
+    scene: Option[Map[String, String]]
+) derives ReadWriter:
+  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+
+  /** @return or what was expected, what came, and in which option */
+  def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
+    for
+      task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
+      _    <- Either.cond(
+        task.forall(_.eyes.isEmpty),
+        (),
+        s"--scenario ${scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
+      )
+      scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
+    yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
+
+private[cli] object TortureQuestion:
+
+  def of(duration: Span, scenario: Option[String], scene: Option[NamedScene]): TortureQuestion =
+    TortureQuestion(
+      duration.toNanos,
+      scenario,
+      scene.map(NamedScene.recorded(_).map(each => each.name -> each.value).toMap)
+    )
+
+  private def standard(name: String)(using scenarios: Scenarios): Either[String, Scenario] =
+    scenarios.kind(name).map(_.standard).left.map("--scenario: " + _)
+
+  def read(bytes: ArraySeq[Byte])(using Scenarios): Either[String, Ready] =
+    val question =
+      try Right(readJson[TortureQuestion](String(bytes.toArray, UTF_8)))
+      catch case mistake: Exception => Left(s"expected torture's question, came: ${mistake.getMessage}")
+    question.flatMap(_.ready)
+
+  /** @param scenario
+    *   absent where duels are flown, as many as the seed says
+    */
+  final case class Ready(duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]):
+
+    /** Flies them here, as many at once as there are `threads`. */
+    def fly(seeds: Iterator[Long], threads: Int)(onVerdict: Verdict => Unit): Unit =
+      Torture.all(seeds, duration, threads, scenario, scene)(onVerdict)
+
+    /** Has them flown elsewhere, in blocks of so many. */
+    def blocks(first: Long, seeds: Int, atMost: Int): Vector[ArraySeq[Byte]] =
+      Vector.range(0, seeds, atMost).map: from =>
+        val out = ByteBuffer.allocate(BlockBytes).putLong(first + from).putInt(atMost.min(seeds - from))
+        ArraySeq.unsafeWrapArray(out.array)
+
+    /** Of each of a block's seeds the rules that its flight broke, as JSON. */
+    def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
+      require(block.length == BlockBytes, s"expected a block of $BlockBytes bytes, came ${block.length}")
+      val in             = ByteBuffer.wrap(block.toArray)
+      val (first, count) = (in.getLong, in.getInt)
+      val broken         =
+        for seed <- first until first + count
+        yield seed -> TortureQuestion.short(Torture.of(seed, duration, scenario, scene).violations)
+      ArraySeq.unsafeWrapArray(writeJson(broken.toVector).getBytes(UTF_8))
+
+    /** What a block's answer says. */
+    def verdicts(answer: ArraySeq[Byte]): Vector[Verdict] =
+      readJson[Vector[(Long, Vector[String])]](String(answer.toArray, UTF_8)).map: (seed, violations) =>
+        Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+
+  /** What fits into a message with a block's others. */
+  private def short(violations: Vector[String]): Vector[String] =
+    val lines = violations
+      .take(MostLines)
+      .map(line => if line.length > MostOfLine then line.take(MostOfLine) + "…" else line)
+    lines ++ Option.when(violations.size > MostLines)(s"and ${violations.size - MostLines} more")
+
+  private val BlockBytes            = 12
+  private val MostLines, MostOfLine = 200
+
+  /** Of a block. */
+  val MostSeeds = 8

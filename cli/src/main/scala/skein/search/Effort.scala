@@ -1,0 +1,42 @@
+package skein.search
+
+import skein.settings.VehicleChoice
+
+/** How much is flown beside the search itself: less where an episode costs more. */
+final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, cellEpisodes: Int):
+  /** With no more episodes for a point of the landscape than the winner is measured on. */
+  def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
+
+object Effort:
+  /** Episodes that one core flies in about half a second. */
+  def blockEpisodes(byLanes: Boolean, vehicle: VehicleChoice): Int =
+    (byLanes, vehicle.name == "quadrotor") match
+      case (true, false)  => 32768
+      case (true, true)   => 2048
+      case (false, false) => 512
+      case (false, true)  => 16
+
+  private val Cheap  = Effort(4096, 256, Landscape.OnMap, 1000)
+  private val Dear   = Effort(512, 16, 21, 30)
+  private val Dearer = Effort(64, 4, 13, 4)
+
+  /** Of duels.
+    *
+    * @param together
+    *   whether candidates that share their episodes fly by lanes
+    * @param alone
+    *   whether worlds with delays of their own do
+    */
+  def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice): Effort =
+    def level(byLanes: Boolean) = (byLanes, vehicle.name == "quadrotor") match
+      case (true, false)                 => Cheap
+      case (true, true) | (false, false) => Dear
+      case (false, true)                 => Dearer
+    val (candidates, worlds) = (level(together), level(alone))
+    Effort(worlds.freshEpisodes, candidates.landscapeEpisodes, candidates.onMap, worlds.cellEpisodes)
+
+  /** Fresh episodes of a team: each needs a timetable of its own, which is made by the scalar engine. */
+  val TeamsFresh = 256
+
+  def ofTeam(byLanes: Boolean): Effort =
+    if byLanes then Effort(TeamsFresh, 16, 21, 30) else Effort(TeamsFresh, 2, 7, 4)

@@ -1,0 +1,68 @@
+package skein.search
+
+import skein.optimise.{Evaluator, RunningStats, Search, ValueEvaluator, WeightedSum}
+import skein.policy.SearchSpace
+
+/** A search whose question was read: whoever reads the same question judges with the same bits. */
+trait ReadySearch:
+  def search: Search
+  def space: SearchSpace
+  def conditions: Conditions.Resolved
+
+  /** The objective as users write it, with its direction, and without. */
+  def text: String
+  def formula: String
+
+  /** Of the value; empty where its terms differ. */
+  def unit: String
+
+  /** Of what is searched: a policy family, a scenario. */
+  def name: String
+
+  /** Who is searched, and against whom.
+    *
+    * @param axes
+    *   what is searched of it
+    */
+  def subject(axes: String): String
+
+  /** A candidate for people. */
+  def label(candidate: Vector[Double]): String
+
+  def baseline: Baseline
+
+  /** What judges in this process, one call at a time. */
+  def judges(threads: Int): Judge => ValueEvaluator
+
+  /** Of a candidate and of the baseline. */
+  def measured(
+      by: Judge => Evaluator,
+      candidate: Vector[Double],
+      episodes: Range
+  ): (RunningStats, RunningStats)
+
+  /** A line that says what flies the candidates. */
+  def engine(threads: Int): String
+
+  /** Whether many candidates that meet the same episodes fly by lanes. */
+  def byLanes: Boolean
+
+  def effort: Effort
+
+  /** Fresh episodes on which the winner is measured, where the user chose. */
+  def fresh: Option[Int]
+
+  /** What was found, as a file that `./skein fly` takes: its name and its text. */
+  def file(found: Found): (String, String)
+
+  /** The method, the loop and the link, by their names. */
+  def method: String
+  def loop: String
+  def link: String
+
+  final def under: String = s"$loop over $link"
+
+  def title: String = s"$name, $under"
+
+  /** For an axis of a picture. */
+  def measure: String = WeightedSum.withUnit(formula, unit)

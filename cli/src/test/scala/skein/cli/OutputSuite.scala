@@ -1,0 +1,27 @@
+package skein.cli
+
+import java.io.{ByteArrayOutputStream, IOException, OutputStream, PrintStream}
+import java.nio.file.Files
+
+class OutputSuite extends munit.FunSuite:
+  private def broken(why: String): OutputStream = _ => throw IOException(why)
+
+  private def status(why: String): (Int, String) =
+    val lost = PrintStream(broken(why))
+    lost.println("a table")
+    val told = ByteArrayOutputStream()
+    (Console.withErr(told)(Main.written(lost, broken(why))), told.toString)
+
+  test("what was said and could not be written is no success, but for a pipe that its reader closed"):
+    assertEquals(Main.written(PrintStream(ByteArrayOutputStream()), broken("unused")), 0)
+    assertEquals(
+      status("No space left on device"),
+      (1, "skein: cannot write to standard output: No space left on device\n")
+    )
+    assertEquals(status("Broken pipe"), (0, ""))
+
+  test("one command at a time works in a folder"):
+    val folder = Files.createTempDirectory("alone")
+    val both   = OutFolder.alone(folder)(Right(OutFolder.alone(folder)(Right(1))))
+    assert(clue(both).exists(_.left.exists(_.contains("another command is at work"))))
+    assertEquals(OutFolder.alone(folder)(Right(2)), Right(2))

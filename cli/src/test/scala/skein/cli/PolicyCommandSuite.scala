@@ -1,0 +1,46 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import skein.policy.PolicyFamily
+import skein.settings.PolicyFile
+
+class PolicyCommandSuite extends munit.FunSuite:
+  private def run(words: String*): (Int, String) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(Main.run("policy" +: words)))
+    (status, said.toString(UTF_8))
+
+  private def written(folder: Path, name: String): String =
+    val family = PolicyFamily.parse(name).fold(fail(_), identity)
+    val values = Vector.tabulate(family.space.dimension)(i => (i % 7) / 8.0)
+    Files
+      .writeString(folder.resolve("policy.conf"), PolicyFile(family.roles.head, family, values).hocon(""))
+      .toString
+
+  test("a network goes to ONNX and back, to the bit"):
+    val folder         = Files.createTempDirectory("policy")
+    val file           = written(folder, "learned:4x3")
+    val onnx           = folder.resolve("policy.onnx").toString
+    val conf           = folder.resolve("again.conf").toString
+    val (status, said) = run(file, "--onnx", onnx)
+    assertEquals(status, 0, said)
+    assert(said.contains("learned:4x3"), said)
+    val (again, told) = run(onnx, "--conf", conf)
+    assertEquals(again, 0, told)
+    assertEquals(PolicyFile.read(conf).map(_.text), PolicyFile.read(file).map(_.text))
+    assertEquals(PolicyFile.read(conf).map(_.role), PolicyFile.read(file).map(_.role))
+
+  test("what is no network, no file, or no folder to write into, is told"):
+    val folder = Files.createTempDirectory("policy")
+    for
+      (words, expected) <- Seq(
+        Seq(written(folder, "paper-pursuer"), "--onnx", folder.resolve("x.onnx").toString) -> "only networks",
+        Seq("nowhere.onnx") -> "there is no such file",
+        Seq.empty           -> "expected one policy file, came 0"
+      )
+    do
+      val (status, said) = run(words*)
+      assertEquals(status, 1, said)
+      assert(said.contains(expected), said)

@@ -1,0 +1,55 @@
+package skein.policy
+
+/** A network of one output, evaluated as an ordinary loop over arrays, which lanes compile.
+  *
+  * @param parameters
+  *   as [[NeuralShape]] lays them out
+  */
+private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[Double]):
+  require(
+    parameters.size == shape.parameters,
+    s"a network of $shape has ${shape.parameters} parameters, got ${parameters.size}"
+  )
+
+  private val weights = parameters.toArray
+  private val widths  = shape.widths.toArray
+  private val widest  = shape.widest
+  private val squash  = shape.activations.map(_.ordinal).toArray
+
+  /** Room for inputs and for what a layer gives. */
+  def scratch: Array[Double] = Array.ofDim[Double](widest)
+
+  /** @param inputs
+    *   in [[scratch]], which is overwritten
+    */
+  def output(inputs: Array[Double]): Double =
+    var input  = inputs
+    var output = scratch
+    var at     = 0
+    var layer  = 1
+    while layer < widths.length do
+      val kind   = squash(layer - 1)
+      var neuron = 0
+      while neuron < widths(layer) do
+        var sum = 0.0
+        var i   = 0
+        while i < widths(layer - 1) do
+          sum += weights(at) * input(i)
+          at += 1
+          i += 1
+        sum += weights(at)
+        at += 1
+        output(neuron) =
+          if kind == DenseNetwork.Relu then sum.max(0.0)
+          else if kind == DenseNetwork.Tanh then StrictMath.tanh(sum)
+          else sum.max(-1.0).min(1.0)
+        neuron += 1
+      val spare = input
+      input = output
+      output = spare
+      layer += 1
+    input(0)
+
+private[policy] object DenseNetwork:
+  private final val Relu = 0
+  private final val Tanh = 1

@@ -1,0 +1,67 @@
+package skein.loop.learning
+
+import skein.policy.*
+import skein.signal.{NormalQuantile, SplitMix64}
+import skein.units.Radians
+
+/** A network that changes while it flies, between two decisions and never in one. It tries out: normal noise is added to
+  * what it would do, drawn from the seed and the decision's number. Decided again from the recorded versions, a flight is
+  * the same.
+  *
+  * @param first
+  *   decides until there is news
+  * @param version
+  *   what other parameters make
+  * @param explore
+  *   the noise's deviation, as a share of the most that it turns
+  * @param note
+  *   told of all news, with the number of the decision that comes next
+  */
+final class LearningPolicy(
+    first: LearnedPolicy,
+    version: Vector[Double] => LearnedPolicy,
+    explore: Double,
+    seed: Long,
+    lessons: Lessons,
+    note: (Long, News) => Unit
+) extends Policy:
+  import LearningPolicy.*
+
+  @volatile private var newest = first
+
+  def heading(
+      dxM: Double,
+      dyM: Double,
+      dvxMps: Double,
+      dvyMps: Double,
+      ownHeadingRad: Double,
+      opponentHeadingRad: Double,
+      elapsedS: Double
+  ): Double = newest.heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
+
+  override def start: Any = None
+
+  override def planar(seen: Observation, memory: Any): (Planar, Any) =
+    for news <- lessons.news(seen.decisions) do
+      note(seen.decisions, news)
+      news.parameters.foreach(parameters => newest = version(parameters))
+    val observed = PlanarObservation.of(seen)
+    val numbers  = observed.fromOwnHeading.toVector
+    memory match
+      // After a decision that somebody else made in its place, nothing is known of what came of its own.
+      case Some(Before(decision, before, share)) if decision + 1 == seen.decisions =>
+        lessons.flown(Transition(before, share, numbers, StrictMath.hypot(observed.dxM, observed.dyM)))
+      case _ => ()
+    val policy = newest
+    val share  = (policy.share(observed) + explore * normal(seen.decisions)).max(-1.0).min(1.0)
+    val turn   = share * (policy.turnRateRadPerS * observed.elapsedS + policy.turnRad)
+    (Planar(Radians(observed.ownHeadingRad + turn), None), Some(Before(seen.decisions, numbers, share)))
+
+  private def normal(decision: Long) =
+    if explore == 0 then 0.0
+    else NormalQuantile(SplitMix64(SplitMix64.seedOf(seed, decision)).nextDouble().max(Least))
+
+object LearningPolicy:
+  private val Least = 1e-12
+
+  private final case class Before(decision: Long, seen: Vector[Double], share: Double)

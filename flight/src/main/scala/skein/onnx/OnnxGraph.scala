@@ -1,0 +1,57 @@
+package skein.onnx
+
+/** An ONNX model, as far as small dense networks need it. Source: onnx.proto3 of ONNX 1.23, by the numbers of its fields.
+  *
+  * @param metadata
+  *   what its maker noted, by key
+  */
+final case class OnnxGraph(
+    nodes: Vector[OnnxGraph.Node],
+    constants: Map[String, OnnxGraph.Tensor],
+    inputs: Vector[OnnxGraph.Port],
+    outputs: Vector[OnnxGraph.Port],
+    metadata: Map[String, String] = Map.empty
+)
+
+object OnnxGraph:
+  /** Element types. */
+  val Float32 = 1
+  val Float64 = 11
+
+  /** @param inputs
+    *   names of values; an empty one is left out
+    * @param attributes
+    *   by name
+    */
+  final case class Node(
+      operator: String,
+      inputs: Vector[String],
+      outputs: Vector[String],
+      attributes: Map[String, Attribute] = Map.empty
+  )
+
+  enum Attribute:
+    case Number(value: Double)
+    case Whole(value: Long)
+    case Numbers(values: Vector[Double])
+    case Constant(value: Tensor)
+    case Other
+
+  /** @param values
+    *   row by row
+    */
+  final case class Tensor(shape: Vector[Int], values: Vector[Double])
+
+  /** An input or output of the model.
+    *
+    * @param element
+    *   its type
+    * @param shape
+    *   absent where any length goes; none where it is not told
+    */
+  final case class Port(name: String, element: Int, shape: Option[Vector[Option[Int]]]):
+    /** For a person. */
+    def text: String =
+      s"'$name' of " + shape.fold("a shape that is not told")(
+        _.map(_.fold("any")(_.toString)).mkString("(", ", ", ")")
+      )

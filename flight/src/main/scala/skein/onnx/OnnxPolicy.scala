@@ -1,0 +1,231 @@
+package skein.onnx
+
+import java.io.IOException
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import java.security.MessageDigest
+import java.util.{HexFormat, ServiceLoader}
+import scala.jdk.CollectionConverters.*
+import skein.onnx.OnnxGraph.{Float32, Port}
+import skein.policy.*
+
+/** A policy of an ONNX file. It is shown [[PlanarObservation.fromOwnHeading]], as environments show it, and its one number
+  * says how to turn: as a share, −1 to 1, of the most that it turns until the next decision (pursuer) or at once (evader).
+  *
+  * @param role
+  *   as the file notes it
+  * @param family
+  *   `learned:…` where its network is one of ours
+  * @param parameters
+  *   in the order of the family's axes, for a role
+  */
+final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])
+
+object OnnxPolicy:
+  val Suffix = ".onnx"
+
+  /** Families of policies that a runtime decides for. */
+  val Prefix = "onnx:"
+
+  private val MostBytes = 64L << 20
+
+  /** The most that a pursuer turns, unless its file says otherwise: as in environments. */
+  private val TurnRateRadPerS = 1.0
+
+  /** Notes in files of ours. */
+  private val RoleNote = "skein.role"
+  private val RateNote = "skein.turnRateRadPerS"
+  private val TurnNote = "skein.turnRad"
+
+  /** @return or what was expected, what came, and where */
+  def read(path: String): Either[String, OnnxPolicy] =
+    (for
+      file  <- attempted(Path.of(path).toAbsolutePath.normalize)
+      bytes <- contents(file)
+      graph <- OnnxFormat
+        .read(bytes, beside(file))
+        .left
+        .map(reason => s"expected an ONNX model: $reason")
+      _     <- shapes(graph)
+      found <- DenseGraph.network(graph) match
+        case Right((shape, parameters)) => ours(graph, shape, parameters)
+        case Left(reason)               => other(file, bytes, graph, reason)
+    yield found).left.map(mistake => s"$path: $mistake")
+
+  /** The family of a policy that a runtime decided for, as it was recorded.
+    *
+    * @return
+    *   or why it is not there any more
+    */
+  def recorded(name: String): Either[String, PolicyFamily] =
+    name.stripPrefix(Prefix).split(":", 2) match
+      case Array(digest, written) =>
+        val path = java.net.URLDecoder.decode(written, UTF_8)
+        read(path).map(_.family).flatMap: family =>
+          Either.cond(
+            family.name == name,
+            family,
+            s"$path: expected the file of SHA-256 $digest that decided then, came another"
+          )
+      case _ => Left(s"expected ${Prefix}SHA-256:FILE, came '$name'")
+
+  /** A network as a file.
+    *
+    * @param role
+    *   that it is for
+    * @return
+    *   or why the policy is none
+    */
+  def write(policy: Policy, role: String): Either[String, Array[Byte]] =
+    (policy match
+      case learned: LearnedPolicy => Right(learned)
+      case neural: NeuralPolicy   => Right(seeingMore(neural))
+      case _                      => Left("only networks have an ONNX form: families neural:… and learned:…")
+    ).map: learned =>
+      OnnxFormat.write(DenseGraph.graph(
+        learned,
+        Map(
+          RoleNote -> role,
+          RateNote -> learned.turnRateRadPerS.toString,
+          TurnNote -> learned.turnRad.toString
+        )
+      ))
+
+  /** The same, which is shown more and makes nothing of it. */
+  private def seeingMore(policy: NeuralPolicy): LearnedPolicy =
+    val first        = policy.shape.widths(1)
+    val (seen, rest) = policy.parameters.splitAt(first * (NeuralShape.Inputs + 1))
+    val widened      = seen
+      .grouped(NeuralShape.Inputs + 1)
+      .flatMap(row => row.init ++ Vector.fill(LearnedPolicy.Inputs - NeuralShape.Inputs)(0.0) :+ row.last)
+    LearnedPolicy(
+      policy.shape.copy(inputs = LearnedPolicy.Inputs),
+      widened.toVector ++ rest,
+      policy.turnRateRadPerS,
+      0
+    )
+
+  private def attempted[A](call: => A): Either[String, A] =
+    try Right(call)
+    catch case failed: IOException => Left(s"cannot read it: $failed")
+
+  private def contents(file: Path): Either[String, Array[Byte]] =
+    for
+      _    <- Either.cond(Files.isRegularFile(file), (), "expected an ONNX model, there is no such file")
+      size <- attempted(Files.size(file))
+      _    <- Either.cond(size <= MostBytes, (), s"expected at most $MostBytes bytes, came $size")
+      all  <- attempted(Files.readAllBytes(file))
+    yield all
+
+  /** Weights that stand in another file of the same folder. */
+  private def beside(file: Path)(name: String, offset: Long, length: Long): Either[String, Array[Byte]] =
+    val other = Path.of(name)
+    if other.isAbsolute || other.getNameCount != 1 || name == ".." then
+      Left(s"expected weights in a file beside it, came '$name'")
+    else
+      contents(file.resolveSibling(other)).left.map(reason => s"its weights in $name: $reason").flatMap:
+        all =>
+          val until = if length < 0 then all.length.toLong else offset + length
+          Either.cond(
+            offset >= 0 && offset <= until && until <= all.length,
+            all.slice(offset.toInt, until.toInt),
+            s"expected its weights up to byte $until of $name, which has ${all.length}"
+          )
+
+  private def shapes(graph: OnnxGraph): Either[String, Unit] =
+    def fits(port: Port, numbers: Int) =
+      port.shape.forall: shape =>
+        val last = shape.lastOption.flatten
+        if shape.sizeIs == 1 && numbers > 1 then last.forall(_ == numbers)
+        else shape.sizeIs <= 2 && last.forall(_ == numbers) && (shape.sizeIs < 2 || shape.head.forall(_ == 1))
+    val isRight = graph.inputs.sizeIs == 1 && graph.outputs.sizeIs == 1 &&
+      fits(graph.inputs.head, LearnedPolicy.Inputs) && fits(graph.outputs.head, 1)
+    Either.cond(
+      isRight,
+      (),
+      s"expected one input of shape (batch, ${LearnedPolicy.Inputs}) and one output of shape (batch, 1), " +
+        s"came ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
+    )
+
+  private def told(what: String, ports: Vector[Port]): String =
+    if ports.isEmpty then s"no $what" else s"$what ${ports.map(_.text).mkString(", ")}"
+
+  private def ours(
+      graph: OnnxGraph,
+      shape: NeuralShape,
+      parameters: Vector[Double]
+  ): Either[String, OnnxPolicy] =
+    Either.cond(
+      parameters.forall(_.isFinite),
+      OnnxPolicy(
+        graph.metadata.get(RoleNote),
+        PolicyFamily.learned(shape),
+        role => parameters ++ mostTurn(graph, role)
+      ),
+      "expected finite weights, came some that are none"
+    )
+
+  private def mostTurn(graph: OnnxGraph, role: Role): Vector[Double] =
+    def note(key: String)  = graph.metadata.get(key).flatMap(_.toDoubleOption).filter(_.isFinite)
+    val Vector(rate, turn) = LearnedPolicy.mostTurn(role, TurnRateRadPerS): @unchecked
+    Vector(note(RateNote).getOrElse(rate), note(TurnNote).getOrElse(turn))
+
+  /** A model that is no network of ours, for whoever runs models. */
+  private def other(
+      file: Path,
+      bytes: Array[Byte],
+      graph: OnnxGraph,
+      why: String
+  ): Either[String, OnnxPolicy] =
+    val input   = graph.inputs.head
+    val runners = ServiceLoader.load(classOf[ModelRunner]).iterator.asScala.toVector
+    for
+      runner <-
+        runners.headOption.toRight(s"it is no dense network ($why), and nothing here runs other models")
+      _ <- Either.cond(
+        input.element == Float32,
+        (),
+        s"it is no dense network ($why), and runs on 32-bit floats alone: came input of type ${input.element}"
+      )
+      model <- runner.load(bytes).left.map(reason => s"it is no dense network ($why): $reason")
+      rank  = input.shape.fold(2)(_.size)
+      asked = (seen: Array[Float]) => model(seen, Vector(LearnedPolicy.Inputs).reverse.padTo(rank, 1).reverse)
+      _ <- answer(asked, PlanarObservation(10, 0, 0, 0, 0, 0, 0, 0, 0)).left.map(reason =>
+        s"it was tried: $reason"
+      )
+    yield
+      val digest = HexFormat.of.formatHex(MessageDigest.getInstance("SHA-256").digest(bytes))
+      val name   = s"$Prefix$digest:${java.net.URLEncoder.encode(file.toString, UTF_8)}"
+      val family = PolicyFamily(
+        name,
+        "a model that a runtime decides for",
+        Set(Role.Pursuer, Role.Evader),
+        SearchSpace(Vector(
+          Axis("turnRateRadPerS", 0.2, 3.0, TurnRateRadPerS),
+          Axis("turnRad", 0.0, math.Pi, 0.0)
+        )),
+        numbers => RunPolicy(asked, numbers(0), numbers(1))
+      )
+      OnnxPolicy(graph.metadata.get(RoleNote), family, mostTurn(graph, _))
+
+  private def answer(
+      asked: Array[Float] => Either[String, Array[Float]],
+      seen: PlanarObservation
+  ): Either[String, Double] =
+    asked(seen.fromOwnHeading.map(_.toFloat)).flatMap:
+      case Array(share) if share.isFinite => Right(share.toDouble.max(-1).min(1))
+      case Array(share)                   => Left(s"expected a number from -1 to 1, came $share")
+      case others                         => Left(s"expected one number, came ${others.length}")
+
+  /** Any thread. Fails where the model does, and where its number is none. */
+  private final class RunPolicy(
+      asked: Array[Float] => Either[String, Array[Float]],
+      turnRateRadPerS: Double,
+      turnRad: Double
+  ) extends ObservingPolicy[Unit]:
+    def initial: Unit = ()
+
+    def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+      val share =
+        answer(asked, seen).fold(reason => throw IllegalStateException(s"the policy: $reason"), identity)
+      Decided(seen.ownHeadingRad + share * (turnRateRadPerS * seen.elapsedS + turnRad), ())

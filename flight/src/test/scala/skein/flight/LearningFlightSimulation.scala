@@ -1,0 +1,100 @@
+package skein.flight
+
+import java.nio.file.Files
+import scala.concurrent.duration.{Duration, DurationInt}
+import skein.loop.{LoopKind, Outcome}
+import skein.loop.learning.{FlownLearner, Learning, Transition}
+import skein.policy.*
+import skein.record.{EventKind, Recording}
+import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
+import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
+import skein.signal.{LatencyProfile, SplitMix64}
+import skein.units.*
+
+/** Flights in virtual time whose pursuer's policy is another every now and then. */
+class LearningFlightSimulation extends munit.FunSuite:
+  override val munitTimeout: Duration = 5.minutes
+
+  private given Scenarios = Scenarios(ScenarioKind(PaperDuel()))
+
+  private val settings = FlySettings(
+    List(LoopKind.Stream),
+    List(LatencyProfile.vpn),
+    duration = Span.ofSeconds(5),
+    period = Span.ofMillis(100),
+    seed = 7
+  )
+
+  private val family = PolicyFamily.learned(LearnedPolicy.shape(Vector(4)))
+
+  private def drawn(seed: Long): Vector[Double] =
+    val random = SplitMix64(seed)
+    Vector.fill(family.space.dimension - 2)(2 * random.nextDouble() - 1) ++ Vector(2.0, 0.0)
+
+  private val first = PolicyFile(Role.Pursuer, family, drawn(0))
+
+  /** A new version after every ten transitions, drawn by what was flown. */
+  private def every10(seen: Transition => Unit): FlownLearner = new FlownLearner:
+    private var learned                        = 0
+    def learn(transitions: Vector[Transition]) =
+      transitions.foreach(seen)
+      val before = learned / 10
+      learned += transitions.size
+      Option.when(learned / 10 > before)(drawn((1e6 * transitions.last.distanceM).toLong))
+
+  private def flown(learner: FlownLearner, settings: FlySettings = settings) =
+    val chosen = ChosenPolicy("learning", first, Some(Learning.Beside(0.1, _ => learner)))
+    VirtualFlights.fly(settings, settings.plansWith(chosen).last).fold(fail(_), identity)
+
+  private def learned(recording: Recording) = recording.events.filter(_.kind == EventKind.Learned)
+
+  test("versions are swapped in between decisions, recorded, and flown again to an equal digest"):
+    var seen      = Vector.empty[Transition]
+    val landed    = flown(every10(seen :+= _))
+    val recording = landed.recorder.recording
+    assertEquals(landed.landed.outcome, Outcome.Completed)
+    val versions = learned(recording)
+    assert(versions.size >= 3, versions)
+    assertEquals(
+      versions.map(_.detail.takeWhile(_ != ',')),
+      versions.indices.map(index => s"version ${index + 1} decides from here").toVector
+    )
+    // What was seen, done and reached is what was decided.
+    val decisions = recording.decisions.filter(_.vehicle == "Pursuer")
+    assert(seen.size >= decisions.size - 3, s"${seen.size} of ${decisions.size}")
+    for (one, next) <- seen.zip(seen.drop(1)) do assertEquals(one.reached, next.seen)
+    for (one, decision) <- seen.zip(decisions) do
+      assertEqualsDouble(
+        decision.headingBefore.value + one.share * 2 * decision.elapsed.toSeconds,
+        decision.heading.value,
+        1e-12
+      )
+    assertEquals(flown(every10(_ => ())).recorder.digest, landed.recorder.digest)
+    val file = Files.createTempDirectory("learning").resolve("flight.duckdb")
+    landed.recorder.writeTo(file).fold(error => fail(error.message), _ => ())
+    val replayed = Replayed.of(file).fold(fail(_), identity)
+    assertEquals(replayed.decidedAgain.map(_.message), None)
+    assertEquals(replayed.flownAgain.map(again => again.again), Some(landed.recorder.digest))
+
+  test("a version that is not finite is refused, and the last one decides on"):
+    val learner: FlownLearner = _ => Some(first.parameters.updated(3, Double.NaN))
+    val landed                = flown(learner)
+    assertEquals(landed.landed.outcome, Outcome.Completed)
+    val texts = learned(landed.recorder.recording).map(_.detail)
+    assertEquals(texts.head, s"version 1 refused: 1 of its ${family.space.dimension} numbers are not finite")
+    assert(landed.recorder.recording.decisions.forall(_.heading.value.isFinite))
+
+  for
+    (what, error) <- Seq(
+      "fails"                   -> IllegalStateException("no such luck"),
+      "has not all its classes" -> NoClassDefFoundError("no such luck")
+    )
+  do
+    test(s"a learner that $what ends learning alone"):
+      val learner: FlownLearner = _ => throw error
+      val landed                = flown(learner)
+      assertEquals(landed.landed.outcome, Outcome.Completed)
+      val texts = learned(landed.recorder.recording).map(_.detail)
+      assert(texts.head.contains("the policy stays as it is: "), texts)
+      assert(texts.head.contains("no such luck"), texts)
+      assert(landed.recorder.recording.decisions.count(_.vehicle == "Pursuer") > 30)

@@ -1,0 +1,90 @@
+package skein.loop
+
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success, Try}
+import skein.policy.*
+import skein.port.{Sensor, VehicleError}
+import skein.record.{EventKind, MemoryRecorder, Samples}
+import skein.scenario.PaperDuel
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+
+/** What is on record of what happened to a team. */
+class TeamLogSuite extends munit.FunSuite:
+  private val now = Instant.Epoch + Span.ofSeconds(5)
+
+  private final class Books(fleet: Fleet):
+    private val deciders = fleet.agents.indices.map(Decider(fleet, _))
+    private val memory   = MemoryRecorder(Samples.heading)
+    val log: TeamLog     = TeamLog(fleet, deciders, Clock.ofNanos(() => now.toNanos), memory)
+    def recording        = memory.recording
+
+    val view: TeamView = fleet.agents.indices.foldLeft(TeamView.empty(fleet.agents.size)): (view, vehicle) =>
+      val at    = Vector3(10.0 * vehicle, 0, -20)
+      val state = Kinematics(at, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+      view.withReading(Reading(vehicle, 70L + vehicle, Stamped(state, now, now, now)))
+
+    def decision(vehicle: Int): Decision =
+      deciders(vehicle).decide(deciders(vehicle).start, view, now)._2
+
+  test("a command is done, superseded, or why it failed"):
+    val ends = Seq[(Try[Either[VehicleError, Boolean]], String)](
+      Success(Right(true))                                -> "done",
+      Success(Right(false))                               -> "superseded",
+      Success(Left(VehicleError.Refused("no such move"))) -> "no such move",
+      Failure(IllegalStateException("gone"))              -> "java.lang.IllegalStateException: gone"
+    )
+    for (result, told) <- ends do
+      val books = Books(PaperDuel().fleet)
+      books.log.ended(books.decision(1), now, result)
+      assertEquals(books.recording.acknowledgements.map(_.outcome), Vector(told))
+
+  test("every error is an event of its kind, with what was asked for"):
+    val kinds = Seq(
+      VehicleError.TimedOut("x")    -> EventKind.TimedOut,
+      VehicleError.Lost("x", true)  -> EventKind.Disconnected,
+      VehicleError.Unreachable("x") -> EventKind.Disconnected,
+      VehicleError.Overloaded("x")  -> EventKind.Overloaded,
+      VehicleError.Cancelled("x")   -> EventKind.Cancelled,
+      VehicleError.Refused("x")     -> EventKind.Refused,
+      VehicleError.Malformed("x")   -> EventKind.Refused,
+      VehicleError.Unsupported("x") -> EventKind.Refused
+    )
+    for (error, kind) <- kinds do
+      val books = Books(PaperDuel().fleet)
+      books.log.failed(0, "reading 3", error)
+      assertEquals(books.recording.events.map(one => (one.kind, one.detail)), Vector(kind -> "reading 3: x"))
+
+  private object Together extends TeamPolicy:
+    def course(seen: TeamObservation): Course = Course(seen.northM.sum, 2)
+
+  test("of a policy that regards its team it is on record whom else it saw, of a duellist not"):
+    val duels = PaperDuel(pairs = 2).fleet
+    val team  = Fleet(duels.agents.map(_.copy(policy = Together)))
+    val books = Books(team)
+    val made  = books.decision(1)
+    books.log.decided(made)
+    val others = team.agents.indices.filterNot(Set(1, made.opponent))
+    assertEquals(
+      books.recording.sightings.map(one => (one.decider, one.decision, one.vehicle, one.reading)),
+      others.map(other => (team.agents(1).name, 0L, team.agents(other).name, 70L + other)).toVector
+    )
+    val duel = Books(duels)
+    duel.log.decided(duel.decision(1))
+    assertEquals((duel.recording.decisions.size, duel.recording.sightings), (1, Vector.empty))
+
+  test("a sensor's answer has as many finite numbers as columns, else it is an error on record"):
+    given ExecutionContext    = ExecutionContext.parasitic
+    val names                 = Vector("north", "east")
+    def read(values: Double*) =
+      val books  = Books(PaperDuel().fleet)
+      val sensor = new Sensor:
+        def columns: Vector[String]                                       = names
+        def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
+          Future.successful(Right(Stamped(IArray.from(values), now, now, now)))
+      val answer = TeamSensor(0, "gps", sensor, books.log).read().value.get.get
+      (answer.isRight, books.recording.measurements.size, books.recording.events.map(_.detail))
+    assertEquals(read(1, 2), (true, 1, Vector.empty))
+    for values <- Seq(Seq(1, Double.NaN), Seq(Double.PositiveInfinity, 2), Seq(1.0), Seq(1.0, 2.0, 3.0)) do
+      val told = s"gps 0: expected north, east, came ${values.mkString(", ")}"
+      assertEquals(read(values*), (false, 0, Vector(told)))

@@ -1,0 +1,24 @@
+package skein.settings
+
+import java.io.RandomAccessFile
+import java.nio.file.Files
+
+class TextFileSuite extends munit.FunSuite:
+
+  test("a file that is too large is refused, not read"):
+    val file = Files.createTempFile("large", ".conf")
+    val size = RandomAccessFile(file.toFile, "rw")
+    try size.setLength(3L << 30)
+    finally size.close()
+    try
+      assert(clue(TextFile.read(file.toString)).left.exists(_.contains("expected a file of at most 64 MiB")))
+    finally Files.delete(file)
+
+  test("a text is read whole; other bytes, folders and nothing are told"):
+    val folder = Files.createTempDirectory("texts")
+    val file   = Files.writeString(folder.resolve("a.conf"), "zwei = \u0662")
+    assertEquals(TextFile.read(file.toString), Right("zwei = \u0662"))
+    Files.write(file, Array[Byte](-1, -2))
+    assert(TextFile.read(file.toString).left.exists(_.contains("no text in UTF-8")))
+    assert(TextFile.read(folder.toString).left.exists(_.contains("came the folder")))
+    assert(TextFile.read(s"$file-not").left.exists(_.contains("there is no file")))

@@ -1,0 +1,65 @@
+package skein.lanes;
+
+import java.util.Arrays;
+import skein.forward.Duelist;
+
+/**
+ * The vehicles of one role in many worlds, whose commands act at times of their own in each. Times
+ * count from the begin of a period; periods are taken in turn. {@link LagVehicles} and {@link
+ * LaneFlights} are the two ways to keep what has not acted yet.
+ */
+abstract class LaneVehicles {
+  static final int WORLDS = LanePolicy.WORLDS;
+
+  /**
+   * Where each world's numbers begin in {@link #state}: position at the period's begin, m; position and
+   * velocity as read last, m and m/s; north, then east. The kind of vehicle may keep more from {@link
+   * #OWN} on: passes over many arrays spend their time on their addresses.
+   */
+  static final int X = 0,
+      Y = WORLDS,
+      SEEN_X = 2 * WORLDS,
+      SEEN_Y = 3 * WORLDS,
+      SEEN_VX = 4 * WORLDS,
+      SEEN_VY = 5 * WORLDS,
+      OWN = 6 * WORLDS;
+
+  final float[] state;
+
+  private final float startX, startY;
+
+  /**
+   * @param own numbers of each world that the kind of vehicle keeps from {@link #OWN} on
+   */
+  LaneVehicles(Duelist duelist, int own) {
+    state = new float[OWN + own * WORLDS];
+    startX = (float) duelist.startX();
+    startY = (float) duelist.startY();
+  }
+
+  /** Back to the start of an episode, where they rest. */
+  void start() {
+    Arrays.fill(state, 0f);
+    for (int x : new int[] {X, SEEN_X}) Arrays.fill(state, x, x + WORLDS, startX);
+    for (int y : new int[] {Y, SEEN_Y}) Arrays.fill(state, y, y + WORLDS, startY);
+  }
+
+  /**
+   * Reads the vehicles where {@code fresh} is 1, or everywhere.
+   *
+   * @param vectors in which some world is read
+   * @param at when, from the row's begin, in grains
+   */
+  abstract void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity);
+
+  /** Flies to a row's begin. */
+  abstract void flyToRow(int row);
+
+  /**
+   * Lets commands act, none earlier than the one before.
+   *
+   * @param vectors in which some command does
+   * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
+   */
+  abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
+}

@@ -1,0 +1,125 @@
+package skein.lanes
+
+import java.nio.file.{Files, Path}
+import skein.forward.*
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.{OffRing, Reduction, Surround}
+import skein.simd.WorldRandom
+import skein.vehicle.ReducedModel
+
+/** ARCHITECTURE.md's table of what flies by lanes is what the engines say, cell by cell; and what is said to fly by lanes
+  * or vehicle by vehicle flies as the scalar reference does.
+  */
+class FlownByLanesSuite extends munit.FunSuite:
+  private val root =
+    Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
+
+  private val plants = Vector[(String, VelocityResponse)](
+    "no lag"                -> VelocityResponses.Ideal,
+    "lag"                   -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "drag"                  -> ReducedResponse(ReducedModel.AirSim),
+    "a `Plant` of a user's" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
+    "the quadrotor"         -> VelocityResponses.quadrotor()
+  )
+
+  private def loops(model: VelocityResponse): Vector[LoopTiming] = Vector(
+    LoopTiming.Paused(),
+    LoopTiming.Sequential(),
+    LoopTiming.Futures(),
+    LoopTiming.Stream(),
+    LoopTiming.Predictive(predictor = model.predictor)
+  )
+
+  private val duel = Duel.paper.copy(
+    evader = Duel.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
+    durationS = 3
+  )
+
+  private val policies: Vector[(String, Policy)] = Vector(
+    "a formula"                    -> PaperPursuer(),
+    "a formula that remembers"     -> TrendPursuer(3, 0.5, 1),
+    "a formula that asks for ages" -> AgeAwarePursuer(8, 1, 1),
+    "no formula"                   -> DuelBatchSuite.Straight
+  )
+
+  /** What the table says of worlds under a loop, by plant. */
+  private val table: Map[(String, String), Map[String, String]] =
+    val rows = Files
+      .readString(root.resolve("ARCHITECTURE.md"))
+      .linesIterator
+      .dropWhile(!_.startsWith("| worlds | loop |"))
+      .takeWhile(_.startsWith("|"))
+      .map(_.stripPrefix("|").stripSuffix("|").split('|').map(_.trim).toVector)
+      .toVector
+    val header = rows.head.drop(2)
+    assertEquals(header, plants.map(_._1), "the table's columns")
+    (for
+      row  <- rows.drop(2)
+      loop <- row(1).split(", ")
+    yield (row(0), loop.stripPrefix("`").stripSuffix("`")) -> header.zip(row.drop(2)).toMap).toMap
+
+  /** The engine's sentence in the table's words. */
+  private def word(engine: String): String =
+    if engine.startsWith("scalar: ") then "scalar"
+    else if engine.endsWith("loops by the scalar engine") then "vehicles"
+    else
+      assert(engine.startsWith("SIMD, "), engine)
+      "lanes"
+
+  private def nameOf(timing: LoopTiming) = timing.productPrefix.toLowerCase
+
+  for
+    (plant, model)   <- plants
+    timing           <- loops(model)
+    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+  do
+    test(
+      s"$worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
+    ):
+      val batch = DuelBatch(duel, timing, model, threads = 1)
+      val said  = table((worlds, nameOf(timing)))(plant)
+      for (kind, policy) <- policies do
+        val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn))
+        // Quadrotors need no formula to fly side by side.
+        val expected =
+          if kind != "no formula" then said else if plant == "the quadrotor" then "vehicles" else "scalar"
+        assertEquals(word(engine), expected, s"$kind: $engine")
+      if said != "scalar" then agree(batch, timing, model, shared)
+
+  private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
+    val all = new DuelWorlds:
+      def size: Int                       = 24
+      override def shareEpisodes: Boolean = shared
+      def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * world)
+      def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
+    val flown = batch.fly(all)
+    for world <- 0 until all.size by 5 do
+      val own =
+        Duel(duel.pursuer.copy(policy = all.pursuer(world)), duel.evader.copy(policy = all.evader(world)), 3)
+      val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
+      assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 4e-3, s"world $world")
+      assertEqualsDouble(flown.pursuerEffortRad(world), scalar.pursuerEffortRad, 4e-3, s"world $world")
+
+  for
+    (plant, model) <- plants
+    timing         <- loops(model)
+  do
+    test(s"teams, ${nameOf(timing)}, $plant: the engine says what the table does"):
+      val surround = Surround(6)
+      val team     =
+        TeamCandidate(
+          Engagement.of(surround.fleet, 3),
+          Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
+        )
+      val batch = TeamBatch(timing, model, threads = 1)
+      assertEquals(word(batch.engine(team)), table(("teams", nameOf(timing)))(plant), batch.engine(team))
+
+  test("the table has a row for all that the engines fly, and no other"):
+    val all =
+      for
+        worlds <- Seq("duels, shared delays", "duels, own delays", "teams")
+        timing <- loops(VelocityResponses.Ideal)
+      yield (worlds, nameOf(timing))
+    assertEquals(table.keySet, all.toSet)

@@ -1,0 +1,94 @@
+package skein.learn
+
+import skein.loop.learning.{FlownLearner, Transition}
+import skein.policy.{LearnedPolicy, Role}
+import skein.signal.SplitMix64
+
+/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[DuelTask]]: a small distance
+  * is the pursuer's, a great one the evader's. Equal transitions in equal lessons give equal weights.
+  *
+  * @param bounds
+  *   the most that its policies turn, as a [[LearnedPolicy]]'s last parameters
+  * @param updates
+  *   for each transition
+  * @param transitionsPerVersion
+  *   after which its policy is flown
+  */
+final class LearnerInFlight private (
+    learner: OffPolicy,
+    role: Role,
+    bounds: Vector[Double],
+    updates: Double,
+    transitionsPerVersion: Int,
+    seed: Long
+) extends FlownLearner:
+  private val scales  = LearnedPolicy.scales.map(_.toFloat)
+  private val random  = SplitMix64(seed)
+  private var lessons = 0L
+  private var learned = 0L
+  private var due     = 0.0
+
+  def learn(transitions: Vector[Transition]): Option[Vector[Double]] =
+    lessons += 1
+    learner.begin(SplitMix64.seedOf(seed, lessons) & Long.MaxValue)
+    val versions = learned / transitionsPerVersion
+    for transition <- transitions do
+      learner.replay.add(row(transition.seen), Array(transition.share.toFloat), reached(transition))
+      learned += 1
+      if learner.replay.size >= learner.batch.count then
+        due += updates
+        while due >= 1 do
+          learner.replay.draw(learner.batch, random)
+          learner.update()
+          due -= 1
+    Option.when(learned / transitionsPerVersion > versions)(DuelTask.parameters(learner.actor) ++ bounds)
+
+  private def row(numbers: Vector[Double]) =
+    numbers.lazyZip(scales).map((number, scale) => number.toFloat / scale).toArray
+
+  private def reached(transition: Transition): Task =
+    val loss = (transition.distanceM * DuelTask.RewardPerM).toFloat
+    LearnerInFlight.OneStep(row(transition.reached), if role == Role.Pursuer then -loss else loss)
+
+object LearnerInFlight:
+
+  /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate. */
+  private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
+    def count: Int                     = 1
+    def actions: Int                   = 1
+    def observations: Int              = reached.length
+    def seen: Array[Float]             = reached
+    val rewards: Array[Float]          = Array(reward)
+    val terminated: Array[Boolean]     = Array(false)
+    def ended: Array[Boolean]          = terminated
+    def begin(round: Long): Unit       = none
+    def step(acts: Array[Float]): Unit = none
+    private def none                   = throw UnsupportedOperationException("one step of a flight")
+
+  /** A learner as it was kept.
+    *
+    * @param load
+    *   fills it with what was kept, if anything was
+    * @return
+    *   the parameters of its policy, and the learner; or why it cannot learn in flight
+    */
+  def of(
+      algorithm: Algorithm,
+      settings: LearnerSettings,
+      role: Role,
+      bounds: Vector[Double],
+      updates: Double,
+      transitionsPerVersion: Int,
+      seed: Long
+  )(load: Learner => Either[String, Unit]): Either[String, (Vector[Double], LearnerInFlight)] =
+    algorithm.learner(LearnedPolicy.Inputs, 1, 1, settings, seed, Workers(1)) match
+      case learner: OffPolicy =>
+        load(learner).map: _ =>
+          (
+            DuelTask.parameters(learner.actor) ++ bounds,
+            LearnerInFlight(learner, role, bounds, updates, transitionsPerVersion, seed)
+          )
+      case _ =>
+        Left(
+          s"${algorithm.label} learns from its newest steps alone, of many environments; expected sac or ddpg"
+        )

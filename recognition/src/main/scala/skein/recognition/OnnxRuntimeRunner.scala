@@ -1,0 +1,20 @@
+package skein.recognition
+
+import skein.policy.ModelRunner
+
+/** Runs policies that are ONNX models by onnxruntime, where that is on the class path; on one thread, so that equal
+  * questions have equal answers.
+  */
+final class OnnxRuntimeRunner extends ModelRunner:
+
+  def load(model: Array[Byte]): Either[String, (Array[Float], Vector[Int]) => Either[String, Array[Float]]] =
+    try
+      OnnxModel
+        .read(model)
+        .map: loaded =>
+          (numbers, shape) => loaded.run(numbers, shape).map(_.values.head.values)
+    catch
+      case missing: LinkageError =>
+        Left(
+          s"onnxruntime, which runs other models, is not on the class path (docs/guides/onnx.md says how to add it): $missing"
+        )
