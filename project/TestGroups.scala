@@ -13,7 +13,7 @@ object TestGroups extends AutoPlugin {
   }
   import autoImport.*
 
-  /** Of suites that hold what they measure on the clock to a bound: nothing else runs meanwhile. */
+  /** Of suites that measure time, or fly for minutes by the clock beside other programs: nothing else runs meanwhile. */
   private val Timing: Tags.Tag = Tags.Tag("timing")
 
   /** Of suites that mostly wait: for other programs, for the real clock. */
@@ -30,6 +30,7 @@ object TestGroups extends AutoPlugin {
   )
 
   private val timing = Set(
+    "skein.cli.ViewLiveSuite",
     "skein.link.LinkFidelityLiveSuite",
     "skein.link.PreciseSchedulerLiveSuite",
     "skein.flight.TwinLiveSuite"
@@ -48,8 +49,6 @@ object TestGroups extends AutoPlugin {
     */
   private val alone = Set(
     "skein.cli.DocumentedCommandsLiveSuite",
-    // Its viewers have a processor only while nobody else wants it: not beside two that compute.
-    "skein.cli.ViewLiveSuite",
     "skein.flight.WarmUpSimulation",
     "skein.loop.planning.BackgroundThreadLiveSuite"
   )

@@ -1,9 +1,10 @@
 // Foxglove's own client: subscribes to every topic, holds every message to its topic's schema, and says what it saw.
-// node client.mjs FOLDER-OF-PACKAGES WEBSOCKET-URL SUBPROTOCOL, until the connection ends or standard input does
+// node client.mjs FOLDER-OF-PACKAGES WEBSOCKET-URL SUBPROTOCOL READINGS TOPIC…, until it has seen so many readings and
+// something of each of these topics, or the connection or standard input ends
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
-const [folder, url, protocol] = process.argv.slice(2);
+const [folder, url, protocol, enough, ...needed] = process.argv.slice(2);
 const require = createRequire(join(resolve(folder), "node_modules", "none.js"));
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const WebSocket = require("ws");
@@ -39,6 +40,7 @@ client.on("message", ({ subscriptionId, timestamp, data }) => {
   const message = JSON.parse(new TextDecoder().decode(data));
   if (!topic.valid(message)) wrong.push(`${topic.name}: ${schemas.errorsText(topic.valid.errors)}`);
   if (topic.name === "/skein/reading") readings.push([message.vehicle, message.sequence, message.positionNorthM, String(timestamp)]);
+  if (readings.length >= enough && needed.every(name => topics.get(name)?.messages > 0)) tell();
 });
 const tell = () => {
   console.log(JSON.stringify({

@@ -3,7 +3,6 @@ package skein.cli
 import java.util.concurrent.Executors
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.ExecutionContext
-import skein.loop.planning.BackgroundThread
 import skein.units.Clock
 import skein.view.{Shows, Token, ViewServer}
 
@@ -34,8 +33,8 @@ final case class ViewOptions(
       case Some(line)       => Left(line)
       case _ if !view.value => body
       case _                =>
-        // Flights come first: viewers have a processor while nobody else wants it.
-        val threads = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-view"))
+        // Not in the scheduler's idle class: whoever aborts a flight is heard on a busy machine, too.
+        val threads = Executors.newSingleThreadExecutor(Thread.ofPlatform.daemon.name("skein-view").factory)
         val token   = Token.drawn()
         try
           Edge.await(

@@ -27,13 +27,12 @@ object Lateness:
     val sent   = recorded.readings.map(_.state.sentAt.toNanos).sorted
     val steady = sent.filter(_ > sent.head + 1_000_000_000L)
     val phases = steady.map(_ % period)
-    // Around the circle: the phase after which the most of it is empty.
-    val sorted = phases.sorted
-    val gaps   =
-      sorted.indices.map(at => Math.floorMod(sorted(at) - sorted(Math.floorMod(at - 1, sorted.size)), period))
-    val phase                   = sorted(gaps.indexOf(gaps.max))
-    val late                    = phases.map(one => Math.floorMod(one - phase, period) * 1e-6).sorted
-    def quantile(share: Double) = late(((late.size - 1) * share).round.toInt)
+    // Signed, around the circle, from the phase that is nearest to all.
+    def after(one: Long, other: Long) = Math.floorMod(other - one + period / 2, period) - period / 2
+    val middle                        = phases.minBy(one => phases.map(after(one, _).abs).sum)
+    val sorted                        = phases.map(after(middle, _) * 1e-6).sorted
+    val late                          = sorted.map(_ - sorted((sorted.size - 1) / 100))
+    def quantile(share: Double)       = late(((late.size - 1) * share).round.toInt)
     Lateness(late.size, quantile(0.5), quantile(0.99), late.last)
 
 /** Viewers that subscribe to every topic and throw away what comes: all as fast as it comes, but one that reads a byte a
@@ -76,14 +75,12 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
     val out    = folder.resolve(s"$round-$viewers")
     val flying =
       ViewLiveSuite.Flying.start(out, "--loop", "predictive", "--link", "none", "--duration", s"${seconds}s")
-    val (bytes, heap) = Using.resource(Viewers(flying.port, viewers)): watching =>
-      Thread.sleep(seconds * 500L)
-      System.gc()
-      val heap = (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20
+    flying.awaitStart("predictive-none")
+    val bytes = Using.resource(Viewers(flying.port, viewers)): watching =>
       flying.land()
-      (watching.bytes.get, heap)
+      watching.bytes.get
     val late = Lateness.of(out.resolve("predictive-none.duckdb"))
     println(
       f"$viewers%2d viewers: ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
-        f"$bytes%,d bytes seen; heap $heap MiB in flight"
+        f"$bytes%,d bytes seen"
     )
