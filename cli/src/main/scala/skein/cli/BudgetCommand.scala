@@ -21,7 +21,7 @@ final case class BudgetOptions(
       "judges this scenario by --objective, a sum of its measures (default: its first), in the place of a duel's policy"
     )
     scenario: Option[String],
-    @arg(doc = "NAME=VALUE: a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
     set: Seq[String],
     forward: ForwardOptions,
     @arg(doc = "between decisions for one vehicle; several give a map each (default: 100ms)")

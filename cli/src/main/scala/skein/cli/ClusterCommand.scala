@@ -11,7 +11,7 @@ final case class ClusterCommandOptions(
     )
     host: Seq[String],
     @arg(doc =
-      "certificates DIR: makes what coordinator and workers show one another, a folder for each host"
+      "makes what coordinator and workers show one another, a folder for each host"
     )
     words: Leftover[String]
 )

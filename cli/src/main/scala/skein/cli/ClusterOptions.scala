@@ -10,7 +10,7 @@ final case class ClusterOptions(
     @arg(doc = "computes by so many processes of this machine, which share its cores")
     workers: Option[Int],
     @arg(doc =
-      "HOST:PORT where workers of other machines join (./skein worker --join); the command waits for them"
+      "where workers of other machines join (./skein worker --join); the command waits for them"
     )
     cluster: Option[String],
     @arg(doc = "episodes, or flights, of the blocks that workers compute, about (default: half a second's)")

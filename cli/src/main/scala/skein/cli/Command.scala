@@ -1,6 +1,6 @@
 package skein.cli
 
-import mainargs.{ParserForClass, Result, Util}
+import mainargs.{ArgSig, ParserForClass, Result, Util}
 import skein.policy.PolicyFamily
 import skein.record.{ClockKind, LoopKind}
 
@@ -53,13 +53,10 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** @param width
     *   in columns
     */
-  private[cli] def help(width: Int): String =
-    parser.helpText(
-      totalWidth = width,
-      customName = s"./skein $name [OPTION…]",
-      customDoc = summary,
-      sorted = false
-    )
+  private[cli] def help(width: Int): String = HelpText.of(name, summary, operandsAndOptions, width)
+
+  /** By options' names: what counts where one is not given and its own description does not tell. */
+  protected def defaults: Map[String, String] = Map.empty
 
   final def run(arguments: Seq[String]): Int =
     if arguments.exists(word => word == "--help" || word == "-h") then
@@ -98,16 +95,24 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       "--" + _
     )
 
-  private[cli] final def options: Seq[CommandOption] =
+  private[cli] final def options: Seq[CommandOption] = operandsAndOptions.filter(_.flag.nonEmpty)
+
+  private def operandsAndOptions: Seq[CommandOption] =
     for
       (argument, reader) <- parser.main.flattenedArgSigs
-      name               <- argument.longName(Util.kebabCaseNameMapper) if !reader.isLeftover
+      name               <- argument.longName(Util.kebabCaseNameMapper)
     yield CommandOption(
-      s"--$name",
+      if reader.isLeftover then "" else s"--$name",
       argument.doc.getOrElse(""),
-      !reader.isFlag,
+      Option.unless(reader.isFlag)(HelpText.placeholder(name, Misuse.kind(reader))),
+      defaults.get(name).orElse(ownDefault(argument)),
       OptionValues.known.getOrElse(name, Nil)
     )
+
+  /** That of the options' case class. */
+  private def ownDefault(argument: ArgSig): Option[String] =
+    argument.default.map(_(parser.companion())).collect:
+      case value: (String | Int | Long | Double) => value.toString
 
   private def takesValue(word: String): Boolean = parser.main.flattenedArgSigs.exists: (argument, reader) =>
     reader.isSimple && argument.longName(Util.kebabCaseNameMapper).exists(name => word == s"--$name")

@@ -24,7 +24,7 @@ final case class FlightOptions(
     seed: Option[Long],
     @arg(doc = "whose task is flown; the command scenarios lists them with their settings")
     scenario: Option[String],
-    @arg(doc = "NAME=VALUE: a setting of the scenario, for example ring-m=10; may be given several times")
+    @arg(doc = "a setting of the scenario, for example ring-m=10; may be given several times")
     set: Seq[String],
     @arg(doc =
       "what stands in the built-in simulator's world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
@@ -54,8 +54,8 @@ final case class FlightOptions(
     @arg(
       name = "moves-in-flight",
       doc =
-        "of one vehicle; 2 unless given. More let a link of a long round trip carry more commands, but several that " +
-          "a stall delivers at once can freeze AirSim"
+        "of one vehicle; more let a link of a long round trip carry more commands, but several that a stall " +
+          "delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
     @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
@@ -133,6 +133,24 @@ final case class FlightOptions(
 
 object FlightOptions:
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
+
+  /** What counts where nothing is said, by flags' names: the configuration's own. */
+  lazy val defaults: Map[String, String] =
+    val own = ConfigFactory.defaultReference().getConfig("skein.fly")
+    Seq(
+      "loops"           -> "loop",
+      "links"           -> "link",
+      "period"          -> "period",
+      "seed"            -> "seed",
+      "predictor"       -> "predictor",
+      "moves-in-flight" -> "moves-in-flight",
+      "fallback"        -> "fallback"
+    )
+      .map: (key, flag) =>
+        flag -> (own.getAnyRef(key) match
+          case several: java.util.List[?] => several.asScala.mkString(", ")
+          case one                        => one.toString.replace(" ", ""))
+      .toMap
 
   private val paperLoops =
     Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)

@@ -20,7 +20,7 @@ import skein.view.Shows
 final case class FlyOptions(
     flights: FlightOptions,
     @arg(doc =
-      "HOST:PORT of a simulator that runs already, AirSim for example; without it, each flight has a built-in one"
+      "a simulator that runs already, AirSim for example; without it, each flight has a built-in one"
     )
     simulator: Option[String],
     @arg(doc =
@@ -33,7 +33,7 @@ final case class FlyOptions(
     twins: Int = 1,
     @arg(doc = "folder for recordings and report; without it, flights/DATE-TIME")
     out: Option[String],
-    beside: BesideOptions,
+    beside: RecordOptions,
     learning: LearnInFlight,
     view: ViewOptions,
     @arg(doc = Shown.Doc)
@@ -46,6 +46,8 @@ final class FlyCommand(using Scenarios)
       "flies a scenario, the paper's duel unless told otherwise, and writes a report",
       ParserForClass[FlyOptions]
     ):
+
+  override protected def defaults: Map[String, String] = FlightOptions.defaults
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
@@ -73,7 +75,7 @@ final class FlyCommand(using Scenarios)
         "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
       )
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
-      sinks = BesideOptions.Sinks(options.beside, out)
+      sinks = RecordOptions.Sinks(options.beside, out)
       flown <- clock match
         case ClockKind.Real =>
           for
@@ -139,7 +141,7 @@ final class FlyCommand(using Scenarios)
       simulator: Option[Address],
       out: Path,
       shown: Option[OnShow],
-      sinks: BesideOptions.Sinks
+      sinks: RecordOptions.Sinks
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator, tell = tell)
@@ -157,7 +159,7 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
-      sinks: BesideOptions.Sinks
+      sinks: RecordOptions.Sinks
   )(using system: ActorSystem): Either[String, Flown] =
     if plans.exists(_.loop == LoopKind.Paused) then
       Console.err.println(
@@ -182,7 +184,7 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
-      sinks: BesideOptions.Sinks
+      sinks: RecordOptions.Sinks
   )(using system: ActorSystem): Either[String, Vector[FlightResult]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()

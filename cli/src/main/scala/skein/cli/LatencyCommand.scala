@@ -16,7 +16,7 @@ import skein.units.{Clock, Span}
 
 /** Options of `./skein latency`. */
 final case class LatencyOptions(
-    @arg(doc = "HOST:PORT of the simulator")
+    @arg(doc = "the simulator")
     simulator: String = "127.0.0.1:41451",
     @arg(doc = "an emulated link to put between: direct, vpn, constant:200ms, …; without it, none")
     link: String = "none",

@@ -35,7 +35,7 @@ final case class LearnOptions(
     environments: Option[Int],
     @arg(doc = "how long an episode lasts in which it learns (default: 20s)")
     lesson: Option[String],
-    @arg(doc = "LEAST..MOST: how far from each other episodes of learning begin, in metres (default: 3..30)")
+    @arg(doc = "how far from each other episodes of learning begin, in metres (default: 3..30)")
     start: Option[String],
     @arg(doc = "the most that a pursuer turns, rad/s (default: 3, as far as families of search go)")
     turnRate: Option[Double],

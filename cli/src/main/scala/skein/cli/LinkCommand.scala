@@ -9,9 +9,9 @@ import skein.units.{Clock, Span}
 
 /** Options of `./skein link`. */
 final case class LinkOptions(
-    @arg(doc = "HOST:PORT that clients connect to; 0.0.0.0 opens it to other machines")
+    @arg(doc = "where clients connect; 0.0.0.0 opens it to other machines")
     listen: String,
-    @arg(doc = "HOST:PORT of the server behind the link")
+    @arg(doc = "the server behind the link")
     to: String,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +

@@ -36,14 +36,16 @@ private object Misuse:
   private val renamed = Map("--model" -> Seq("--predictor", "--plant"))
 
   private def expected(option: ArgSig, words: Seq[String]): String =
-    val kind = option.reader match
-      case simple: TokensReader.ShortNamed[?] => simple.shortName
-      case _                                  => "value"
-    val wanted = kind match
+    val wanted = kind(option.reader) match
       case "int" | "long"     => "a whole number that is not too large"
       case "float" | "double" => "a number"
       case other              => s"a $other"
     s"${name(option)}: expected $wanted, came ${words.mkString("'", "' '", "'")}"
+
+  /** As mainargs names the type of an option's value. */
+  def kind(reader: TokensReader[?]): String = reader match
+    case simple: TokensReader.ShortNamed[?] => simple.shortName
+    case _                                  => "value"
 
   private def name(option: ArgSig): String =
     option.longName(Util.kebabCaseNameMapper).fold("the argument")(long => s"--$long")

@@ -5,7 +5,7 @@ import scala.collection.immutable.ArraySeq
 import skein.budget.ClusterSwept
 import skein.cluster.{Solver, Solvers}
 import skein.scenario.Scenarios
-import skein.search.PosedQuestion
+import skein.search.VerifiedQuestion
 
 /** What commands ask their workers. A question's first line says of which kind it is. */
 private[cli] object Questions:
@@ -26,7 +26,7 @@ private[cli] object Questions:
   def solvers(using Scenarios): Solvers = asked =>
     val (kind, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
     String(kind.toArray, UTF_8) match
-      case Search  => PosedQuestion.solvers.of(question.drop(1))
+      case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSwept.solvers.of(question.drop(1))
       case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
       case other   =>

@@ -37,9 +37,9 @@ final case class SearchOptions(
       "searches settings of this scenario, a team's, in the place of a duel's policy; the command scenarios lists them"
     )
     scenario: Option[String],
-    @arg(doc = "NAME=VALUE: a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
     set: Seq[String],
-    @arg(doc = "NAME=LOW..HIGH: a setting of the scenario to search; may be given several times")
+    @arg(doc = "a setting of the scenario to search; may be given several times")
     vary: Seq[String],
     forward: ForwardOptions,
     cluster: ClusterOptions,
@@ -78,13 +78,13 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       block = Effort.blockEpisodes(ready.byLanes, ready.conditions.vehicle)
       _ <- OutFolder.alone(folder):
         options.view.serving(shows):
-          Fliers.using(cluster, program, ready, question, folder, threads, block, shown): fliers =>
+          EpisodeRunner.using(cluster, program, ready, question, folder, threads, block, shown): runner =>
             SearchJob(
               ready,
               question,
               folder,
               threads,
-              fliers,
+              runner,
               shown,
               task
             ).run(state.getOrElse(ready.search.start))

@@ -12,7 +12,7 @@ private[cli] final class SearchJob(
     question: SearchFile.Question,
     folder: Path,
     threads: Int,
-    fliers: Fliers,
+    runner: EpisodeRunner,
     shown: Shown,
     task: TaskShow
 ):
@@ -27,15 +27,15 @@ private[cli] final class SearchJob(
       val startedAt = System.nanoTime()
       val line      = ProgressLine(ready.search.expected, Console.err, from.flown)
       var last      = from
-      fliers.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
+      runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
-        SearchRun(ready.search, question, fliers(Judge.Candidates), folder, () => System.nanoTime())
+        SearchRun(ready.search, question, runner(Judge.Candidates), folder, () => System.nanoTime())
           .run(from, () => stopped): state =>
             last = state
             line.show(state.flown, progress(state))
             onShow.step(state, progress(state))
       line.end()
-      fliers.onWait((_, _) => ())
+      runner.onWait((_, _) => ())
       searched.flatMap: state =>
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
@@ -69,7 +69,7 @@ private[cli] final class SearchJob(
     // Somebody who stops a search does not wait for long.
     val most         = if state.isDone then Int.MaxValue else effort.freshEpisodes
     val fresh        = ready.fresh.getOrElse(effort.freshEpisodes).min(most)
-    val found        = SearchResult.measured(ready, fliers(_), state, fresh)
+    val found        = SearchResult.measured(ready, runner(_), state, fresh)
     val result       = SearchResult(ready, found)
     val (name, text) = ready.file(found)
     for
@@ -83,7 +83,7 @@ private[cli] final class SearchJob(
     val land = Landscape.of(
       ready.space,
       best,
-      fliers(Judge.Candidates),
+      runner(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
       onMap = effort.onMap,
       onRow = onShow.landscape

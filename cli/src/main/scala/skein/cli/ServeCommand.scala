@@ -13,7 +13,7 @@ import skein.view.Shows
 
 /** Options of `./skein serve`. */
 final case class ServeOptions(
-    @arg(doc = "HOST:PORT to listen on; 0.0.0.0 opens it to other machines")
+    @arg(doc = "where it listens; 0.0.0.0 opens it to other machines")
     listen: String = "127.0.0.1:41451",
     @arg(doc = "an AirSim settings.json with the vehicles; without it, one named SimpleFlight")
     settings: Option[String],

@@ -23,6 +23,8 @@ final class SpreadCommand(using Scenarios)
       ParserForClass[SpreadOptions]
     ):
 
+  override protected def defaults: Map[String, String] = FlightOptions.defaults
+
   protected def execute(options: SpreadOptions): Either[String, Unit] =
     for
       settings <- options.flights.settings

@@ -11,10 +11,10 @@ import skein.units.Span
 
 /** Options of `./skein worker`. */
 final case class WorkerOptions(
-    @arg(doc = "HOST:PORT of a coordinator: a command with --cluster")
+    @arg(doc = "a coordinator: a command with --cluster")
     join: String,
     @arg(doc =
-      "HOST:PORT where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
+      "where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
     )
     listen: Option[String],
     @arg(doc = "that fly at once; does not change the result (default: one per core)")

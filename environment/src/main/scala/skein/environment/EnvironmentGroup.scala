@@ -32,7 +32,7 @@ private final class EnvironmentGroup(
   private val isOutside = Array(vehicles.contains(0), vehicles.contains(1))
   private val duels     =
     val evader  = if isOutside(0) then Turned(0) else config.evader
-    val pursuer = if isOutside(1) then Steered(0) else config.pursuer
+    val pursuer = if isOutside(1) then SteeredPolicy(0) else config.pursuer
     SteppedDuels(config.duel, config.model, evader, pursuer, isOutside)
 
   private val seeds    = Array.ofDim[Long](WORLDS)

@@ -29,8 +29,8 @@ final class FlightAssembly private[skein] (
     val flight: Flight,
     val graph: RunningGraph,
     hold: Hold,
-    watch: Watch,
-    vigil: Vigil,
+    monitor: FlightMonitor,
+    watchdog: SimulatorWatchdog,
     startedAt: Instant,
     clock: Clock,
     shutDown: () => Future[Done]
@@ -38,24 +38,24 @@ final class FlightAssembly private[skein] (
 
   /** Ends it now; why is recorded. */
   def stop(why: String): Unit =
-    watch.offer(Event(clock.now(), EventKind.Aborted, None, why))
+    monitor.offer(Event(clock.now(), EventKind.Aborted, None, why))
     flight.stop()
 
   /** Its vehicles hover and nobody decides, until it continues or ends; its time runs on. Who did it is recorded. */
   def pause(who: String): Unit =
-    if hold.hold() then watch.offer(Event(clock.now(), EventKind.Paused, None, who))
+    if hold.hold() then monitor.offer(Event(clock.now(), EventKind.Paused, None, who))
 
   /** Lets it go on where it is paused. Who did it is recorded. */
   def continue(who: String): Unit =
     if hold.isHeld then
       // Before the first decision that it lets be made.
-      watch.offer(Event(clock.now(), EventKind.Continued, None, who))
+      monitor.offer(Event(clock.now(), EventKind.Continued, None, who))
       hold.release(): Unit
 
   /** How far it is, in the controller's time. */
   def progress: Progress =
     val now = clock.now()
-    Progress(plan.id, now.since(startedAt), watch.lastSeen(now), vigil.silentFor)
+    Progress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[FlightResult] =
@@ -64,8 +64,8 @@ final class FlightAssembly private[skein] (
       closed  <- shutDown().transform(Success(_))
       notClosed = closed.failed.toOption.map(error => Outcome.Failed(s"it could not be closed: $error"))
       ended     = notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome)
-      _         = watch.offer(FlightAssembly.ending(ended, clock.now()))
-      written <- watch.close()
+      _         = monitor.offer(FlightAssembly.ending(ended, clock.now()))
+      written <- monitor.close()
     yield FlightResult(plan, ended, written)
 
 private object FlightAssembly:
@@ -132,10 +132,10 @@ final class FlightAssembler(
     val starting =
       for
         server <- serve()
-        _     = server.foreach(opened.closing(_)(_.close()))
-        watch = Watch(recorder)
+        _       = server.foreach(opened.closing(_)(_.close()))
+        monitor = FlightMonitor(recorder)
         reached <- settings.wire match
-          case Wire.AirSim  => overAirSim(plan, server.fold(simulator.get)(_.address), opened, watch)
+          case Wire.AirSim  => overAirSim(plan, server.fold(simulator.get)(_.address), opened, monitor)
           case Wire.Mavlink => overMavlink(plan, server, opened)
         _ <- Team.missingSensor(fleet, reached.crafts).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
@@ -148,15 +148,15 @@ final class FlightAssembler(
             opened.closing(workers(settings.planningByModel)): threads =>
               threads.close()
               Future.successful(Done)
-        val finish    = Finish(settings.scenario, plan.loop == LoopKind.Paused, watch)
-        val flown     = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, watch))
-        val team      = Team(flown, reached.crafts, clock, finish, loopSettings, planners)
-        val startedAt = clock.now()
-        val vigil     = Vigil(
-          watch,
+        val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
+        val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
+        val team         = Team(flown, reached.crafts, clock, endCondition, loopSettings, planners)
+        val startedAt    = clock.now()
+        val watchdog     = SimulatorWatchdog(
+          monitor,
           clock,
           startedAt,
-          Vigil.within(settings.period, FlightAssembler.askTimeout),
+          SimulatorWatchdog.within(settings.period, FlightAssembler.askTimeout),
           reached.where,
           reached.isOther,
           line => tell(s"${plan.id}: $line")
@@ -167,22 +167,22 @@ final class FlightAssembler(
           reached.time,
           settings.duration,
           clock,
-          finish,
-          () => vigil.onTime
+          endCondition,
+          () => watchdog.onTime
         )
-        finish.isOver.foreach(_ => flight.complete())
+        endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
-          for one <- reached.seeing do
+          for one <- reached.cameras do
             opened.closing(one)(_.close()): Unit
             one.run()
-        vigil.over(flight)
+        watchdog.over(flight)
         Right(FlightAssembly(
           plan,
           flight,
           RunningGraph(team.meters),
           team.hold,
-          watch,
-          vigil,
+          monitor,
+          watchdog,
           startedAt,
           clock,
           () => opened.close()
@@ -192,10 +192,15 @@ final class FlightAssembler(
       .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
 
   /** Who flies, with a policy that may learn. */
-  private def learning(plan: FlightPlan, chosen: ChosenPolicy, opened: Opened, watch: Watch): Fleet =
+  private def learning(
+      plan: FlightPlan,
+      chosen: ChosenPolicy,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Fleet =
     def taught(lessons: Lessons, explore: Double) =
       chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed): (vehicle, decision, news) =>
-        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(watch.offer)
+        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
     chosen.learning match
       case None                                  => plan.fleet(settings)
       case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
@@ -211,34 +216,39 @@ final class FlightAssembler(
           Future.successful(Done)
         taught(lessons, explore)
 
-  private def overAirSim(plan: FlightPlan, address: Address, opened: Opened, watch: Watch): Future[Reached] =
+  private def overAirSim(
+      plan: FlightPlan,
+      address: Address,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Future[Reached] =
     for
       ready <- prepare(address)
       proxy <- between(plan, address)
       client = opened.closing(
-        fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), watch)
+        fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), monitor)
       )(_.close())
       vehicles = ready.zipWithIndex.map((vehicle, index) =>
         // Altitudes count from where each vehicle starts, as in its own frame.
         Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
       )
-      seeing = vehicles.map(look(plan, _, watch))
-      crafts = vehicles.zip(seeing).map: (vehicle, eyes) =>
+      cameras = vehicles.map(look(plan, _, monitor))
+      crafts  = vehicles.zip(cameras).map: (vehicle, eyes) =>
         val craft = AirSimVehicle(
           vehicle,
-          lost => watch.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+          lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
         )
         val isPaused = plan.loop == LoopKind.Paused
         val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
         Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
-      _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, watch)
+      _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
     yield Reached(
       crafts,
       Some(AirSimTime(client)),
       address.toString,
       () => client.ping(),
       () => FlightAssembler.startedAgain(vehicles, address),
-      seeing.flatten
+      cameras.flatten
     )
 
   /** By a connection of bytes to a simulator of its own, by datagrams to any other. */
@@ -272,8 +282,8 @@ final class FlightAssembler(
   /** @param where
     *   the vehicles are, for a person
     * @param isOther
-    *   see [[Vigil]]
-    * @param seeing
+    *   see [[SimulatorWatchdog]]
+    * @param cameras
     *   what recognises in their cameras' images
     */
   private final case class Reached(
@@ -282,7 +292,7 @@ final class FlightAssembler(
       where: String,
       ping: () => Future[Any],
       isOther: () => Future[Either[String, Option[String]]],
-      seeing: Vector[Seeing] = Vector.empty
+      cameras: Vector[CameraSensor] = Vector.empty
   )
 
   private def serve(): Future[Option[SimulatorServer]] =
@@ -308,9 +318,9 @@ final class FlightAssembler(
         .map(Some(_))
 
   /** What the scenario's eyes make of a vehicle's cameras. */
-  private def look(plan: FlightPlan, vehicle: Multirotor, recorder: Recorder): Vector[Seeing] =
+  private def look(plan: FlightPlan, vehicle: Multirotor, recorder: Recorder): Vector[CameraSensor] =
     settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
-      Seeing(
+      CameraSensor(
         eye,
         vehicle.eyes,
         plan.seed,

@@ -37,15 +37,15 @@ private[flight] final class MavlinkFleet(
       case Right(link) =>
         val starts = fleet.agents.zip(systems).map: (agent, number) =>
           val vehicle = MavlinkVehicle(link, number)
-          Climb.Starting(
+          StartPositioning.Starting(
             agent.startPositionNed,
             Approach(agent.name, vehicle, clock),
             () => leaveGround(vehicle)
           )
-        Climb
+        StartPositioning
           .fly(starts)
           .map(_ => Right(Done))
-          .recover { case Climb.NotReady(reason) => Left(reason) }
+          .recover { case StartPositioning.NotReady(reason) => Left(reason) }
           .flatMap(result => link.close().map(_ => result))
 
   /** Opens the connection that is flown over.
@@ -72,11 +72,12 @@ private[flight] final class MavlinkFleet(
   private def risen(vehicle: MavlinkVehicle, fromDownM: Double, looks: Int): Future[Vector3] =
     asked(vehicle.read()).map(_.value.positionNed).flatMap: at =>
       if at.z < fromDownM - RisenM then Future.successful(at)
-      else if looks == 0 then Future.failed(Climb.NotReady("a vehicle did not leave the ground in time"))
+      else if looks == 0 then
+        Future.failed(StartPositioning.NotReady("a vehicle did not leave the ground in time"))
       else after(LookEvery.toDuration, system.scheduler)(risen(vehicle, fromDownM, looks - 1))
 
   private def asked[A](answer: Future[Either[VehicleError, A]]): Future[A] =
-    answer.map(_.fold(error => throw Climb.NotReady(error.message), identity))
+    answer.map(_.fold(error => throw StartPositioning.NotReady(error.message), identity))
 
 private object MavlinkFleet:
   /** Of the geofence above the highest start, m: vehicles climb to their layers first. */

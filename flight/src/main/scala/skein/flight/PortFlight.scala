@@ -66,10 +66,10 @@ final case class PortFlight(
       system: ActorSystem
   ): PortFlight.UnderWay =
     import system.dispatcher
-    val finish = Finish(scenario, loop == LoopKind.Paused, recorder)
-    val team   = Team(scenario.fleet, vehicles, clock, finish, settings)
-    val flight = Flight.start(loop, team, time, duration, clock, finish)
-    finish.isOver.foreach(_ => flight.complete())
+    val endCondition = EndCondition(scenario, loop == LoopKind.Paused, recorder)
+    val team         = Team(scenario.fleet, vehicles, clock, endCondition, settings)
+    val flight       = Flight.start(loop, team, time, duration, clock, endCondition)
+    endCondition.isOver.foreach(_ => flight.complete())
     val landed =
       for
         outcome <- flight.outcome

@@ -11,7 +11,7 @@ import skein.units.*
   * the place where each vehicle's own frame has its origin.
   */
 final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorSystem):
-  import Climb.NotReady
+  import StartPositioning.NotReady
   import Preparation.*
   import system.dispatcher
 
@@ -24,7 +24,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
         _ <- call(vehicle.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
       yield vehicle
 
-  /** Flies there by [[Climb]]. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
+  /** Flies there by [[StartPositioning]]. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
     * since a vehicle that flies in AirSim falls if api control is taken anew. Those on the ground take off.
     */
   def climb(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
@@ -32,8 +32,8 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
       vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
-      _        <- Climb.fly(vehicles.map((vehicle, agent) =>
-        Climb.Starting(
+      _        <- StartPositioning.fly(vehicles.map((vehicle, agent) =>
+        StartPositioning.Starting(
           agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
           Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock),
           () => leaveGround(vehicle)

@@ -14,10 +14,10 @@ import skein.units.*
   * @param isPaused
   *   whether time stands still while is decided: then nothing has an age
   */
-private[flight] final class Finish(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
+private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
     extends Recorder:
   private val names = scenario.agents.map(_.name)
-  private val heard = AtomicReference(Finish.Heard(Map.empty, None, None))
+  private val heard = AtomicReference(EndCondition.Heard(Map.empty, None, None))
   private val over  = Promise[Unit]()
 
   /** Completes when the scenario is over. */
@@ -36,7 +36,7 @@ private[flight] final class Finish(scenario: Scenario, isPaused: Boolean, record
   def failure: Future[RecordError]                  = recorder.failure
   def close(): Future[Either[RecordError, Written]] = recorder.close()
 
-private object Finish:
+private object EndCondition:
 
   /** @param from
     *   the first decision

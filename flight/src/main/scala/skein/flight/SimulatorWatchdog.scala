@@ -9,7 +9,7 @@ import skein.units.*
 import skein.units.Decimals.fixed
 
 /** Watches over a flight whose simulator may fall silent: that is told and recorded within a second, and so is its
-  * return. After [[Vigil.GivesUp]] the flight ends. It ends, too, where the simulator that answers after a broken
+  * return. After [[SimulatorWatchdog.GivesUp]] the flight ends. It ends, too, where the simulator that answers after a broken
   * connection or a silence is not the one that the flight began with.
   *
   * @param isOther
@@ -19,8 +19,8 @@ import skein.units.Decimals.fixed
   * @param tell
   *   a line for a person
   */
-private[flight] final class Vigil(
-    watch: Watch,
+private[flight] final class SimulatorWatchdog(
+    monitor: FlightMonitor,
     clock: Clock,
     startedAt: Instant,
     within: Span,
@@ -28,7 +28,7 @@ private[flight] final class Vigil(
     isOther: () => Future[Either[String, Option[String]]],
     tell: String => Unit
 )(using system: ActorSystem):
-  import Vigil.*
+  import SimulatorWatchdog.*
   import system.dispatcher
 
   @volatile private var life = SignsOfLife()
@@ -53,11 +53,11 @@ private[flight] final class Vigil(
 
   private def look(flight: Flight): Unit =
     val now          = clock.now()
-    val (next, sign) = life.look(watch.heardAt.getOrElse(startedAt), now, within)
+    val (next, sign) = life.look(monitor.heardAt.getOrElse(startedAt), now, within)
     life = next
     sign.foreach:
       case SignsOfLife.Sign.Silent(lasts) =>
-        val why = watch.broken.fold("")(event => s" (${event.detail})")
+        val why = monitor.broken.fold("")(event => s" (${event.detail})")
         note(
           now,
           EventKind.SimulatorSilent,
@@ -72,9 +72,9 @@ private[flight] final class Vigil(
 
   /** A connection may break without a silence: a simulator can be back before its silence is noticed. */
   private def recognise(flight: Flight, now: Instant): Unit =
-    val brokenAt = watch.broken.fold(startedAt)(_.at)
+    val brokenAt = monitor.broken.fold(startedAt)(_.at)
     val doubted  = brokenAt.max(backAt)
-    if !asking && doubted > knownAt && watch.heardAt.exists(_ > brokenAt) then
+    if !asking && doubted > knownAt && monitor.heardAt.exists(_ > brokenAt) then
       asking = true
       isOther().onComplete: answer =>
         answer match
@@ -84,10 +84,10 @@ private[flight] final class Vigil(
         asking = false
 
   private def note(at: Instant, kind: EventKind, line: String): Unit =
-    watch.offer(Event(at, kind, None, line))
+    monitor.offer(Event(at, kind, None, line))
     tell(line)
 
-private[flight] object Vigil:
+private[flight] object SimulatorWatchdog:
   /** After so long without an answer a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 

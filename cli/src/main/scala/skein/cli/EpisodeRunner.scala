@@ -5,7 +5,7 @@ import skein.optimise.Evaluator
 import skein.search.*
 
 /** Who flies a search's candidates: this process, or the workers of a cluster, with the same bits. */
-private[cli] trait Fliers:
+private[cli] trait EpisodeRunner:
   def apply(judge: Judge): Evaluator
 
   /** Shows how it goes while others fly and this thread waits.
@@ -15,15 +15,15 @@ private[cli] trait Fliers:
     */
   def onWait(show: (Long, String) => Unit): Unit
 
-private[cli] object Fliers:
+private[cli] object EpisodeRunner:
 
   /** This process. */
-  private def here(ready: ReadySearch, threads: Int): Fliers = new Fliers:
+  private def here(ready: ReadySearch, threads: Int): EpisodeRunner = new EpisodeRunner:
     private val judges                             = ready.judges(threads)
     def apply(judge: Judge): Evaluator             = judges(judge)
     def onWait(show: (Long, String) => Unit): Unit = ()
 
-  private def elsewhere(run: ClusterRun, blockEpisodes: Int): Fliers = new Fliers:
+  private def elsewhere(run: ClusterRun, blockEpisodes: Int): EpisodeRunner = new EpisodeRunner:
     private var show: (Long, String) => Unit       = (_, _) => ()
     def onWait(show: (Long, String) => Unit): Unit = this.show = show
     def apply(judge: Judge): Evaluator             =
@@ -50,9 +50,9 @@ private[cli] object Fliers:
       threads: Int,
       blockEpisodes: Int,
       shown: Shown
-  )(body: Fliers => Either[String, Unit]): Either[String, Unit] = options match
+  )(body: EpisodeRunner => Either[String, Unit]): Either[String, Unit] = options match
     case None        => body(here(ready, threads))
     case Some(asked) =>
-      val posed = Questions.search(PosedQuestion.bytes(question, ready))
+      val posed = Questions.search(VerifiedQuestion.bytes(question, ready))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
         body(elsewhere(run, asked.block.getOrElse(blockEpisodes)))

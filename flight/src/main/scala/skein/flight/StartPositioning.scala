@@ -7,7 +7,7 @@ import skein.units.Vector3
   * first climbs straight to a layer of its own, above all starts, and crosses over in it when all have come to theirs; when
   * all have crossed over, they go down.
   */
-private[flight] object Climb:
+private[flight] object StartPositioning:
   /** A vehicle on its way to its start, world NED.
     *
     * @param leaveGround

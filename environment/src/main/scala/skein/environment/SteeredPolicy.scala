@@ -7,7 +7,7 @@ import skein.policy.Policy
   * @param rateRadPerS
   *   to the right
   */
-private[environment] final case class Steered(rateRadPerS: Double) extends Policy:
+private[environment] final case class SteeredPolicy(rateRadPerS: Double) extends Policy:
   def heading(
       dxM: Double,
       dyM: Double,

@@ -6,7 +6,7 @@ import skein.record.*
 import skein.units.*
 
 /** Records as `recorder` does, and remembers what is newest for whoever watches the flight. */
-final class Watch(recorder: Recorder) extends Recorder:
+final class FlightMonitor(recorder: Recorder) extends Recorder:
   @volatile private var newest: Option[Decision] = None
   private val heard                              = AtomicLong(Long.MinValue)
   @volatile private var lastBroken               = Option.empty[Event]

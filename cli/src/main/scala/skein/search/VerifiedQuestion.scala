@@ -12,11 +12,11 @@ import upickle.default.{ReadWriter, read as readJson, write as writeJson}
   *   what the defaults came to at the coordinator on the first episodes: a worker that comes to anything else, by a file
   *   of another content for example, does not answer the question
   */
-final case class PosedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
+final case class VerifiedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
 
-object PosedQuestion:
+object VerifiedQuestion:
   import SearchFile.given
-  private given ReadWriter[PosedQuestion] = ReadWriter.derived
+  private given ReadWriter[VerifiedQuestion] = ReadWriter.derived
 
   private val Probes = 0 until 4
 
@@ -24,14 +24,14 @@ object PosedQuestion:
     by(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
 
   def bytes(question: SearchFile.Question, ready: ReadySearch): ArraySeq[Byte] =
-    val posed = PosedQuestion(question, probe(ready, ready.judges(1)))
+    val posed = VerifiedQuestion(question, probe(ready, ready.judges(1)))
     ArraySeq.unsafeWrapArray(writeJson(posed).getBytes("UTF-8"))
 
   /** Answers the questions of searches whose scenarios are known here. */
   def solvers(using Scenarios): Solvers = asked =>
     for
       posed <-
-        try Right(readJson[PosedQuestion](String(asked.toArray, "UTF-8")))
+        try Right(readJson[VerifiedQuestion](String(asked.toArray, "UTF-8")))
         catch case mistake: Exception => Left(s"expected a search's question, came: ${mistake.getMessage}")
       ready <- setup(posed.question)
       came = probe(ready, ready.judges(1))

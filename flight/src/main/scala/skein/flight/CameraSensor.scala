@@ -26,14 +26,14 @@ import skein.units.*
   * @param seed
   *   of how long recognition takes
   */
-private[skein] final class Seeing(
+private[skein] final class CameraSensor(
     val eye: Eye,
     eyes: Eyes,
     seed: Long,
     clock: Clock,
     note: (EventKind, String) => Unit
 )(using system: ActorSystem):
-  import Seeing.*
+  import CameraSensor.*
   import system.dispatcher
 
   private val threads: ExecutionContext = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
@@ -146,7 +146,7 @@ private[skein] final class Seeing(
     case Unrecognised.Failed(_, cause) => note(EventKind.Refused, s"${eye.sensor}: $cause")
     case Unrecognised.Overtaken(_)     => note(EventKind.Dropped, s"${eye.sensor}: recognition overtaken")
 
-private[skein] object Seeing:
+private[skein] object CameraSensor:
 
   /** A detection. */
   private final case class Seen(

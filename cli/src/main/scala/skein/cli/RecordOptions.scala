@@ -8,7 +8,7 @@ import skein.record.{ClockKind, McapRecording, McapRowSink, PostgresRowSink, Rec
 import skein.settings.FlightPlan
 
 /** Where flights are recorded besides their DuckDB files. */
-final case class BesideOptions(
+final case class RecordOptions(
     @arg(doc =
       "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://HOST/DATABASE writes a live flight's tables there; may be given several times"
     )
@@ -48,11 +48,11 @@ final case class BesideOptions(
     if wantsMcap then McapRecording.write(plan.file(folder), fileOf(plan, folder)).left.map(_.message)
     else Right(())
 
-object BesideOptions:
-  given ParserForClass[BesideOptions] = ParserForClass[BesideOptions]
+object RecordOptions:
+  given ParserForClass[RecordOptions] = ParserForClass[RecordOptions]
 
   /** Those that are written while flights fly, and what went wrong with them. */
-  final class Sinks(options: BesideOptions, folder: Path):
+  final class Sinks(options: RecordOptions, folder: Path):
     private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
 
     /** For a flight that begins. */
