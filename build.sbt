@@ -48,7 +48,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks, cluster, autopilot, offboard)
+    .aggregate(scene, blocks, cluster, autopilot, offboard, docs)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -252,6 +252,20 @@ lazy val cli = project
       """esac""",
       """addJava "-Xlog:disable""""
     )
+  )
+
+/** That the Scala of all pages compiles, as a user would compile it. */
+lazy val docs = project
+  .dependsOn(cli, mcap, mavlink, recognition)
+  .settings(
+    publish / skip       := true,
+    Compile / doc / skip := true,
+    scalacOptions -= "-Wunused:all",
+    Compile / sourceGenerators += Def.task {
+      val root  = (ThisBuild / baseDirectory).value
+      val pages = root / "README.md" +: (baseDirectory.value ** "*.md").get()
+      Snippets.sources(root, pages, (Compile / sourceManaged).value / "snippets")
+    }.taskValue
   )
 
 /** From Python: `skein_uav`. Its tests run by `pytest python`, and from here where its packages can be installed. */

@@ -1,0 +1,51 @@
+import sbt.*
+
+/** What pages show as Scala becomes sources, so that whatever a page tells compiles.
+  *
+  * Each block is an object of its own, which sees what earlier blocks of its page define. What a block takes for granted
+  * stands in a comment before it, which readers of the page do not see:
+  *
+  * {{{
+  * <!-- scala
+  * abstract class Flown(vehicle: Multirotor):
+  *   …
+  * -->
+  * }}}
+  *
+  * The block comes in the place of the dots, as far to the right.
+  */
+object Snippets {
+  private val Block = """(?s)(?:<!-- scala\n(.*?)\n-->\n+)?```scala\n(.*?)\n```""".r
+
+  /** One source for each of `pages` that shows Scala. */
+  def sources(root: File, pages: Seq[File], to: File): Seq[File] = {
+    val written =
+      for {
+        page <- pages
+        text   = IO.read(page)
+        blocks = Block.findAllMatchIn(text).toVector if blocks.nonEmpty
+      } yield {
+        val path    = root.toPath.relativize(page.toPath).toString
+        val name    = path.stripSuffix(".md").replaceAll("[^A-Za-z]+", "_")
+        val objects = blocks.zipWithIndex.map { case (block, number) =>
+          val line    = text.substring(0, block.start(2)).count(_ == '\n') + 1
+          val earlier = (0 until number).map(one => s"import Block$one.*")
+          val body    = earlier ++ placed(Option(block.group(1)), block.group(2).linesIterator.toSeq)
+          s"// $path, line $line\nobject Block$number:\n${body.map("  " + _).mkString("\n")}\n"
+        }
+        val file = to / s"$name.scala"
+        IO.write(file, s"package shown.$name\n\n${objects.mkString("\n")}")
+        file
+      }
+    (IO.listFiles(to).toSet -- written).foreach(IO.delete)
+    written
+  }
+
+  private def placed(around: Option[String], block: Seq[String]): Seq[String] = {
+    val lines = around.fold(Seq.empty[String])(_.linesIterator.toSeq)
+    lines.indexWhere(_.trim == "…") match {
+      case -1 => lines ++ block
+      case at => lines.take(at) ++ block.map(" " * lines(at).indexOf('…') + _) ++ lines.drop(at + 1)
+    }
+  }
+}
