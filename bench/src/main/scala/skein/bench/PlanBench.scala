@@ -22,7 +22,7 @@ object PlanBench:
 
   def problem(behaviours: Int): PlanProblem =
     val settings  = PlannerSettings(blocksPerSlice = 4)
-    val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+    val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
     val situation = Situation(
       Motion(0, 0, 8, 0),
       0,

@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{FlightSet, FlightSummary, Observation, Published, RoleSummary}
+import skein.measure.{FlightSet, FlightSummary, TimingObservation, Published, RoleSummary}
 import skein.plot.*
 
 /** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the evader's
@@ -18,11 +18,11 @@ object ObservationFigure:
     val flights = set.flights.filter(_.roles.nonEmpty)
     Option.when(flights.nonEmpty):
       Drawing.stacked(
-        Drawing.grid(Observation.values.toVector.map(panel(_, flights)), columns = 2),
+        Drawing.grid(TimingObservation.values.toVector.map(panel(_, flights)), columns = 2),
         legend(flights)
       )
 
-  private def panel(observation: Observation, flights: Vector[FlightSummary]): Drawing =
+  private def panel(observation: TimingObservation, flights: Vector[FlightSummary]): Drawing =
     val bars    = flights.flatMap(summary => summary.roles.map(role => bar(observation, summary, role)))
     val highest = bars.flatMap(bar => bar.mean ++ bar.published ++ bar.trueAge).maxOption.getOrElse(1.0)
     val lefts   = placed(flights)
@@ -70,12 +70,12 @@ object ObservationFigure:
       trueAge: Option[Double]
   )
 
-  private def bar(observation: Observation, summary: FlightSummary, role: RoleSummary): Bar =
+  private def bar(observation: TimingObservation, summary: FlightSummary, role: RoleSummary): Bar =
     val published = summary.published
     val trueAge   = observation match
-      case Observation.OwnAge      => role.ownTrueAgeMs
-      case Observation.OpponentAge => role.opponentTrueAgeMs
-      case _                       => None
+      case TimingObservation.OwnAge      => role.ownTrueAgeMs
+      case TimingObservation.OpponentAge => role.opponentTrueAgeMs
+      case _                             => None
     Bar(
       Looks.of(summary.flight.loop),
       role.observedMs.get(observation).map(_.mean),

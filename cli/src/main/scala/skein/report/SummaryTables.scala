@@ -1,7 +1,7 @@
 package skein.report
 
 import java.util.Locale
-import skein.measure.{Distribution, FlightSet, FlightSummary, Observation, Published, Twin}
+import skein.measure.{Distribution, FlightSet, FlightSummary, TimingObservation, Published, Twin}
 import skein.measure.Numbers.*
 import skein.record.EventKind
 
@@ -55,7 +55,7 @@ object SummaryTables:
         role    <- summary.roles
       yield
         val published = summary.published.map(_.observedMs)
-        val observed  = Observation.values.toVector.flatMap: observation =>
+        val observed  = TimingObservation.values.toVector.flatMap: observation =>
           Vector(
             role.observedMs.get(observation).fold(""): ms =>
               s"${brief(ms.mean)}/${brief(ms.median)}/${brief(ms.p99)}",

@@ -1,7 +1,7 @@
 package skein.budget
 
 import scala.concurrent.duration.*
-import skein.optimise.{Direction, LatencyBudget, Measure, Objective}
+import skein.optimise.{Direction, LatencyBudget, DuelMeasure, Objective}
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
@@ -22,7 +22,7 @@ class BudgetSuite extends munit.FunSuite:
         named.resolved.fold(fail(_), identity),
         paper,
         PolicyFile.paperOf(Role.Evader),
-        Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
+        Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise),
         seed = 1,
         threads
       ),

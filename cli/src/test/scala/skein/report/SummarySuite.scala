@@ -1,6 +1,6 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, Observation, Published}
+import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, TimingObservation, Published}
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.signal.{Kinematics, Stamped}
@@ -99,9 +99,9 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(summary.decisions, recording.decisions.size)
     val ofEvader = recording.decisions.filter(_.vehicle == "Evader")
     val own      = ofEvader.map(_.observations.ownAge.toMillis)
-    assertEqualsDouble(summary.roles.head.observedMs(Observation.OwnAge).mean, own.sum / own.size, 1e-9)
+    assertEqualsDouble(summary.roles.head.observedMs(TimingObservation.OwnAge).mean, own.sum / own.size, 1e-9)
     // The first decision has no move before it.
-    assertEquals(summary.roles.head.observedMs(Observation.SinceOwnMove).count, ofEvader.size - 1)
+    assertEquals(summary.roles.head.observedMs(TimingObservation.SinceOwnMove).count, ofEvader.size - 1)
 
   test("the table of what was observed tells mean, median and the 99 % quantile"):
     val recording = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)

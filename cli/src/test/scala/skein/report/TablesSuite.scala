@@ -5,7 +5,7 @@ import skein.measure.{
   Distribution,
   FlightSet,
   Numbers,
-  Observation,
+  TimingObservation,
   PredictionErrors,
   PredictionGroup
 }
@@ -202,7 +202,7 @@ class TablesSuite extends munit.FunSuite:
       val ages                   = recording.decisions.filter(_.vehicle == role).flatMap(_.trueAge)
       def mean(of: Vector[Span]) = Numbers.brief(of.map(_.toMillis).sum / of.size)
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
-    assertEquals(Observation.values.size, paper.size)
+    assertEquals(TimingObservation.values.size, paper.size)
 
   test("the page tells what was flown: parameters in their units, and when it began"):
     val page =

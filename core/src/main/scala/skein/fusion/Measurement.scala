@@ -36,7 +36,7 @@ final case class Measurement(
   * @param deviation
   *   standard deviations of the three, independent of one another
   */
-final case class Sighting(
+final case class PolarMeasurement(
     azimuth: Radians,
     elevation: Radians,
     range: Metres,
@@ -55,7 +55,7 @@ final case class Sighting(
   def seenFrom(validAt: Instant, positionNed: Vector3, orientation: Quaternion): Measurement =
     import StrictMath.{cos, sin}
     val (az, el, r)                             = (azimuth.value, elevation.value, range.value)
-    def turned(x: Double, y: Double, z: Double) = Sighting.turned(Vector3(x, y, z), orientation)
+    def turned(x: Double, y: Double, z: Double) = PolarMeasurement.turned(Vector3(x, y, z), orientation)
     val ahead                                   = turned(cos(el) * cos(az), cos(el) * sin(az), -sin(el))
     val right                                   = turned(-cos(el) * sin(az), cos(el) * cos(az), 0) * r
     val upwards                                 = turned(-sin(el) * cos(az), -sin(el) * sin(az), -cos(el)) * r
@@ -67,15 +67,15 @@ final case class Sighting(
         Matrix3.along(upwards * deviation.elevation.value)
     )
 
-object Sighting:
+object PolarMeasurement:
 
-  /** The sighting of a point in the sensor's frame (front, right, down), m. */
+  /** That of a point in the sensor's frame (front, right, down), m. */
   def of(
       pointFrd: Vector3,
       deviation: (azimuth: Radians, elevation: Radians, range: Metres)
-  ): Sighting =
+  ): PolarMeasurement =
     val flat = StrictMath.hypot(pointFrd.x, pointFrd.y)
-    Sighting(
+    PolarMeasurement(
       Radians(StrictMath.atan2(pointFrd.y, pointFrd.x)),
       Radians(StrictMath.atan2(-pointFrd.z, flat)),
       Metres(pointFrd.norm),

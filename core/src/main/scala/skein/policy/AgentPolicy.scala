@@ -30,7 +30,7 @@ trait PlanarPolicy extends AgentPolicy:
 
   final def choose(seen: Observation, memory: Memory): (Action, Memory) =
     val (chosen, next) = planar(seen, memory)
-    (Action.heading(chosen.heading, chosen.speed.getOrElse(seen.cruise), seen.altitude), next)
+    (Action.heading(chosen.heading, chosen.speed.getOrElse(seen.cruise), seen.startDown), next)
 
 /** A horizontal velocity to command.
   *

@@ -38,7 +38,7 @@ final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentS
       Action.VelocityAt(
         speed * StrictMath.cos(heading),
         speed * StrictMath.sin(heading),
-        seen.altitude,
+        seen.startDown,
         yaw
       ),
       ()

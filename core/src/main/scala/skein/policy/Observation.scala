@@ -19,7 +19,7 @@ import skein.units.*
   *   made for this vehicle before
   * @param cruise
   *   the speed that the scenario gives the vehicle
-  * @param altitude
+  * @param startDown
   *   of the vehicle's start, down, negative above the origin
   * @param sensed
   *   last readings of the own vehicle's sensors, by name: those that the policy asks for ([[AgentPolicy.sensors]]) and
@@ -35,7 +35,7 @@ final case class Observation(
     elapsed: Span,
     decisions: Long,
     cruise: MetresPerSecond,
-    altitude: Metres,
+    startDown: Metres,
     sensed: Map[String, Sensed] = Map.empty,
     actsIn: Span = Span.Zero
 ):

@@ -1,7 +1,7 @@
 package skein.scenario
 
 import java.nio.ByteBuffer
-import skein.fusion.{FusionSettings, Sighting}
+import skein.fusion.{FusionSettings, PolarMeasurement}
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -77,4 +77,4 @@ trait Recogniser:
     * @return
     *   what was found, in the camera's frame; or why the image cannot be searched
     */
-  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[Sighting]]
+  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]]

@@ -30,7 +30,7 @@ class FusionSuite extends munit.FunSuite:
           ))
         )
       else
-        Sighting
+        PolarMeasurement
           .of(positionNed, (azimuth = Radians(0.02), elevation = Radians(0.03), range = Metres(0.5)))
           .seenFrom(at(ms), noise(0.2), Quaternion.Identity)
 

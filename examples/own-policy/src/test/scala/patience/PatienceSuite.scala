@@ -21,7 +21,7 @@ class PatienceSuite extends munit.FunSuite:
       elapsed = Span.ofMillis(100),
       decisions = 1,
       cruise = MetresPerSecond(10),
-      altitude = Metres(-20)
+      startDown = Metres(-20)
     )
 
   test("a policy is a pure function: a fresh reading is followed at its speed, an old one more slowly"):

@@ -10,7 +10,7 @@ import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{Eyes, Image, Pixels, Shot}
 import skein.flow.*
-import skein.fusion.{Belief, Fusion, Sighting}
+import skein.fusion.{Belief, Fusion, PolarMeasurement}
 import skein.port.{Sensor, VehicleError}
 import skein.record.EventKind
 import skein.scenario.Eye
@@ -87,10 +87,10 @@ private[skein] final class CameraSensor(
           case Left(error)  => Future.successful(skipped(Frames.Skipped.Failed(error)))
           case Right(frame) =>
             val startedAt = clock.now()
-            recognised(0, frame).map: sighting =>
+            recognised(0, frame).map: polar =>
               val took = clock.now().since(startedAt)
               for
-                seen   <- counted(Recognised(frame.map(_ => sighting), startedAt, took))
+                seen   <- counted(Recognised(frame.map(_ => polar), startedAt, took))
                 joined <- fusion.including(seen.measured)
                 belief <- joined.belief
               do
@@ -108,29 +108,29 @@ private[skein] final class CameraSensor(
   private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  private def recognised(worker: Int, frame: Stamped[Image]): Future[(Image, Option[Sighting])] =
+  private def recognised(worker: Int, frame: Stamped[Image]): Future[(Image, Option[PolarMeasurement])] =
     val startedAt = clock.now()
     val lasts     = duration.oneWay(startedAt.since(began)) * 2
     val image     = frame.value
     Future(look(worker, image))(using threads)
       .flatMap:
-        case Left(reason)    => Future.failed(IllegalArgumentException(reason))
-        case Right(sighting) =>
+        case Left(reason) => Future.failed(IllegalArgumentException(reason))
+        case Right(polar) =>
           // In virtual time work takes no time, so that this is all of it.
           val rest = lasts - clock.now().since(startedAt)
-          if rest <= Span.Zero then Future.successful((image, sighting))
-          else after(rest.toDuration, system.scheduler)(Future.successful((image, sighting)))
+          if rest <= Span.Zero then Future.successful((image, polar))
+          else after(rest.toDuration, system.scheduler)(Future.successful((image, polar)))
 
-  private def look(worker: Int, image: Image): Either[String, Option[Sighting]] = image.pixels match
+  private def look(worker: Int, image: Image): Either[String, Option[PolarMeasurement]] = image.pixels match
     case Pixels.Bgr(bytes) => recognisers(worker).find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
 
-  private def counted(recognised: Recognised[(Image, Option[Sighting])]): Option[Seen] =
+  private def counted(recognised: Recognised[(Image, Option[PolarMeasurement])]): Option[Seen] =
     pictures += 1
-    val (image, sighting) = recognised.found.value
-    sighting.map: sighting =>
+    val (image, polar) = recognised.found.value
+    polar.map: polar =>
       found += 1
-      Seen(recognised.found.map(_ => image), sighting, recognised.took, pictures, found)
+      Seen(recognised.found.map(_ => image), polar, recognised.took, pictures, found)
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit = what match
     case Frames.Skipped.Missed(frames) =>
@@ -151,12 +151,12 @@ private[skein] object CameraSensor:
   /** A detection. */
   private final case class Seen(
       image: Stamped[Image],
-      sighting: Sighting,
+      polar: PolarMeasurement,
       took: Span,
       pictures: Int,
       found: Int
   ):
-    def measured = sighting.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
+    def measured = polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
     /** As [[Eye.Columns]]. */
     def told(belief: Belief): Stamped[IArray[Double]] =
@@ -172,9 +172,9 @@ private[skein] object CameraSensor:
             belief.velocityNed.y,
             belief.velocityNed.z,
             math.sqrt(belief.position.xx.max(belief.position.yy).max(belief.position.zz)),
-            sighting.azimuth.value,
-            sighting.elevation.value,
-            sighting.range.value,
+            polar.azimuth.value,
+            polar.elevation.value,
+            polar.range.value,
             took.toMillis,
             camera.x,
             camera.y,

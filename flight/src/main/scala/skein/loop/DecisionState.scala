@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.loop.planning.Plan
+import skein.loop.planning.PlanStage
 import skein.planning.{JointPlanner, PlanProblem}
 import skein.units.Instant
 
@@ -23,7 +23,7 @@ private final class JointDecisionState private (
     val planning: JointPlanning,
     planner: JointPlanner,
     memories: Vector[Memory],
-    last: Option[Plan.Answer]
+    last: Option[PlanStage.Answer]
 ):
   def this(planning: JointPlanning, memories: Vector[Memory]) = this(planning, JointPlanner(), memories, None)
 
@@ -40,6 +40,6 @@ private final class JointDecisionState private (
     val problem = PlanProblem(planning.planner, planning.pose(memories, views, now))
     val warm    = planner.resumed(problem, last.map(_.best))
     val found   = slices.zipWithIndex.map((count, search) => planner.searched(problem, warm, search, count))
-    val answer  = Plan.Answer.of(found, problem, last)
+    val answer  = PlanStage.Answer.of(found, problem, last)
     val (next, planned) = planning.decide(memories, views, now, problem.parts, answer)
     (JointDecisionState(planning, planner, next, Some(answer)), planned.map(_.decision))

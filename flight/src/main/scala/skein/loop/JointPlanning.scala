@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.loop.planning.Plan
+import skein.loop.planning.PlanStage
 import skein.planning.{Part, PlannerSettings}
 import skein.policy.Fleet
 import skein.units.*
@@ -34,7 +34,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
       views: Vector[TeamView],
       now: Instant,
       parts: Vector[Part],
-      answer: Plan.Answer
+      answer: PlanStage.Answer
   ): (Vector[Memory], Vector[PlannedDecision]) =
     plannings.indices.toVector
       .map: index =>

@@ -28,7 +28,7 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
   def pose(memory: Memory, view: TeamView, now: Instant): Part
 
   /** What the vehicle's policy does in the plan's place. */
-  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove
 
   /** Whether speeds are planned too. */
   protected def choosesSpeed: Boolean
@@ -50,7 +50,8 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
   ): (Memory, PlannedDecision) =
     val action =
       if isOld then byPolicy(memory, view, now, part)
-      else Action.of(plan.copy(manoeuvre = begun(part, plan)), part.situation, part.objective, planner.dtS)
+      else
+        PlannedMove.of(plan.copy(manoeuvre = begun(part, plan)), part.situation, part.objective, planner.dtS)
     val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
     val (next, decision) =
       decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
@@ -73,7 +74,7 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
   * @param byPolicy
   *   whether the last plan was too old to go on with
   */
-final case class PlannedDecision(decision: Decision, action: Action, plan: Plan, byPolicy: Boolean)
+final case class PlannedDecision(decision: Decision, action: PlannedMove, plan: Plan, byPolicy: Boolean)
 
 object Planning:
 

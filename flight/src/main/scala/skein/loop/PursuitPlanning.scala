@@ -20,7 +20,7 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
   private val leastM =
     settings.separationM.max(if settings.apartM > 0 then settings.apartM + PlanSettings.Doubt else 0)
 
-  private val objective = Objective(
+  private val objective = PlanCost(
     Limits(speed * settings.slowestShare, speed, speed / settings.turningRadiusM, settings.turningRadiusM),
     carried = PursuitPlanning.Carried,
     closest = PursuitPlanning.Closest,
@@ -59,14 +59,14 @@ private final class PursuitPlanning(fleet: Fleet, self: Int, settings: PlanSetti
 
   protected def choosesSpeed: Boolean = settings.slowestShare < 1 || speed < agent.speed.value
 
-  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove =
     val (_, decision) = decider.decide(memory, view, now)
     val most          = objective.limits.turnRateAt(speed) * part.situation.sinceDecisionS
     val turned        = decision.heading.value - memory.headingRad
-    Action(math.min(math.max(turned, -most), most), speed, Vector.empty)
+    PlannedMove(math.min(math.max(turned, -most), most), speed, Vector.empty)
 
 private object PursuitPlanning:
-  /** Weights of [[skein.planning.Objective]]; see there. */
+  /** Weights of [[skein.planning.PlanCost]]; see there. */
   val Carried = 0.0
   val Closest = 1.0
   val Capture = 3.0

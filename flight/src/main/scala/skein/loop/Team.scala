@@ -10,7 +10,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
 import skein.flow.*
 import skein.forecast.{Commanded, Evidence, Forecast}
-import skein.loop.planning.{Plan, PlanWorkers}
+import skein.loop.planning.{PlanStage, PlanWorkers}
 import skein.policy.{Action, AgentPolicy, Fleet, Policy}
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, Recorder}
@@ -322,7 +322,7 @@ final class Team(
       .map: request =>
         meter.enter()
         (request.view, clock.now())
-      .via(Plan.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
+      .via(PlanStage.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
         (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
         (memories, seen: Seen, parts, answer) =>
           val (next, planned) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)

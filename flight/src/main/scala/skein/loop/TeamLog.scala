@@ -2,7 +2,7 @@ package skein.loop
 
 import scala.util.{Failure, Success, Try}
 import skein.flow.{Overrun, Steered, Verified}
-import skein.loop.planning.Plan
+import skein.loop.planning.PlanStage
 import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.record.{Acknowledgement, Event, EventKind, Planned, Prediction, Recorder}
@@ -58,7 +58,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   def decided(decision: Decision): Unit = decided(decision, deciders(decision.vehicle).regardsTeam)
 
   /** A planned decision, how it was planned, and what from. */
-  def planned(made: PlannedDecision, answer: Plan.Answer, regardsTeam: Boolean): Unit =
+  def planned(made: PlannedDecision, answer: PlanStage.Answer, regardsTeam: Boolean): Unit =
     val PlannedDecision(decision, action, plan, byPolicy) = made
     import decision.vehicle
     decided(decision, regardsTeam)

@@ -19,7 +19,7 @@ private final class TeamPlanning(
   import Planning.{motion, straight}
   private val minimumM = policy.minimumM.max(settings.separationM).max(settings.apartM)
 
-  private val objective = Objective(
+  private val objective = PlanCost(
     Limits(0, settings.speedMps(policy.mostMps), TeamPlanning.MostTurnRad / settings.planner.dtS),
     distance = 1,
     carried = 0.5,
@@ -80,9 +80,9 @@ private final class TeamPlanning(
 
   protected def choosesSpeed: Boolean = true
 
-  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): Action =
+  protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove =
     val course = policy.course(decider.request(memory, view, now))
-    Action(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
+    PlannedMove(course.headingRad - memory.headingRad, settings.speedMps(course.speedMps), Vector.empty)
 
 private object TeamPlanning:
   /** Of a multirotor that turns on the spot: as far as candidates can turn at once ([[skein.planning.Planner]]). What is

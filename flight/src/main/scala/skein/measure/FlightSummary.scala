@@ -85,7 +85,7 @@ final case class FlightSummary(
   */
 final case class RoleSummary(
     role: String,
-    observedMs: Map[Observation, Distribution],
+    observedMs: Map[TimingObservation, Distribution],
     ownTrueAgeMs: Option[Distribution],
     opponentTrueAgeMs: Option[Distribution]
 )
@@ -160,7 +160,7 @@ object FlightSummary:
       .map: (role, decisions) =>
         RoleSummary(
           role,
-          Observation.values
+          TimingObservation.values
             .flatMap(observation => Distribution.of(decisions.flatMap(observation.ms)).map(observation -> _))
             .toMap,
           Distribution.of(decisions.flatMap(_.trueAge).map(_.own.toMillis)),

@@ -18,7 +18,7 @@ object Published:
       loop: LoopKind,
       link: String,
       distance: Option[Distance],
-      observedMs: Map[Observation, (evader: Double, pursuer: Double)]
+      observedMs: Map[TimingObservation, (evader: Double, pursuer: Double)]
   )
 
   /** Horizontal distance, m: over the last 10 s, and where smallest. */
@@ -94,10 +94,10 @@ object Published:
       opponent: ByRole,
       sinceOwn: ByRole,
       sinceOpponent: ByRole
-  ): Map[Observation, ByRole] =
+  ): Map[TimingObservation, ByRole] =
     Map(
-      Observation.OwnAge            -> own,
-      Observation.OpponentAge       -> opponent,
-      Observation.SinceOwnMove      -> sinceOwn,
-      Observation.SinceOpponentMove -> sinceOpponent
+      TimingObservation.OwnAge            -> own,
+      TimingObservation.OpponentAge       -> opponent,
+      TimingObservation.SinceOwnMove      -> sinceOwn,
+      TimingObservation.SinceOpponentMove -> sinceOpponent
     )

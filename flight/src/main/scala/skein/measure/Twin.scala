@@ -65,7 +65,7 @@ object Twin:
 
   private[skein] val quantities: Vector[Quantity] = Vector(
     Quantity(Age, _.ownTrueAgeMs),
-    Quantity(SinceMove, _.observedMs.get(Observation.SinceOwnMove))
+    Quantity(SinceMove, _.observedMs.get(TimingObservation.SinceOwnMove))
   )
 
   /** Roles and quantities, in the order in which they are shown, and a short name of each. */

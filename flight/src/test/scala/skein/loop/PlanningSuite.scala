@@ -258,7 +258,7 @@ class PlanningSuite extends munit.FunSuite:
     val parts    = joint.pose(memories, views, now)
     val plans    = JointPlanner().resumed(PlanProblem(joint.planner, parts), None)
     def byPolicy(unsearchedS: Double*) =
-      val answer = planning.Plan.Answer(plans, Vector(0), unsearchedS.toVector)
+      val answer = planning.PlanStage.Answer(plans, Vector(0), unsearchedS.toVector)
       joint.decide(memories, views, now, parts, answer)._2.map(_.byPolicy)
     assertEquals(byPolicy(0.5, 0.501), Vector(false, true))
     assertEquals(byPolicy(0.501, 0), Vector(true, false))

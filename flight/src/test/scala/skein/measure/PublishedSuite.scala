@@ -35,7 +35,7 @@ class PublishedSuite extends munit.FunSuite:
       )
       val roles = Seq("evader", "pursuer")
       val told  =
-        for observation <- Observation.values.toSeq; role <- roles
+        for observation <- TimingObservation.values.toSeq; role <- roles
         yield Published.ofRole(flight.observedMs(observation), role)
       assertEquals(told.map(Some(_)), observed, s"$loop over $link")
 

@@ -63,7 +63,7 @@ final class PlanKernel implements CandidateBlock {
   private final float[] cos, sin;
 
   private Situation situation;
-  private Objective objective;
+  private PlanCost objective;
   private double originX, originY;
   private float dtS;
 
@@ -116,7 +116,7 @@ final class PlanKernel implements CandidateBlock {
   }
 
   @Override
-  public void situate(Situation situation, Objective objective, double dtS) {
+  public void situate(Situation situation, PlanCost objective, double dtS) {
     this.situation = situation;
     this.objective = objective;
     this.dtS = (float) dtS;

@@ -4,7 +4,7 @@ import skein.lanes.DuelOutcomes
 import skein.policy.Role
 
 /** A number that an episode comes to, by the name that users give. */
-enum Measure:
+enum DuelMeasure:
   /** Mean distance over the last 10 s, m. */
   case Last10s
 
@@ -50,7 +50,7 @@ enum Measure:
   * @param terms
   *   weight and measure; all that speak of a capture speak of one radius
   */
-final case class Objective(terms: Vector[(Double, Measure)], direction: Direction):
+final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
   require(
     terms.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
@@ -70,13 +70,13 @@ final case class Objective(terms: Vector[(Double, Measure)], direction: Directio
     var sum      = 0.0
     for (weight, measure) <- terms do
       val came: Double = measure match
-        case Measure.Last10s => outcomes.meanLast10sM(world)
-        case Measure.Mean    => outcomes.meanDistanceM(world)
-        case Measure.Min     => outcomes.minDistanceM(world)
+        case DuelMeasure.Last10s => outcomes.meanLast10sM(world)
+        case DuelMeasure.Mean    => outcomes.meanDistanceM(world)
+        case DuelMeasure.Min     => outcomes.minDistanceM(world)
         // The time of a score is known as a Float alone: a capture exactly then counts.
-        case Measure.Capture(_, withinS) => if captureS <= withinS.toFloat then 1.0 else 0.0
-        case Measure.CaptureTime(_)      => captureS.toDouble.min(durationS)
-        case Measure.Effort              =>
+        case DuelMeasure.Capture(_, withinS) => if captureS <= withinS.toFloat then 1.0 else 0.0
+        case DuelMeasure.CaptureTime(_)      => captureS.toDouble.min(durationS)
+        case DuelMeasure.Effort              =>
           if role == Role.Pursuer then outcomes.pursuerEffortRad(world) else outcomes.evaderEffortRad(world)
       sum += weight * came
     sum
@@ -110,26 +110,27 @@ object Objective:
       )
     yield Objective(read, sum.stated.getOrElse(naturally(read, role)))
 
-  private def naturally(terms: Vector[(Double, Measure)], role: Role): Direction = terms match
+  private def naturally(terms: Vector[(Double, DuelMeasure)], role: Role): Direction = terms match
     case Vector((1.0, measure)) =>
       val pursuerWantsMore = measure match
-        case Measure.Capture(_, _) => true
-        case _                     => false
+        case DuelMeasure.Capture(_, _) => true
+        case _                         => false
       measure match
-        case Measure.Effort => Direction.Minimise
-        case _              =>
+        case DuelMeasure.Effort => Direction.Minimise
+        case _                  =>
           if pursuerWantsMore == (role == Role.Pursuer) then Direction.Maximise else Direction.Minimise
     case _ => Direction.Minimise
 
-  private def measureOf(name: String, arguments: Option[String]): Either[String, Measure] =
+  private def measureOf(name: String, arguments: Option[String]): Either[String, DuelMeasure] =
     val numbers =
       arguments.map(_.split(',').toVector.map(_.trim.toDoubleOption.filter(x => x > 0 && x < 1e6)))
     (name, numbers) match
-      case ("last10s", None)                                       => Right(Measure.Last10s)
-      case ("mean", None)                                          => Right(Measure.Mean)
-      case ("min", None)                                           => Right(Measure.Min)
-      case ("effort", None)                                        => Right(Measure.Effort)
-      case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) => Right(Measure.Capture(radiusM, withinS))
-      case ("captureTime", Some(Vector(Some(radiusM))))            => Right(Measure.CaptureTime(radiusM))
-      case _                                                       =>
+      case ("last10s", None)                                       => Right(DuelMeasure.Last10s)
+      case ("mean", None)                                          => Right(DuelMeasure.Mean)
+      case ("min", None)                                           => Right(DuelMeasure.Min)
+      case ("effort", None)                                        => Right(DuelMeasure.Effort)
+      case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) =>
+        Right(DuelMeasure.Capture(radiusM, withinS))
+      case ("captureTime", Some(Vector(Some(radiusM)))) => Right(DuelMeasure.CaptureTime(radiusM))
+      case _                                            =>
         Left(s"expected one of $Forms, came '$name${arguments.fold("")(a => s"($a)")}'")

@@ -11,7 +11,7 @@ private[planning] trait CandidateBlock:
   def costs: Array[Float]
 
   /** What all manoeuvres from now on are flown in, and what they are to achieve. */
-  def situate(situation: Situation, objective: Objective, dtS: Double): Unit
+  def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit
 
   /** Draws all candidates, within the limits.
     *

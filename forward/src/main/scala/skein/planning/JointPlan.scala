@@ -7,7 +7,7 @@ package skein.planning
   * @param stream
   *   of random numbers
   */
-final case class Part(objective: Objective, situation: Situation, stream: Long)
+final case class Part(objective: PlanCost, situation: Situation, stream: Long)
 
 /** What is planned for vehicles of one controller: a plan each, and each knows all others.
   *

@@ -25,12 +25,12 @@ object PlanProblem:
   */
 final class JointPlanner:
   private val blocks   = mutable.Map.empty[Int, CandidateBlock]
-  private val planners = mutable.Map.empty[(PlannerSettings, Objective), Planner]
+  private val planners = mutable.Map.empty[(PlannerSettings, PlanCost), Planner]
 
-  private def planner(settings: PlannerSettings, objective: Objective): Planner =
+  private def planner(settings: PlannerSettings, objective: PlanCost): Planner =
     planners.getOrElse((settings, objective), made(settings, objective))
 
-  private def made(settings: PlannerSettings, objective: Objective): Planner =
+  private def made(settings: PlannerSettings, objective: PlanCost): Planner =
     if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
     if planners.size >= JointPlanner.MostPlanners then planners.clear()
     val block   = blocks.getOrElseUpdate(settings.steps, CandidateBlocks(settings.steps))

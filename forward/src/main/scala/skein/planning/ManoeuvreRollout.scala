@@ -10,7 +10,7 @@ import skein.vehicle.ReducedModel
   * v' = (gain · command − v) / lag − drag · s · v with the speed s at the step's beginning, integrated exactly over the
   * step, in which the command stands: the heading has turned at its beginning.
   */
-final class ManoeuvreRollout(situation: Situation, objective: Objective, dtS: Double):
+final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Double):
   import ManoeuvreRollout.*
 
   /** What a manoeuvre comes to. */

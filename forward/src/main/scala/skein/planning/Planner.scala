@@ -57,7 +57,7 @@ final case class PlannerSettings(
   */
 final class Planner private[planning] (
     val settings: PlannerSettings,
-    val objective: Objective,
+    val objective: PlanCost,
     block: CandidateBlock
 ):
   import settings.*
@@ -228,7 +228,7 @@ object Planner:
     */
   private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
 
-  def apply(settings: PlannerSettings, objective: Objective): Planner =
+  def apply(settings: PlannerSettings, objective: PlanCost): Planner =
     new Planner(settings, objective, CandidateBlocks(settings.steps))
 
   private def checkPlannable(model: ReducedModel, dtS: Double): Unit = require(

@@ -12,7 +12,7 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
   private var rollout: Option[ManoeuvreRollout] = None
   private var limits: Option[Limits]            = None
 
-  def situate(situation: Situation, objective: Objective, dtS: Double): Unit =
+  def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit =
     rollout = Some(ManoeuvreRollout(situation, objective, dtS))
     limits = Some(objective.limits)
 

@@ -27,7 +27,7 @@ object GuideExample:
   // guide: search
   import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
   import skein.lanes.DuelBatch
-  import skein.optimise.{Direction, DuelEvaluator, Measure, Objective}
+  import skein.optimise.{Direction, DuelEvaluator, DuelMeasure, Objective}
   import skein.policy.{Axis, PaperEvader, PolicyFamily, Role, SearchSpace}
 
   val leads = PolicyFamily(
@@ -40,7 +40,7 @@ object GuideExample:
     numbers => Lead(numbers(0), numbers(1), numbers(2))
   )
   val batch   = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
-  val nearest = Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise)
+  val nearest = Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise)
   val evaluator =
     DuelEvaluator(batch, 60, leads, Role.Pursuer, PaperEvader(), DelayTable.vpn, nearest, seed = 1)
   val candidates = leads.space.random(200, seed = 1)

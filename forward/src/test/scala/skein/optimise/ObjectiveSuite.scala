@@ -13,7 +13,7 @@ class ObjectiveSuite extends munit.FunSuite:
     val objective = read("0.7*last10s + 0.3*effort-2e-1 * capture(4, 20)")
     assertEquals(
       objective.terms,
-      Vector(0.7 -> Measure.Last10s, 0.3 -> Measure.Effort, -0.2 -> Measure.Capture(4, 20))
+      Vector(0.7 -> DuelMeasure.Last10s, 0.3 -> DuelMeasure.Effort, -0.2 -> DuelMeasure.Capture(4, 20))
     )
     assertEquals(objective.direction, Direction.Minimise)
     assertEquals(read(objective.text), objective)

@@ -130,7 +130,7 @@ class SearchSuite extends munit.FunSuite:
     Role.Pursuer,
     PaperEvader(),
     DelayTable.vpn,
-    Objective(Vector(1.0 -> Measure.Last10s), Direction.Minimise),
+    Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise),
     seed = 1
   )
 

@@ -6,7 +6,7 @@ class JointPlannerSuite extends munit.FunSuite:
   private val settings  = PlannerSettings(steps = 30, blocksPerSlice = 1, stepsPerKnot = 3)
   private val response  = ReducedModel.airSimAt(5)
   private val minimumM  = 2.0
-  private val objective = Objective(
+  private val objective = PlanCost(
     Limits(0, 10, 4),
     carried = 0.5,
     turning = 0.005,
@@ -53,7 +53,8 @@ class JointPlannerSuite extends munit.FunSuite:
       val found   = planner.searched(problem, planner.resumed(problem, last), 0, slices)
       last = Some(found)
       for self <- 0 until count do
-        val action = Action.of(found.plans(self), found.situation(self, parts(self)), objective, settings.dtS)
+        val action =
+          PlannedMove.of(found.plans(self), found.situation(self, parts(self)), objective, settings.dtS)
         headings(self) += action.turned
         val flyer = ManoeuvreRollout.Flyer(motions(self), response, settings.dtS)
         flyer.fly(action.speed * math.cos(headings(self)), action.speed * math.sin(headings(self)))

@@ -15,7 +15,7 @@ class PlanKernelSuite extends munit.FunSuite:
   private def opponent(policy: Policy): Target.Opponent =
     new Target.Opponent(Motion(9, 4, -2, 3), ReducedModel.AirSim, 5, 2.1, policy)
 
-  private val objective = Objective(
+  private val objective = PlanCost(
     Limits(4, 10, 1.25, 6),
     closest = 0.7,
     capture = 3,
@@ -39,7 +39,7 @@ class PlanKernelSuite extends munit.FunSuite:
     PredictedTrack.straight(Motion(-3, 2, 3, 0), steps, dtS)
   )
 
-  private def flown(block: CandidateBlock, situation: Situation, objective: Objective): CandidateBlock =
+  private def flown(block: CandidateBlock, situation: Situation, objective: PlanCost): CandidateBlock =
     val keys = SplitMix64(5)
     block.situate(situation, objective, dtS)
     block.draw(Array.fill(size)(keys.nextLong().toInt), search, knots)
@@ -49,7 +49,7 @@ class PlanKernelSuite extends munit.FunSuite:
   /** The closest approaches at which a candidate is captured in floats and not in doubles, or breaches a limit, are
     * left out: there the cost jumps.
     */
-  private def assertAgree(situation: Situation, objective: Objective)(using munit.Location): Unit =
+  private def assertAgree(situation: Situation, objective: PlanCost)(using munit.Location): Unit =
     val kernel = flown(PlanKernel(steps), situation, objective)
     val scalar = flown(ScalarBlock(steps), situation, objective)
     assertEquals(kernel.turnRates.toSeq, scalar.turnRates.toSeq)

@@ -6,7 +6,7 @@ import skein.vehicle.ReducedModel
 
 class PlannerSuite extends munit.FunSuite:
   private val response  = ReducedModel.AirSim
-  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
   private val evader    =
     Target.Opponent(Motion(15, 3, 4, 0), ReducedModel.AirSim, speed = 5, headingRad = 0, PaperEvader())
   private val pursuit = Situation(Motion(0, 0, 8, 0), 0, 0.1, response, Vector(Behaviour(evader)))
@@ -65,7 +65,7 @@ class PlannerSuite extends munit.FunSuite:
   test("a plan keeps the turning circle and flies round what it must keep apart from"):
     val separation = Separation(minimum = 2, margin = 1)
     val settings   = PlannerSettings(steps = 40)
-    val objective  = Objective(Limits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
+    val objective  = PlanCost(Limits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
     val planner    = Planner(settings, objective)
     val goal       = PredictedTrack.standing(30, 0, settings.steps)
     val crossing   = PredictedTrack.straight(Motion(12, -12, 0, 5), settings.steps, settings.dtS)

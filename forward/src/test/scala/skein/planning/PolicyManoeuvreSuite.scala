@@ -25,7 +25,7 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
       seen :+= at
       Course(0, 3)
     val manoeuvre = flown(policy)
-    val track     = ManoeuvreRollout(situation, Objective(limits), 0.1).fly(manoeuvre).track
+    val track     = ManoeuvreRollout(situation, PlanCost(limits), 0.1).fly(manoeuvre).track
     assertEquals(seen.size, 30)
     assertEqualsDouble(seen(10).northM(0), track.x(9), 1e-9)
     assertEqualsDouble(seen(10).eastM(0), track.y(9), 1e-9)

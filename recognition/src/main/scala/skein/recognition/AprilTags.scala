@@ -8,7 +8,7 @@ import boofcv.struct.image.GrayU8
 import java.nio.ByteBuffer
 import georegression.struct.se.Se3_F64
 import skein.airsim.{Image, Pixels}
-import skein.fusion.{Measurement, Sighting}
+import skein.fusion.{Measurement, PolarMeasurement}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -46,18 +46,18 @@ final case class Tag(
 
   /** Azimuth and elevation deviate as the edges do. The range deviates by the same share as the tag's apparent width.
     */
-  def sighting: Sighting =
+  def polar: PolarMeasurement =
     val angle   = Radians(deviationPx / camera.focalPx)
     val range   = positionFrd.norm
     val widthPx = camera.focalPx * size.value / range
-    Sighting.of(
+    PolarMeasurement.of(
       positionFrd,
       (azimuth = angle, elevation = angle, range = Metres(range * deviationPx / widthPx))
     )
 
   /** The tag's position at the exposure, by the camera's pose that the image carries. */
   def measured(image: Stamped[Image]): Measurement =
-    sighting.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
+    polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
 /** Finds AprilTags of the family 36h11 in raw images, by BoofCV. Keeps memory of its own: make one for each thread.
   *

@@ -1,7 +1,7 @@
 package skein.recognition
 
 import java.nio.ByteBuffer
-import skein.fusion.Sighting
+import skein.fusion.PolarMeasurement
 import skein.scenario.Recogniser
 import skein.units.*
 
@@ -15,13 +15,13 @@ final class VehicleTags(camera: Pinhole, id: Long, size: Metres) extends Recogni
   private val tags    = AprilTags(camera, size)
   private val behindM = size.value * VehicleTags.BehindSides
 
-  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[Sighting]] =
+  def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]] =
     tags.find(width, height, bgr).map: found =>
       val own = found.filter(_.id == id)
       Option.when(own.nonEmpty):
         val middles = own.map(tag => tag.positionFrd - tag.facingFrd * behindM)
         val middle  = middles.reduce(_ + _) * (1.0 / middles.size)
-        Sighting.of(middle, own.minBy(_.positionFrd.norm).sighting.deviation)
+        PolarMeasurement.of(middle, own.minBy(_.positionFrd.norm).polar.deviation)
 
 object VehicleTags:
   /** From a side's tag to the vehicle's middle, in sides of a tag: plates of 10 cells close to a cube, tags have 8. */

@@ -31,7 +31,7 @@ class AprilTagsSuite extends munit.FunSuite:
     )
     assert(errors(errors.size / 2) < 0.02, errors)
     val inDeviations = runs.map: (place, tag) =>
-      math.abs(tag.positionFrd.norm - place.norm) / tag.sighting.deviation.range.value
+      math.abs(tag.positionFrd.norm - place.norm) / tag.polar.deviation.range.value
     assert(inDeviations.count(_ < 2) > 0.8 * runs.size, inDeviations.sorted)
 
   test("a tag becomes a measurement at the image's exposure, seen from where the camera was"):

@@ -28,7 +28,7 @@ private[simulator] object CameraMethods:
         change(simulation, camera, name, external): camera =>
           camera.copy(
             position = pose.position.toVector,
-            orientation = Frames.normalized(pose.orientation.toQuaternion)
+            orientation = FrameRotations.normalized(pose.orientation.toQuaternion)
           )
     ,
     many[(String, Float, String, Boolean)]("simSetCameraFov"):

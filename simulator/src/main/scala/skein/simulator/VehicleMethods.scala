@@ -172,7 +172,7 @@ private[simulator] object VehicleMethods:
       at,
       Quaternionr(vehicle.state.orientation),
       Vector3r(vehicle.state.angularVelocityFrd),
-      Vector3r(Frames.intoBody(force, vehicle.state.orientation))
+      Vector3r(FrameRotations.intoBody(force, vehicle.state.orientation))
     )
 
   private def barometer(vehicle: SimulatedVehicle, at: Instant) =
@@ -185,7 +185,8 @@ private[simulator] object VehicleMethods:
     )
 
   private def magnetometer(vehicle: SimulatedVehicle, at: Instant) =
-    val field = Frames.intoBody(Globe.magneticFieldNed(vehicle.locationAt(at)), vehicle.state.orientation)
+    val field =
+      FrameRotations.intoBody(Globe.magneticFieldNed(vehicle.locationAt(at)), vehicle.state.orientation)
     MagnetometerData(at, Vector3r(field), Seq.empty)
 
   private def environment(vehicle: SimulatedVehicle, at: Instant) =

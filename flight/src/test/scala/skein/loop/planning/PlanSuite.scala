@@ -3,21 +3,21 @@ package skein.loop.planning
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.duration.*
-import skein.planning.{Plan as _, *}
+import skein.planning.*
 import skein.units.*
 import skein.vehicle.ReducedModel
 import skein.vtime.VirtualTime
 
 class PlanSuite extends munit.FunSuite:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
-  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
   private val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))
 
   private def situation(headingRad: Double): Situation =
     Situation(Motion(0, 0, 5, 0), headingRad, 0.1, ReducedModel.AirSim, Vector(Behaviour(goal)))
 
   /** Each answer's time in ms and first turn, with the heading as memory. */
-  private def planned(workers: PlanWorkers, ticks: Int): Seq[(Long, Plan.Answer)] =
+  private def planned(workers: PlanWorkers, ticks: Int): Seq[(Long, PlanStage.Answer)] =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       val clock         = Clock.ofNanos(VirtualTime.clock(system))
@@ -27,10 +27,10 @@ class PlanSuite extends munit.FunSuite:
         .zipWithIndex
         .map(_._2)
         .take(ticks)
-        .via(Plan.within(Span.ofMillis(60), workers, settings, 0.0)(
+        .via(PlanStage.within(Span.ofMillis(60), workers, settings, 0.0)(
           (headingRad, tick: Long) => Vector(Part(objective, situation(headingRad), tick)),
-          (headingRad, _, parts, answer: Plan.Answer) =>
-            val action = Action.of(answer.best.plans(0), parts(0).situation, objective, settings.dtS)
+          (headingRad, _, parts, answer: PlanStage.Answer) =>
+            val action = PlannedMove.of(answer.best.plans(0), parts(0).situation, objective, settings.dtS)
             (headingRad + action.turned, answer)
         ))
         .map(answer => (clock.now().since(start).toNanos / 1_000_000, answer))

@@ -7,7 +7,7 @@ import skein.vehicle.ReducedModel
 /** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
 class PlanWorkersLiveSuite extends munit.FunSuite:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
-  private val objective = Objective(Limits.paperPursuer, cruiseSpeed = 10)
+  private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
 
   private def problem(stream: Long): PlanProblem =
     val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))

@@ -84,7 +84,7 @@ final case class Separation(minimum: Double, margin: Double = 1, growth: Double 
   *   m: a distance d counts as √(d² + softness²), so that one below it costs by its square, and a vehicle that is almost
   *   there does not hurry; above 0 only where nothing is captured
   */
-final case class Objective(
+final case class PlanCost(
     limits: Limits,
     distance: Double = 1,
     closest: Double = 0,

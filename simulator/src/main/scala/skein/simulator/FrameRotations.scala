@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.units.{Quaternion, Vector3}
 
-private[simulator] object Frames:
+private[simulator] object FrameRotations:
 
   /** The components, along the body's axes, of a vector given in the world. */
   def intoBody(v: Vector3, q: Quaternion): Vector3 = Vector3(

@@ -9,7 +9,7 @@ import skein.planning.{JointPlan, JointPlanner, Part, PlanProblem, PlannerSettin
 import skein.units.Span
 
 /** Plans in the loop, at any time. */
-object Plan:
+object PlanStage:
 
   /** What a search came to by its deadline.
     *

@@ -9,21 +9,21 @@ package skein.planning
   * @param breaches
   *   of hard limits that the plan could not avoid within its horizon
   */
-final case class Action(turned: Double, speed: Double, breaches: Vector[Breached])
+final case class PlannedMove(turned: Double, speed: Double, breaches: Vector[Breached])
 
-object Action:
+object PlannedMove:
 
   /** The first action of a plan, checked in doubles: speed and turn are held to the limits exactly, and the manoeuvre is
     * flown against geofence and separation. A search that has found any manoeuvre within the limits never returns one
     * beyond them, so a breach says that none was found.
     */
-  def of(plan: Plan, situation: Situation, objective: Objective, dtS: Double): Action =
+  def of(plan: Plan, situation: Situation, objective: PlanCost, dtS: Double): PlannedMove =
     val limits   = objective.limits
     val speed    = within(plan.manoeuvre.speeds(0), limits.minSpeed, limits.maxSpeed)
     val most     = limits.turnRateAt(speed)
     val turnRate = within(plan.manoeuvre.turnRates(0), -most, most)
     val flown    = ManoeuvreRollout(situation, objective, dtS).fly(plan.manoeuvre)
-    Action(turnRate * situation.sinceDecisionS, speed, flown.breaches)
+    PlannedMove(turnRate * situation.sinceDecisionS, speed, flown.breaches)
 
   private def within(value: Double, least: Double, most: Double): Double =
     math.min(math.max(value, least), most)

@@ -4,19 +4,20 @@ import skein.record.{Decision, Observations}
 import skein.units.Span
 
 /** The paper's four observations at every decision. */
-enum Observation(val title: String, of: Observations => Option[Span]):
+enum TimingObservation(val title: String, of: Observations => Option[Span]):
 
   /** How long ago the reading of the vehicle itself arrived. */
-  case OwnAge extends Observation("own location age", observed => Some(observed.ownAge))
+  case OwnAge extends TimingObservation("own location age", observed => Some(observed.ownAge))
 
   /** How long ago the reading of its opponent arrived. */
-  case OpponentAge extends Observation("opponent's location age", observed => Some(observed.opponentAge))
+  case OpponentAge
+      extends TimingObservation("opponent's location age", observed => Some(observed.opponentAge))
 
   /** How long ago the vehicle was last commanded. */
-  case SinceOwnMove extends Observation("time since own last move", _.sinceOwnMove)
+  case SinceOwnMove extends TimingObservation("time since own last move", _.sinceOwnMove)
 
   /** How long ago its opponent was last commanded. */
-  case SinceOpponentMove extends Observation("time since opponent's last move", _.sinceOpponentMove)
+  case SinceOpponentMove extends TimingObservation("time since opponent's last move", _.sinceOpponentMove)
 
   /** ms; absent before the first move. */
   def ms(decision: Decision): Option[Double] = of(decision.observations).map(_.toMillis)

@@ -3,7 +3,7 @@ package skein.fusion
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.*
 
-class SightingSuite extends munit.FunSuite:
+class PolarMeasurementSuite extends munit.FunSuite:
   private val sharp   = (azimuth = Radians(0.001), elevation = Radians(0.002), range = Metres(0.1))
   private val quarter = math.sqrt(0.5)
 
@@ -13,21 +13,24 @@ class SightingSuite extends munit.FunSuite:
   test("a point is told by its angles and range, and found again"):
     for point <- List(Vector3(5, 0, 0), Vector3(3, 4, -2), Vector3(-1, 2, 0.5)) do
       near(
-        Sighting.of(point, sharp).seenFrom(Instant.Epoch, Vector3.Zero, Quaternion.Identity).positionNed,
+        PolarMeasurement.of(
+          point,
+          sharp
+        ).seenFrom(Instant.Epoch, Vector3.Zero, Quaternion.Identity).positionNed,
         point
       )
 
   test("to the right of a sensor that looks east is south, above it is up"):
     val east               = Quaternion(quarter, 0, 0, quarter)
     def seen(frd: Vector3) =
-      Sighting.of(frd, sharp).seenFrom(Instant.Epoch, Vector3(10, 0, -20), east).positionNed
+      PolarMeasurement.of(frd, sharp).seenFrom(Instant.Epoch, Vector3(10, 0, -20), east).positionNed
     near(seen(Vector3(5, 0, 0)), Vector3(10, 5, -20))
     near(seen(Vector3(5, 1, 0)), Vector3(9, 5, -20))
     near(seen(Vector3(5, 0, -1)), Vector3(10, 5, -21))
 
   test("straight ahead, range varies along the line of sight and the angles across it"):
     val seen =
-      Sighting.of(Vector3(10, 0, 0), sharp).seenFrom(Instant.Epoch, Vector3.Zero, Quaternion.Identity)
+      PolarMeasurement.of(Vector3(10, 0, 0), sharp).seenFrom(Instant.Epoch, Vector3.Zero, Quaternion.Identity)
     assertEqualsDouble(seen.covariance.xx, 0.01, 1e-12)
     assertEqualsDouble(seen.covariance.yy, 1e-4, 1e-12)
     assertEqualsDouble(seen.covariance.zz, 4e-4, 1e-12)
@@ -36,7 +39,7 @@ class SightingSuite extends munit.FunSuite:
     val random = SplitMix64(1)
     def normal = NormalQuantile(random.nextDouble().max(1e-9))
     val turn   = Quaternion(0.5, 0.5, -0.5, 0.5)
-    val middle = Sighting.of(
+    val middle = PolarMeasurement.of(
       Vector3(7, -3, 2),
       (azimuth = Radians(0.01), elevation = Radians(0.02), range = Metres(0.3))
     )
