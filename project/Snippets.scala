@@ -2,7 +2,7 @@ import sbt.*
 
 /** What pages show as Scala becomes sources, so that whatever a page tells compiles.
   *
-  * Each block is an object of its own, which sees what earlier blocks of its page define. What a block takes for granted
+  * Each block is an object of its own, which sees what earlier blocks of its page define and import. What a block takes for granted
   * stands in a comment before it, which readers of the page do not see:
   *
   * {{{
@@ -29,7 +29,9 @@ object Snippets {
         val name    = path.stripSuffix(".md").replaceAll("[^A-Za-z]+", "_")
         val objects = blocks.zipWithIndex.map { case (block, number) =>
           val line    = text.substring(0, block.start(2)).count(_ == '\n') + 1
-          val earlier = (0 until number).map(one => s"import Block$one.*")
+          val earlier = blocks.take(number).zipWithIndex.flatMap { case (before, one) =>
+            s"import Block$one.*" +: before.group(2).linesIterator.filter(_.startsWith("import ")).toSeq
+          }
           val body    = earlier ++ placed(Option(block.group(1)), block.group(2).linesIterator.toSeq)
           s"// $path, line $line\nobject Block$number:\n${body.map("  " + _).mkString("\n")}\n"
         }

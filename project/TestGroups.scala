@@ -60,6 +60,7 @@ object TestGroups extends AutoPlugin {
     "skein.budget.ScenarioSweptSuite",
     "skein.cli.ClusterCommandsLiveSuite",
     "skein.cli.LearnCommandSuite",
+    "skein.cli.OwnFamilySuite",
     "skein.cli.SearchCommandSuite",
     "skein.cli.TortureQuestionSuite",
     "skein.cluster.ClusterLiveSuite",

@@ -4,7 +4,6 @@ import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.budget.*
 import skein.optimise.WeightedSum
-import skein.policy.PolicyFamily
 import skein.record.LoopKind
 import skein.scenario.Scenarios
 import skein.search.TeamQuestion
@@ -187,7 +186,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
               ))
 
   private def policyOf(text: String): Either[String, PolicyFile] =
-    PolicyFamily.parse(text).toOption match
+    scenarios.family(text).toOption match
       case Some(family) => PolicyFile.roleOf(family, None).map(PolicyFile.ofDefaults(_, family))
       case None         => PolicyFile.read(text)
 

@@ -1,7 +1,6 @@
 package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
-import skein.policy.PolicyFamily
 import skein.record.{ClockKind, LoopKind}
 
 /** A command of `./skein`: one file each.
@@ -28,9 +27,8 @@ trait Command(val name: String, val summary: String):
 /** What some options take, whatever command they belong to. */
 private object OptionValues:
   val known: Map[String, Seq[String]] = Map(
-    "loop"   -> LoopKind.values.map(_.label).toSeq,
-    "clock"  -> ClockKind.values.map(_.label).toSeq,
-    "family" -> PolicyFamily.all.map(_.name)
+    "loop"  -> LoopKind.values.map(_.label).toSeq,
+    "clock" -> ClockKind.values.map(_.label).toSeq
   )
 
 /** A command whose options are the fields of a case class.
@@ -57,6 +55,9 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
 
   /** By options' names: what counts where one is not given and its own description does not tell. */
   protected def defaults: Map[String, String] = Map.empty
+
+  /** By options' names: all values that one takes, where that is known. */
+  protected def known: Map[String, Seq[String]] = Map.empty
 
   final def run(arguments: Seq[String]): Int =
     if arguments.exists(word => word == "--help" || word == "-h") then
@@ -106,7 +107,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       argument.doc.getOrElse(""),
       Option.unless(reader.isFlag)(HelpText.placeholder(name, Misuse.kind(reader))),
       defaults.get(name).orElse(ownDefault(argument)),
-      OptionValues.known.getOrElse(name, Nil)
+      (OptionValues.known ++ known).getOrElse(name, Nil)
     )
 
   /** That of the options' case class. */

@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
-import skein.scenario.PaperDuel
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.PolicyFile
 import skein.units.Span
@@ -53,7 +53,7 @@ final case class ForwardOptions(
   /** @param role
     *   of the policy that is judged
     */
-  def opponentOf(role: Role): Either[String, PolicyFile] =
+  def opponentOf(role: Role)(using Scenarios): Either[String, PolicyFile] =
     val other = Role.opponentOf(role)
     opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))
 
@@ -76,5 +76,5 @@ object ForwardOptions:
     )
 
   /** A policy file, or a family with its defaults. */
-  def policy(option: String, text: String, role: Role): Either[String, PolicyFile] =
+  def policy(option: String, text: String, role: Role)(using Scenarios): Either[String, PolicyFile] =
     PolicyFile.chosen(role, text).left.map(mistake => s"$option: $mistake")

@@ -222,7 +222,7 @@ object LearnCommand:
     * @return
     *   or what was expected, what came, and in which option
     */
-  def question(options: LearnOptions): Either[String, LearnQuestion] =
+  def question(options: LearnOptions)(using Scenarios): Either[String, LearnQuestion] =
     import options.forward
     val algorithm = options.algorithm.getOrElse("sac")
     val onPolicy  = algorithm == "ppo"

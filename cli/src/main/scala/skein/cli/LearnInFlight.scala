@@ -6,6 +6,7 @@ import skein.learn.LearnerInFlight
 import skein.loop.LoopKind
 import skein.loop.learning.Learning
 import skein.policy.LearnedPolicy
+import skein.scenario.Scenarios
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.training.LearnFile
 
@@ -38,7 +39,7 @@ final case class LearnInFlight(
     * @return
     *   or what was expected, what came, and in which option
     */
-  def chosen(settings: FlySettings): Either[String, Option[ChosenPolicy]] =
+  def chosen(settings: FlySettings)(using Scenarios): Either[String, Option[ChosenPolicy]] =
     val alone =
       Seq("--learn-updates" -> learnUpdates, "--learn-version" -> learnVersion, "--learn-noise" -> learnNoise)
         .collectFirst { case (option, Some(_)) => s"$option: expected with --learn FOLDER" }
@@ -47,7 +48,7 @@ final case class LearnInFlight(
       case (None, None)          => Right(None)
       case (Some(folder), _)     => of(Path.of(folder), settings).map(Some(_))
 
-  private def of(folder: Path, settings: FlySettings): Either[String, ChosenPolicy] =
+  private def of(folder: Path, settings: FlySettings)(using Scenarios): Either[String, ChosenPolicy] =
     val (updates, every, noise) =
       (learnUpdates.getOrElse(1.0), learnVersion.getOrElse(20), learnNoise.getOrElse(0.1))
     for

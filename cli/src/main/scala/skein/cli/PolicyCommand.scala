@@ -4,6 +4,7 @@ import java.nio.file.Path
 import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.onnx.OnnxPolicy
 import skein.report.{Section, TextTable}
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 
 /** Options of `./skein policy`. */
@@ -18,7 +19,7 @@ final case class PolicyOptions(
     json: Flag
 )
 
-object PolicyCommand
+final class PolicyCommand(using Scenarios)
     extends OptionsCommand[PolicyOptions](
       "policy",
       "tells what a policy file holds, and writes a network as ONNX, or an ONNX file's as a policy file",

@@ -62,6 +62,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       ParserForClass[SearchOptions]
     ):
 
+  override protected def known: Map[String, Seq[String]] =
+    Map("family" -> (PolicyFamily.all ++ scenarios.families).map(_.name))
+
   protected def execute(options: SearchOptions): Either[String, Unit] =
     val shown = Shown(options.json.value)
     for
@@ -155,7 +158,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         (),
         "--set, --vary: expected with --scenario, whose settings they are"
       )
-      family     <- PolicyFamily.parse(options.family.getOrElse("paper-pursuer")).left.map("--family: " + _)
+      family     <- scenarios.family(options.family.getOrElse("paper-pursuer")).left.map("--family: " + _)
       role       <- PolicyFile.roleOf(family, options.role).left.map("--role: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       conditions <- forward.conditions(period)

@@ -4,6 +4,7 @@ import java.io.{FileDescriptor, FileOutputStream, IOException, OutputStream, Pri
 import java.nio.file.InvalidPathException
 import java.util.Locale
 import org.slf4j.LoggerFactory
+import skein.policy.PolicyFamily
 import skein.scenario.{ScenarioKind, Scenarios}
 
 /** A program with all of Skein's commands, for scenarios of your own:
@@ -20,7 +21,12 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   Locale.setDefault(Locale.ROOT)
   Terminal.adapt()
 
-  final given scenarios: Scenarios = Scenarios(kinds*)
+  /** Families of policies of your own, for the duel's roles: `search`, `budget`, policy files, `--opponent` and
+    * `--fallback` know them by name. It is asked for before the object's own values are there, so write them into it.
+    */
+  def policyFamilies: Seq[PolicyFamily] = Nil
+
+  final given scenarios: Scenarios = Scenarios(kinds.toVector, policyFamilies.toVector)
 
   private def program = getClass.getName.stripSuffix("$")
 
@@ -29,7 +35,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     SpreadCommand(),
     SearchCommand(program),
     LearnCommand(),
-    PolicyCommand,
+    PolicyCommand(),
     WorkerCommand(),
     ClusterCommand,
     BudgetCommand(program),

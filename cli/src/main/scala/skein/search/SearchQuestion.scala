@@ -12,6 +12,7 @@ import skein.optimise.{
   ValueEvaluator
 }
 import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import upickle.default.ReadWriter
 
@@ -44,9 +45,9 @@ final case class SearchQuestion(
 ) derives ReadWriter:
 
   /** @return or what was expected, what came, and in which option */
-  def setup: Either[String, SearchSetup] =
+  def setup(using scenarios: Scenarios): Either[String, SearchSetup] =
     for
-      family    <- PolicyFamily.parse(family).left.map("--family: " + _)
+      family    <- scenarios.family(family).left.map("--family: " + _)
       role      <- PolicyFile.roleOf(family, Some(role)).left.map("--role: " + _)
       objective <- Objective.parse(objective, role).left.map("--objective: " + _)
       flown     <- conditions.resolved

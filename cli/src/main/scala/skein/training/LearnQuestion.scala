@@ -7,6 +7,7 @@ import skein.learn.{Algorithm, DuelTask, LearnerSettings}
 import skein.optimise.{DuelEvaluator, Evaluator, Objective, WeightedSum}
 import skein.policy.{LearnedPolicy, PolicyFamily, Role}
 import skein.search.Conditions
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import upickle.default.ReadWriter
 
@@ -54,7 +55,7 @@ final case class LearnQuestion(
   import LearnQuestion.*
 
   /** @return or what was expected, what came, and in which option */
-  def setup: Either[String, LearnSetup] =
+  def setup(using Scenarios): Either[String, LearnSetup] =
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
       role      <- PolicyFile.role(role).left.map("--side: " + _)

@@ -4,10 +4,13 @@ import java.io.ByteArrayOutputStream
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.training.*
 
 class LearnCommandSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   override val munitTimeout: Duration = 5.minutes
 
   private val short =

@@ -4,9 +4,12 @@ import java.io.ByteArrayOutputStream
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import skein.policy.PolicyFamily
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 
 class PolicyCommandSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   private def run(words: String*): (Int, String) =
     val said   = ByteArrayOutputStream()
     val status = Console.withOut(said)(Console.withErr(said)(Main.run("policy" +: words)))

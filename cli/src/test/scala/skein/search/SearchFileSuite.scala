@@ -3,8 +3,11 @@ package skein.search
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
 import skein.optimise.{Evaluator, SearchState, RunningStats}
+import skein.scenario.Scenarios
 
 class SearchFileSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   private def question(method: String) = SearchQuestion(
     family = "paper-pursuer",
     role = "pursuer",

@@ -138,6 +138,17 @@ object PolicyFamily:
   private val NeuralPrefix  = "neural:"
   private val LearnedPrefix = "learned:"
 
+  /** Why a family cannot be known by its name beside those that are there, if it cannot. */
+  def mistake(own: Vector[PolicyFamily]): Option[String] =
+    val names = (all ++ own).map(_.name)
+    names
+      .diff(names.distinct)
+      .headOption
+      .map(twice => s"every family of policies needs a name of its own, came '$twice' twice")
+      .orElse(own.map(_.name).find(name => !name.matches("[a-z][a-z0-9-]*")).map(came =>
+        s"expected small letters, digits and dashes as a family's name, came '$came'"
+      ))
+
   /** All that have a fixed number of parameters, in the order in which they are listed to people. */
   val all: Vector[PolicyFamily] =
     Vector(
@@ -152,16 +163,19 @@ object PolicyFamily:
 
   /** The family of this name.
     *
+    * @param own
+    *   families that a program knows besides
     * @return
     *   or what was expected
     */
-  def parse(text: String): Either[String, PolicyFamily] =
+  def parse(text: String, own: Vector[PolicyFamily] = Vector.empty): Either[String, PolicyFamily] =
+    def known = all ++ own
     if text.startsWith(NeuralPrefix) then NeuralShape.parse(text.stripPrefix(NeuralPrefix)).map(neural)
     else if text.startsWith(LearnedPrefix) then
       LearnedPolicy.parse(text.stripPrefix(LearnedPrefix)).map(learned)
     else
-      all
+      known
         .find(_.name == text)
         .toRight(
-          s"expected a family of policies (${all.map(_.name).mkString(", ")}, ${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
+          s"expected a family of policies (${known.map(_.name).mkString(", ")}, ${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
         )

@@ -1,15 +1,25 @@
 package skein.scenario
 
-/** The kinds of scenarios that a program knows, by name; needed wherever settings or recordings are read.
+import skein.policy.PolicyFamily
+
+/** The kinds of scenarios, and the families of policies, that a program knows by name; needed wherever settings or
+  * recordings are read.
   *
   * @param kinds
   *   the first is flown where none is named
+  * @param families
+  *   of policies, besides Skein's
   */
-final case class Scenarios(kinds: Vector[ScenarioKind[?]]):
+final case class Scenarios(kinds: Vector[ScenarioKind[?]], families: Vector[PolicyFamily] = Vector.empty):
   require(kinds.nonEmpty, "at least one kind of scenario is needed")
   require(names.distinct.size == names.size, s"every kind needs a name of its own: ${names.mkString(", ")}")
 
+  PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
+
   def names: Vector[String] = kinds.map(_.name)
+
+  /** @return or what was expected and came */
+  def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
 
   /** The default scenario of a program without the duel. */
   def firstWithoutDuel: Option[String] = Option.when(!names.contains(PaperDuel.Name))(names.head)

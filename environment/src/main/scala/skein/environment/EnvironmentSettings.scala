@@ -6,6 +6,7 @@ import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.scenario.Scenarios
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.Span
@@ -95,7 +96,7 @@ final case class EnvironmentSettings(
     else if roles.size == 2 then Left(s"opponent: expected none where both sides learn, came '$opponent'")
     else
       PolicyFile
-        .chosen(Role.opponentOf(roles.head), opponent)
+        .chosen(Role.opponentOf(roles.head), opponent)(using Scenarios.ours)
         .left
         .map("opponent: " + _)
         .map(Some(_))

@@ -1,6 +1,7 @@
 package skein.loop
 
 import skein.policy.{Agent, AgentPolicy, KeepHeading, PolicyFamily}
+import skein.scenario.Scenarios
 import skein.units.Span
 
 /** By when a policy must have decided, and what is done where it has not. The policy then runs beside the loop, on threads
@@ -34,10 +35,10 @@ enum Fallback:
 object Fallback:
 
   /** `hold`, `repeat` or a family's name. */
-  def parse(text: String): Either[String, Fallback] = text match
+  def parse(text: String)(using scenarios: Scenarios): Either[String, Fallback] = text match
     case "hold"   => Right(Hold)
     case "repeat" => Right(Repeat)
     case name     =>
-      PolicyFamily.parse(name).map(Decides(_)).left.map(reason =>
+      scenarios.family(name).map(Decides(_)).left.map(reason =>
         s"expected hold, repeat or a policy: $reason"
       )

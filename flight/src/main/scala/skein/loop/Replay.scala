@@ -2,6 +2,7 @@ package skein.loop
 
 import skein.policy.Fleet
 import skein.record.{Decision as DecisionRow, Reading as ReadingRow, *}
+import skein.scenario.Scenarios
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -13,7 +14,9 @@ import skein.units.*
   * they are of; for one that plans, how far each search had come. Decided again, and compared to the last bit: everything else in a decision, above all whom it was made
   * against and the heading chosen. The memory from decision to decision is the replay's own.
   */
-final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = PlanSettings()):
+final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = PlanSettings())(using
+    scenarios: Scenarios = Scenarios.ours
+):
   import Replay.*
 
   private val rows     = Rows(fleet)

@@ -240,9 +240,9 @@ object FlySettings:
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
 
-  private given ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
+  private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 
-  private given ConfigReader[PolicyFile] = parsed(
+  private given (using Scenarios): ConfigReader[PolicyFile] = parsed(
     "policy",
     text => if text.startsWith("unix:") then OutsidePolicy.reach(text) else PolicyFile.read(text)
   )

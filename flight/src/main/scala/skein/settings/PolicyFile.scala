@@ -6,6 +6,7 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.onnx.OnnxPolicy
 import skein.policy.{Fleet, Policy, PolicyFamily, Role}
+import skein.scenario.Scenarios
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
   * how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
@@ -97,8 +98,8 @@ object PolicyFile:
     * @return
     *   or what was expected and came
     */
-  def chosen(role: Role, text: String): Either[String, PolicyFile] =
-    val read = PolicyFamily.parse(text) match
+  def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
+    val read = summon[Scenarios].family(text) match
       case Right(family) => roleOf(family, Some(name(role))).map(ofDefaults(_, family))
       case Left(_)       => PolicyFile.read(text, Some(role))
     read.filterOrElse(
@@ -113,7 +114,7 @@ object PolicyFile:
     * @return
     *   or what was expected, what came, and where
     */
-  def read(path: String, asked: Option[Role] = None): Either[String, PolicyFile] =
+  def read(path: String, asked: Option[Role] = None)(using Scenarios): Either[String, PolicyFile] =
     if path.endsWith(OnnxPolicy.Suffix) then
       path match
         case s"pursuer:$file" => ofOnnx(file, Some(Role.Pursuer), asked)
@@ -133,7 +134,7 @@ object PolicyFile:
       chosen = told.orElse(noted).orElse(asked).getOrElse(Role.Pursuer)
     yield PolicyFile(chosen, found.family, found.parameters(chosen))
 
-  private def of(file: Config, path: String): Either[String, PolicyFile] =
+  private def of(file: Config, path: String)(using Scenarios): Either[String, PolicyFile] =
     def at(value: ConfigValue)                    = s"$path, line ${value.origin.lineNumber}"
     def text(key: String): Either[String, String] =
       if !file.hasPath(key) then Left(s"$path: expected '$key', which is missing")
@@ -142,9 +143,10 @@ object PolicyFile:
 
     for
       name   <- text("family")
-      family <- PolicyFamily.parse(name).left.map(mistake => s"${at(file.getValue("family"))}: $mistake")
-      role   <- roleOf(family, optional("role")).left.map(mistake => s"$path: role: $mistake")
-      _      <- Either.cond(file.hasPath("parameters"), (), s"$path: expected 'parameters', which is missing")
+      family <-
+        summon[Scenarios].family(name).left.map(mistake => s"${at(file.getValue("family"))}: $mistake")
+      role <- roleOf(family, optional("role")).left.map(mistake => s"$path: role: $mistake")
+      _    <- Either.cond(file.hasPath("parameters"), (), s"$path: expected 'parameters', which is missing")
       given_ = file.getObject("parameters").asScala.toMap
       names  = family.space.axes.map(_.name)
       _ <- given_.find((key, _) => !names.contains(key)) match
@@ -166,12 +168,12 @@ object PolicyFile:
     yield chosen
 
   /** Reads [[PolicyFile.text]] back. */
-  def parse(role: Role, text: String): Either[String, PolicyFile] =
+  def parse(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     val words = text.split(' ').toVector
     for
       family <-
         if words.head.startsWith(OnnxPolicy.Prefix) then OnnxPolicy.recorded(words.head)
-        else PolicyFamily.parse(words.head)
+        else summon[Scenarios].family(words.head)
       values = words.tail.flatMap: word =>
         word.split('=') match
           case Array(name, value) => value.toDoubleOption.filter(_.isFinite).map(name -> _)

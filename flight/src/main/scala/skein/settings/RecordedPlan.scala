@@ -146,7 +146,7 @@ object RecordedPlan:
   private def policyOf(
       name: Option[String],
       byRole: Map[String, String]
-  ): Either[String, Option[ChosenPolicy]] =
+  )(using Scenarios): Either[String, Option[ChosenPolicy]] =
     (name, byRole.toSeq) match
       case (None, _)                         => Right(None)
       case (Some(name), Seq((role, policy))) =>

@@ -8,11 +8,14 @@ import scala.concurrent.duration.*
 import skein.policy.{AgentPolicy, KeepHeading}
 import skein.record.{Decision as DecisionRow, Reading as _, *}
 import skein.scenario.PaperDuel
+import skein.scenario.Scenarios
 import skein.signal.*
 import skein.units.*
 import skein.vtime.VirtualTime
 
 class DecideWithinSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   private val scenario = PaperDuel().fleet
   private val pursuer  = 1
 

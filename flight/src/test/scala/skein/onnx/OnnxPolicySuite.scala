@@ -4,10 +4,13 @@ import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
 class OnnxPolicySuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   private val seed = 20261122L
 
   private val folder = FunFixture[Path](

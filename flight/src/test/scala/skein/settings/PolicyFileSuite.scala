@@ -2,8 +2,11 @@ package skein.settings
 
 import java.nio.file.{Files, Path}
 import skein.policy.{PaperPursuer, PolicyFamily, Role}
+import skein.scenario.Scenarios
 
 class PolicyFileSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   private val folder = FunFixture[Path](
     _ => Files.createTempDirectory("skein-policies"),
     path => { Files.list(path).forEach(Files.delete(_)); Files.delete(path) }

@@ -24,11 +24,8 @@ final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double)
 // guide: end
 
 object GuideExample:
-  // guide: search
-  import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
-  import skein.lanes.DuelBatch
-  import skein.optimise.{Direction, DuelEvaluator, DuelMeasure, Objective}
-  import skein.policy.{Axis, PaperEvader, PolicyFamily, Role, SearchSpace}
+  // guide: family
+  import skein.policy.{Axis, PolicyFamily, Role, SearchSpace}
 
   val leads = PolicyFamily(
     "lead",
@@ -39,6 +36,14 @@ object GuideExample:
     ),
     numbers => Lead(numbers(0), numbers(1), numbers(2))
   )
+  // guide: end
+
+  // guide: search
+  import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+  import skein.lanes.DuelBatch
+  import skein.optimise.{Direction, DuelEvaluator, DuelMeasure, Objective}
+  import skein.policy.PaperEvader
+
   val batch   = DuelBatch(Duel.paper, LoopTiming.Stream(), Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05))
   val nearest = Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise)
   val evaluator =

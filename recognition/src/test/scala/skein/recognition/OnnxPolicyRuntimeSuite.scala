@@ -8,12 +8,15 @@ import skein.loop.{LoopKind, Outcome}
 import skein.onnx.{OnnxFormat, OnnxGraph, OnnxPolicy}
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
+import skein.scenario.Scenarios
 import skein.settings.{FlySettings, PolicyFile}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 
 /** Policies of ONNX files beside onnxruntime's own evaluation, and those that only it runs. */
 class OnnxPolicyRuntimeSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
   override val munitTimeout: Duration = 5.minutes
 
   private val seed = 20261122L

@@ -1,0 +1,88 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import scala.util.Using
+import skein.policy.*
+import skein.scenario.Scenarios
+
+/** Turns towards where the opponent is, the less the older that is known to be. */
+final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
+  def initial: Double = 0
+
+  def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
+    val wanted = math.IEEEremainder(StrictMath.atan2(seen.dyM, seen.dxM) - seen.ownHeadingRad, 2 * math.Pi)
+    val most   = turnRateRadPerS * seen.elapsedS * doubtS / (doubtS + seen.opponentAgeS)
+    Decided(seen.ownHeadingRad + wanted.max(-most).min(most), memory + 1)
+
+/** A program with a family of policies of its own, as a user writes it. */
+object Doubters extends SkeinApp(Scenarios.ours.kinds*):
+  override def policyFamilies: Seq[PolicyFamily] = Seq(family("doubting"))
+
+  def family(name: String): PolicyFamily =
+    PolicyFamily(
+      name,
+      "turns the less, the older what it knows is",
+      Set(Role.Pursuer),
+      SearchSpace(Vector(Axis("turnRateRadPerS", 0.2, 3.0, 1.0), Axis("doubtS", 0.05, 2.0, 0.5))),
+      numbers => Doubting(numbers(0), numbers(1))
+    )
+
+class OwnFamilySuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 2.minutes
+
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("families"),
+    path =>
+      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
+  )
+
+  private def run(program: SkeinApp, words: String): (Int, String) =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(program.run(words.split(' ').toSeq)))
+    (status, said.toString(UTF_8))
+
+  private def done(words: String): String =
+    val (status, said) = run(Doubters, words)
+    assertEquals(status, 0, said)
+    said
+
+  folder.test("a family of one's own is searched by SIMD, flown, replayed and swept, by its name"): folder =>
+    val found = done(
+      s"search --family doubting --candidates 16 --episodes 2 --fresh 16 --duration 12s --link vpn --out $folder/found"
+    )
+    assert(found.contains("SIMD"), found)
+    val policy = folder.resolve("found/policy.conf")
+    assert(Files.readString(policy).contains("family = \"doubting\""))
+    done(
+      s"fly --clock virtual --policy $policy --loop stream --link vpn --duration 4s --out $folder/flown"
+    ): Unit
+    val flown = Using.resource(Files.list(folder.resolve("flown")))(
+      _.filter(_.toString.endsWith(".duckdb")).toArray.toVector.map(_.toString)
+    )
+    assertEquals(flown.size, 2)
+    for file <- flown do assert(done(s"replay $file").contains("same"), file)
+    done(
+      s"budget --policy doubting --means 2 --jitters 2 --episodes 10 --duration 12s --out $folder/swept"
+    ): Unit
+
+    // A program that does not know it says which it knows.
+    val (status, said) = run(Main, s"fly --clock virtual --policy $policy --out $folder/refused")
+    assertEquals(status, 1, said)
+    assert(
+      said.contains("expected a family of policies (paper-pursuer") && said.contains("came 'doubting'"),
+      said
+    )
+
+  test("bash completes a family of one's own"):
+    val search = Doubters.commands.find(_.name == "search").get
+    assert(search.options.exists(option => option.flag == "--family" && option.values.contains("doubting")))
+
+  test("two families of one name, and names that options could not tell, are refused"):
+    def known(names: String*) =
+      Scenarios(Scenarios.ours.kinds, names.toVector.map(Doubters.family))
+    assertEquals(known("mine", "yours").family("yours").map(_.name), Right("yours"))
+    for names <- Seq(Seq("mine", "mine"), Seq("pure-pursuit"), Seq("neural:8x8"), Seq("my own"), Seq("")) do
+      intercept[IllegalArgumentException](known(names*)): Unit
