@@ -14,6 +14,12 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
   /** Appends records in order and commits them: they survive the process from here on. */
   def write(records: Seq[Record]): Either[RecordError, Unit] =
+    // What is written to a file that has no name any more is lost when it is closed, and nothing else tells.
+    if !Files.exists(path) then
+      failed(RecordError.WriteFailed(path, "it was taken away while it was written"))
+    else append(records)
+
+  private def append(records: Seq[Record]): Either[RecordError, Unit] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):
       val numbered = records.zipWithIndex.map((record, index) => (nextRow + index, record))
       execute("BEGIN")
@@ -24,9 +30,11 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       execute("COMMIT")
       written = written ++ records.map(Table.of(_).name)
       nextRow += records.size
-    .left.map: error =>
-      broken = true
-      error
+    .left.flatMap(failed)
+
+  private def failed(error: RecordError): Left[RecordError, Nothing] =
+    broken = true
+    Left(error)
 
   /** Appends the last record, also behind a write that was refused, as far as the disk takes it then. */
   def end(record: Ending): Either[RecordError, Unit] =

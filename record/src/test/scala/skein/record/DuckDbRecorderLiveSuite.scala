@@ -70,6 +70,16 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite:
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
+  folder.test("a file that is taken away fails the recording at once, which would end without one"): folder =>
+    val file     = folder.resolve("flight.duckdb")
+    val recorder = open(file, capacity = 1024)
+    recorder.offer(Samples.reading(1))
+    Files.delete(file)
+    recorder.offer(Samples.reading(2))
+    val failed = RecordError.WriteFailed(file, "it was taken away while it was written")
+    assertEquals(Await.result(recorder.failure, 10.seconds), failed)
+    assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
+
   folder.test("an actor system that ends before the recording is closed fails the recording"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val early    = ActorSystem("early")
