@@ -1,6 +1,6 @@
 package skein.cli
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
@@ -17,7 +17,7 @@ import skein.flight.{
 import skein.link.{Address, TcpTransport}
 import skein.loop.{LoopKind, Outcome}
 import skein.measure.FlightSet
-import skein.record.{ClockKind, Record, RecordError}
+import skein.record.{ClockKind, DuckDbRecorder, Record}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -129,7 +129,9 @@ final class FlyCommand(using Scenarios)
       )
 
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
-    plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
+    plans.map(plan => DuckDbRecorder.free(plan.file(out))).collectFirst { case Left(why) =>
+      why.message
+    }.toLeft(())
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-warm-up")

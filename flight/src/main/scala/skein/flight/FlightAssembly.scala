@@ -162,6 +162,7 @@ final class FlightAssembler(
           Vigil.within(settings.period, FlightAssembler.askTimeout),
           reached.where,
           reached.isOther,
+          () => team.deciding,
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(
