@@ -18,7 +18,7 @@ private[cli] object Edge:
   /** Runs `body`; if the program is ended from outside meanwhile, says so, and how far it was. */
   def tellingIfCut[A](progress: => String)(body: => A): A =
     val hook = Thread(() => Console.err.println(s"skein: ended from outside; $progress"))
-    Runtime.getRuntime.addShutdownHook(hook)
+    val _    = added(hook)
     try body
     finally removeHook(hook)
 
@@ -30,9 +30,20 @@ private[cli] object Edge:
       stop()
       main.join(graceMillis)
     )
-    Runtime.getRuntime.addShutdownHook(hook)
+    if !added(hook) then
+      interrupted = true
+      stop()
     try body
     finally removeHook(hook)
+
+  /** @return
+    *   `false` where the JVM is shutting down already, and so waits for nobody
+    */
+  private def added(hook: Thread): Boolean =
+    try
+      Runtime.getRuntime.addShutdownHook(hook)
+      true
+    catch case _: IllegalStateException => false
 
   private def removeHook(hook: Thread): Unit =
     try

@@ -1,15 +1,23 @@
 package skein.cli
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Future, Promise}
-import skein.flight.{FlightAssembler, FlightResult, LiveFlights, ProgressBoard, VirtualFlights, WarmUp}
+import skein.flight.{
+  FlightAssembler,
+  FlightResult,
+  LiveFlights,
+  OutsideRequests,
+  ProgressBoard,
+  VirtualFlights,
+  WarmUp
+}
 import skein.link.{Address, TcpTransport}
 import skein.loop.{LoopKind, Outcome}
 import skein.measure.FlightSet
-import skein.record.{ClockKind, Record, RecordError}
+import skein.record.{ClockKind, DuckDbRecorder, Record}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -82,17 +90,19 @@ final class FlyCommand(using Scenarios)
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(options.twins)), out)
             _ <- OpenFiles.enoughFor(plans.size)
             _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file)))
-            shows = Shows()
+            shows    = Shows()
+            requests = OutsideRequests()
             flown <-
               options.view.serving(shows, controlled = true)(flyLive(
                 settings,
                 plans,
                 simulator,
                 out,
-                Option.when(options.view.view.value)(OnShow(shows)),
-                sinks
+                Option.when(options.view.view.value)(OnShow(shows, requests)),
+                sinks,
+                requests
               ))
-          yield flown.and(flyTwins(flown.landed, settings, options.twins, out))
+          yield flown.and(kept(out)(flyTwins(flown.landed, settings, options.twins, out)))
         case ClockKind.Virtual =>
           for
             _      <- nothingToOverwrite(plans, out)
@@ -101,7 +111,7 @@ final class FlyCommand(using Scenarios)
           yield Flown(landed, None)
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
-        report(flown.landed, out, Shown(options.json.value)),
+        kept(out)(report(flown.landed, out, Shown(options.json.value))),
         Either.cond(
           unwritten.isEmpty && flown.grounded.isEmpty,
           (),
@@ -121,7 +131,9 @@ final class FlyCommand(using Scenarios)
       )
 
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
-    plans.map(_.file(out)).find(Files.exists(_)).map(RecordError.AlreadyExists(_).message).toLeft(())
+    plans.map(plan => DuckDbRecorder.free(plan.file(out))).collectFirst { case Left(why) =>
+      why.message
+    }.toLeft(())
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-warm-up")
@@ -141,14 +153,22 @@ final class FlyCommand(using Scenarios)
       simulator: Option[Address],
       out: Path,
       shown: Option[OnShow],
-      sinks: RecordOptions.Sinks
+      sinks: RecordOptions.Sinks,
+      requests: OutsideRequests
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
-    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator, tell = tell)
+    val assembler             = FlightAssembler(
+      TcpTransport(),
+      Clock.system,
+      settings,
+      simulator,
+      tell = tell,
+      calledOff = requests.calledOff
+    )
     try
       if simulator.isEmpty then
-        flyTogether(assembler, plans, settings, out, shown, sinks).map(Flown(_, None))
-      else flyInTurn(assembler, plans, settings, out, shown, sinks)
+        flyTogether(assembler, plans, settings, out, shown, sinks, requests).map(Flown(_, None))
+      else flyInTurn(assembler, plans, settings, out, shown, sinks, requests)
     finally
       val _ = Edge.await(system.terminate())
 
@@ -159,7 +179,8 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
-      sinks: RecordOptions.Sinks
+      sinks: RecordOptions.Sinks,
+      requests: OutsideRequests
   )(using system: ActorSystem): Either[String, Flown] =
     if plans.exists(_.loop == LoopKind.Paused) then
       Console.err.println(
@@ -171,7 +192,7 @@ final class FlyCommand(using Scenarios)
         before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
       else
         Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(assembler, Vector(plan), settings, out, shown, sinks) match
+        flyTogether(assembler, Vector(plan), settings, out, shown, sinks, requests) match
           case Left(reason)  => before.copy(grounded = Some(reason))
           case Right(landed) => before.copy(landed = before.landed ++ landed)
     flown.grounded match
@@ -184,14 +205,21 @@ final class FlyCommand(using Scenarios)
       settings: FlySettings,
       out: Path,
       shown: Option[OnShow],
-      sinks: RecordOptions.Sinks
+      sinks: RecordOptions.Sinks,
+      requests: OutsideRequests
   )(using system: ActorSystem): Either[String, Vector[FlightResult]] =
     import system.dispatcher
     val abandoned = Promise[Either[String, LiveFlights]]()
-    def abandon() = abandoned.trySuccess(Left(s"${plans.head.id}: ended from outside before it began")): Unit
-    Edge
-      .untilInterrupted(() => abandon()):
-        Edge.await(Future.firstCompletedOf(Seq(
+    def stop()    =
+      val why = "ended from outside before it began"
+      requests.stopAll(why)
+      // Vehicles that nothing is heard of are not waited for.
+      system.scheduler.scheduleOnce(FlyCommand.CalledOffWithin)(
+        abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
+      ): Unit
+    Edge.untilInterrupted(() => stop()):
+      Edge
+        .await(Future.firstCompletedOf(Seq(
           LiveFlights.start(
             assembler,
             plans,
@@ -201,19 +229,20 @@ final class FlyCommand(using Scenarios)
           ),
           abandoned.future
         )))
-      .left
-      .map: why =>
-        sinks.discard(plans)
-        why
-      .map: flights =>
-        shown.foreach(_.flying(flights))
-        val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
-        val timer =
-          system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
-        try Edge.untilInterrupted(() => flights.stop())(Edge.await(flights.landed))
-        finally
-          val _ = timer.cancel()
-          board.close()
+        .left
+        .map: why =>
+          sinks.discard(plans)
+          why
+        .map: flights =>
+          requests.flying(flights)
+          shown.foreach(_.flying(flights))
+          val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
+          val timer =
+            system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
+          try Edge.await(flights.landed)
+          finally
+            val _ = timer.cancel()
+            board.close()
 
   /** Virtual twins of the flights that were flown to their end. */
   private def flyTwins(
@@ -244,6 +273,10 @@ final class FlyCommand(using Scenarios)
   private def tell(line: String): Unit =
     val isTerminal = System.console() != null && System.console().isTerminal
     Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)
+
+  /** Whoever ends the command behind the flights is told where they are. */
+  private def kept[A](out: Path)(body: => A): A =
+    Edge.tellingIfCut(s"the flights are recorded; ./skein report $out/*.duckdb shows them")(body)
 
   /** Shows what was flown, also when a flight failed: its recording is readable to its end. Whatever cannot be shown or
     * written, all that went wrong is told.
@@ -280,3 +313,7 @@ final class FlyCommand(using Scenarios)
         s"${flight.plan.id} failed: $reason"
       )
     Either.cond(failures.isEmpty, (), failures.mkString("\n"))
+
+private object FlyCommand:
+  /** Vehicles on the way to their starts are told to hover within so long, about. */
+  private val CalledOffWithin = 5.seconds

@@ -3,16 +3,15 @@ package skein.cli
 import java.util.concurrent.ConcurrentHashMap
 import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.ExecutionContext
-import skein.flight.LiveFlights
+import skein.flight.{LiveFlights, OutsideRequests}
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
 import skein.record.{RecordingHeader, Record, Topic}
 import skein.units.Span
 import skein.view.{Control, Feed, Gauge, LiveShow, Shows}
 
 /** Live flights on show, each with its records and its graph as it runs. */
-private[cli] final class OnShow(shows: Shows):
+private[cli] final class OnShow(shows: Shows, requests: OutsideRequests):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
-  private val flown  = AtomicReference(Option.empty[LiveFlights])
 
   /** What is shown of a flight that begins. */
   def observe(heading: RecordingHeader): Record => Unit =
@@ -21,18 +20,17 @@ private[cli] final class OnShow(shows: Shows):
     graphs.put(heading.flight.id, gauge): Unit
     val graph    = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
     val controls =
-      Control.values.map(control => control -> (() => flown.get.foreach(act(control, _, heading.flight.id))))
+      Control.values.map(control => control -> (() => act(control, heading.flight.id)))
     shows.add(LiveShow(heading, feed, Vector(graph), controls = controls.toMap))
     feed.offer
 
-  private def act(control: Control, flights: LiveFlights, id: String): Unit = control match
-    case Control.Pause    => flights.pause(id, "paused from the page")
-    case Control.Continue => flights.continue(id, "continued from the page")
-    case Control.Abort    => flights.stop(id, "ended from the page")
+  private def act(control: Control, id: String): Unit = control match
+    case Control.Pause    => requests.pause(id, "paused from the page")
+    case Control.Continue => requests.continue(id, "continued from the page")
+    case Control.Abort    => requests.stop(id, "ended from the page")
 
   /** These fly now. */
   def flying(flights: LiveFlights): Unit =
-    flown.set(Some(flights))
     for
       (id, graph) <- flights.graphs
       gauge       <- Option(graphs.get(id))

@@ -17,11 +17,18 @@ final case class RecordOptions(
   def checked(clock: ClockKind): Either[String, Unit] =
     val unknown = record
       .find(one => one != "mcap" && !isPostgres(one))
-      .map(other => s"--record: expected mcap or postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '$other'")
+      .map(other =>
+        s"--record: expected mcap or postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '${withoutSecrets(other)}'"
+      )
     val untaken = Option.when(clock == ClockKind.Virtual && record.exists(isPostgres))(
       "--record: flights in virtual time are not written to Postgres; expected mcap"
     )
     unknown.orElse(untaken).toLeft(())
+
+  /** What stands behind a colon may hold a password. */
+  private def withoutSecrets(one: String) =
+    val scheme = one.takeWhile(_ != ':')
+    if scheme == one then one else s"$scheme:…"
 
   private def isPostgres(one: String) = one.startsWith("postgres://") || one.startsWith("postgresql://")
   private def wantsMcap               = record.contains("mcap")

@@ -1,8 +1,6 @@
 package skein.search
 
-import java.io.IOException
-import java.nio.channels.FileChannel
-import java.nio.file.{Files, Path, StandardCopyOption, StandardOpenOption}
+import java.nio.file.Path
 import skein.optimise.{CmaEs, Course, Scored, SearchState, RunningStats}
 import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson, write as writeJson}
 
@@ -10,8 +8,9 @@ import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson, write
 final case class SearchFile(version: Int, question: SearchFile.Question, state: SearchState)
 
 object SearchFile:
-  val Name    = "search.json"
-  val Version = 1
+  val Name           = "search.json"
+  val Version        = 2
+  private val onDisk = StateFile(Name, Version, "a search")
 
   type Question = SearchQuestion | TeamQuestion
 
@@ -30,14 +29,9 @@ object SearchFile:
   )
   private given ReadWriter[SearchFile] = ReadWriter.derived
 
-  def json(file: SearchFile): String = writeJson(file)
+  def json(file: SearchFile): String = onDisk.sealing(writeJson(file))
 
-  def parse(text: String): Either[String, SearchFile] =
-    try
-      val version = ujson.read(text)("version").num.toInt
-      if version != Version then Left(s"expected version $Version, came $version")
-      else Right(readJson[SearchFile](text))
-    catch case mistake: Exception => Left(s"expected the state of a search, came: ${mistake.getMessage}")
+  def parse(text: String): Either[String, SearchFile] = onDisk.opened(text).flatMap(understood)
 
   /** Reads `search.json` of a folder.
     *
@@ -45,19 +39,11 @@ object SearchFile:
     *   or why it cannot be gone on with
     */
   def read(folder: Path): Either[String, SearchFile] =
-    val file = folder.resolve(Name)
-    try parse(Files.readString(file)).left.map(mistake => s"$file: $mistake")
-    catch case _: IOException => Left(s"cannot read $file: expected the folder of a search")
+    onDisk.read(folder).flatMap(understood(_).left.map(mistake => s"${folder.resolve(Name)}: $mistake"))
 
   /** Replaces `search.json` of a folder, so that whatever happens there is the old one or the new one. */
-  def write(folder: Path, file: SearchFile): Either[String, Unit] =
-    val target  = folder.resolve(Name)
-    val written = folder.resolve(s"$Name.new")
-    try
-      Files.writeString(written, json(file))
-      val channel = FileChannel.open(written, StandardOpenOption.WRITE)
-      try channel.force(true)
-      finally channel.close()
-      Files.move(written, target, StandardCopyOption.ATOMIC_MOVE, StandardCopyOption.REPLACE_EXISTING)
-      Right(())
-    catch case failed: IOException => Left(s"cannot write $target: $failed")
+  def write(folder: Path, file: SearchFile): Either[String, Unit] = onDisk.write(folder, writeJson(file))
+
+  private def understood(json: String): Either[String, SearchFile] =
+    try Right(readJson[SearchFile](json))
+    catch case mistake: Exception => Left(s"expected the state of a search, came: ${mistake.getMessage}")

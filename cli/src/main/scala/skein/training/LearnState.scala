@@ -1,8 +1,18 @@
 package skein.training
 
-import java.io.{BufferedInputStream, BufferedOutputStream, DataInputStream, DataOutputStream, IOException}
-import java.nio.file.{Files, Path, StandardCopyOption}
+import java.io.{
+  BufferedInputStream,
+  BufferedOutputStream,
+  DataInputStream,
+  DataOutputStream,
+  EOFException,
+  IOException
+}
+import java.nio.file.{Files, NoSuchFileException, Path}
+import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
+import scala.util.Using
 import skein.learn.Learner
+import skein.search.StateFile
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
 
 /** How far learning has come.
@@ -36,8 +46,9 @@ final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) d
 final case class LearnFile(version: Int, question: LearnQuestion, state: LearnState) derives ReadWriter
 
 object LearnFile:
-  val Name    = "learn.json"
-  val Version = 1
+  val Name           = "learn.json"
+  val Version        = 2
+  private val onDisk = StateFile(Name, Version, "learning, of ./skein learn")
 
   private def numbers(folder: Path, rounds: Int) = folder.resolve(s"learner-$rounds.bin")
 
@@ -47,15 +58,11 @@ object LearnFile:
     *   or why it cannot be gone on with
     */
   def read(folder: Path): Either[String, LearnFile] =
-    val file = folder.resolve(Name)
-    try
-      val text    = Files.readString(file)
-      val version = ujson.read(text)("version").num.toInt
-      if version != Version then Left(s"$file: expected version $Version, came $version")
-      else Right(readJson[LearnFile](text))
-    catch
-      case _: IOException     => Left(s"cannot read $file: expected the folder of ./skein learn")
-      case mistake: Exception => Left(s"$file: expected the state of learning, came: ${mistake.getMessage}")
+    onDisk.read(folder).flatMap: json =>
+      try Right(readJson[LearnFile](json))
+      catch
+        case mistake: Exception =>
+          Left(s"${folder.resolve(Name)}: expected the state of learning, came: ${mistake.getMessage}")
 
   /** Fills a learner with the numbers that it had after these rounds. */
   def load(folder: Path, state: LearnState, learner: Learner): Either[String, Unit] =
@@ -63,16 +70,21 @@ object LearnFile:
     else
       val file = numbers(folder, state.rounds)
       try
-        val in = DataInputStream(BufferedInputStream(Files.newInputStream(file), Buffer))
-        try
-          learner.load(in)
+        val sum = CRC32C()
+        Using.resource(BufferedInputStream(Files.newInputStream(file), Buffer)): bytes =>
+          learner.load(DataInputStream(CheckedInputStream(bytes, sum)))
+          val isWhole = DataInputStream(bytes).readLong() == sum.getValue && bytes.read() < 0
           Either.cond(
-            in.read() < 0 && learner.isFinite,
+            isWhole && learner.isFinite,
             (),
-            s"$file: expected the numbers of such a learner, came others"
+            s"$file: expected the learner's numbers as they were written; their checksum says that they were damaged since"
           )
-        finally in.close()
-      catch case failed: IOException => Left(s"cannot read $file: $failed")
+      catch
+        case _: NoSuchFileException =>
+          Left(s"there is no $file; expected the learner's numbers there, beside $Name")
+        case _: EOFException => Left(s"$file: expected the learner's numbers, came a file that is cut off")
+        case failed: IOException =>
+          Left(s"$file: expected the numbers of such a learner: ${failed.getMessage}")
 
   /** Whatever happens meanwhile, the folder has what was written before, or all of this. */
   def write(
@@ -81,23 +93,16 @@ object LearnFile:
       state: LearnState,
       learner: Learner
   ): Either[String, Unit] =
+    val file = numbers(folder, state.rounds)
     try
-      val file = numbers(folder, state.rounds)
-      val out  = DataOutputStream(BufferedOutputStream(Files.newOutputStream(file), Buffer))
-      try learner.save(out)
-      finally out.close()
-      val written = folder.resolve(s"$Name.new")
-      Files.writeString(written, writeJson(LearnFile(Version, question, state)))
-      Files.move(
-        written,
-        folder.resolve(Name),
-        StandardCopyOption.ATOMIC_MOVE,
-        StandardCopyOption.REPLACE_EXISTING
-      )
-      val old = Files.newDirectoryStream(folder, "learner-*.bin")
-      try old.forEach(other => if other != file then Files.delete(other))
-      finally old.close()
-      Right(())
-    catch case failed: IOException => Left(s"cannot write into $folder: $failed")
+      val sum = CRC32C()
+      Using.resource(BufferedOutputStream(Files.newOutputStream(file), Buffer)): bytes =>
+        learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
+        DataOutputStream(bytes).writeLong(sum.getValue)
+      StateFile.force(file)
+      onDisk.write(folder, writeJson(LearnFile(Version, question, state))).map: _ =>
+        Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
+          _.forEach(other => if other != file then Files.delete(other))
+    catch case failed: IOException => Left(s"cannot write $file: $failed")
 
   private val Buffer = 1 << 20

@@ -83,6 +83,26 @@ class BadInputSuite extends munit.FunSuite:
     for speed <- Seq("Infinity", "NaN", "0", "1e9") do
       assertRefused(ServeCommand, Seq("--speed", speed), "--speed: expected more than 0 and up to 1000, came")
 
+  folder.test("a recording that cannot be read, or would not be made, is told in a line"): path =>
+    val unreadable = Path.of("/proc/self/mem")
+    if Files.isRegularFile(unreadable) then
+      assertRefused(ReportCommand(), Seq(unreadable.toString), s"cannot open recording $unreadable")
+    for clock <- Seq("real", "virtual") do
+      assertRefused(
+        FlyCommand(),
+        Seq("--out", path.resolve("a;b").toString, "--clock", clock),
+        "expected a path without ';'"
+      )
+
+  folder.test("no password is shown of what --record does not know"): path =>
+    for one <- Seq("Postgres://me:secret@db/flights", "postgres:me:secret@db", "mysql://db?password=secret")
+    do
+      val said = ByteArrayOutputStream()
+      val out  = path.resolve("flights").toString
+      assert(Console.withErr(PrintStream(said))(FlyCommand().run(Seq("--record", one, "--out", out))) != 0)
+      assert(clue(said.toString).contains(s"came '${one.takeWhile(_ != ':')}:…'"))
+      assert(!said.toString.contains("secret"))
+
   folder.test("a recording without vehicles is not replayed"): path =>
     val heading  = skein.report.SyntheticFlight("stream", "vpn", seed = 1, seconds = 12).heading
     val recorder = MemoryRecorder(heading.copy(vehicles = Nil))

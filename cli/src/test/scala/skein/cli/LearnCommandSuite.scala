@@ -119,17 +119,39 @@ class LearnCommandSuite extends munit.FunSuite:
 
   test("a folder of something else, or with a damaged state, is not gone on with"):
     val folder = Files.createTempDirectory("damaged")
-    assert(LearnFile.read(folder).left.exists(_.contains("expected the folder of ./skein learn")))
+    assert(
+      LearnFile.read(folder).left.exists(_.contains("expected the folder of learning, of ./skein learn"))
+    )
     Files.writeString(folder.resolve(LearnFile.Name), "{}"): Unit
     assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     val setup    = question.setup.fold(fail(_), identity)
-    Files.write(folder.resolve("learner-1.bin"), Array.fill[Byte](64)(7)): Unit
-    val refused =
-      LearnRun(setup, setup.batch(1), Some(folder), () => 0).run(LearnState(rounds = 1), 1, () => false)(_ =>
-        ()
-      )
-    assert(clue(refused).left.exists(_.contains("learner-1.bin")))
+    val rounds   = LearnRun(setup, setup.batch(1), Some(folder), () => 0)
+    var done     = 0
+    assertEquals(
+      rounds.run(LearnState(), 1, () => done == setup.rounds)(_ => done += 1).map(_.rounds),
+      Right(done)
+    )
+    val state   = LearnFile.read(folder).fold(fail(_), identity).state
+    val json    = folder.resolve(LearnFile.Name)
+    val edited  = Files.readString(json).replace("\"scores\":[{", "\"scores\":[],\"was\":[{")
+    val numbers = folder.resolve(s"learner-$done.bin")
+    val written = Files.readAllBytes(numbers)
+    def goingOn(bytes: Array[Byte]) =
+      Files.write(numbers, bytes): Unit
+      rounds.run(state, 1, () => true)(_ => ()).left.getOrElse("accepted")
+    assertEquals(goingOn(written), "accepted")
+    assert(clue(goingOn(written.updated(
+      written.length / 2,
+      (written(written.length / 2) ^ 1).toByte
+    ))).contains("damaged"))
+    assert(clue(goingOn(written.take(1000))).contains("cut off"))
+    assert(clue(goingOn(written :+ 0.toByte)).contains("damaged"))
+    assert(clue(goingOn(Array.fill(64)(7.toByte))).contains("numbers of such a learner"))
+    Files.delete(numbers)
+    assert(clue(rounds.run(state, 1, () => true)(_ => ())).left.exists(_.contains(s"there is no $numbers")))
+    Files.writeString(json, edited): Unit
+    assert(clue(LearnFile.read(folder)).left.exists(_.contains("damaged or edited")))
 
 private def LearnOptionsOf(words: Seq[String]): LearnOptions =
   mainargs.ParserForClass[LearnOptions].constructOrThrow(words)

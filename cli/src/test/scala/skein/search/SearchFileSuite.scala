@@ -82,12 +82,26 @@ class SearchFileSuite extends munit.FunSuite:
     Files.delete(folder.resolve(SearchFile.Name))
     Files.delete(folder)
 
-  test("what is not the state of a search is refused"):
-    for (text, part) <-
-        Seq("{}" -> "version", "nonsense" -> "state of a search", """{"version": 99}""" -> "version 1")
+  test("what is not the state of a search, or is no more what was written, is refused"):
+    val ready = setup("cma-es")
+    val whole = SearchFile.json(SearchFile(SearchFile.Version, ready.question, ready.search.start))
+    for (text, part) <- Seq(
+        "{}"                                            -> "begins with its version",
+        "nonsense"                                      -> "state of a search",
+        "[" * 100_000                                   -> "state of a search",
+        """{"version":99,"state":{}}"""                 -> "expected version 2, came 99",
+        whole.dropRight(30)                             -> "cut off",
+        whole.dropRight(1)                              -> "cut off",
+        whole.replace("\"mean\":[", "\"mean\":[1,")     -> "damaged or edited",
+        whole.replace("cma-es", "grid")                 -> "damaged or edited",
+        whole.replace("paper-pursuer", "paper-pürsuer") -> "damaged or edited",
+        whole.dropRight(3) + "0}"                       -> "damaged or edited"
+      )
     do
+      assertNotEquals(text, whole)
       val mistake = SearchFile.parse(text).left.getOrElse("accepted")
       assert(mistake.contains(part), mistake)
+      assert(mistake.length < 200, mistake)
 
   test("the predictive loop and a link that alternates are right"):
     val asked = question("cma-es").copy(

@@ -14,8 +14,16 @@ import skein.vehicle.GoTo
   *
   * Not by position commands: AirSim's hold of a position works only while the vehicle looks north, and at more than 90°
   * of yaw it drives the vehicle away. Each command replaces the one before; at most two are under way.
+  *
+  * @param calledOff
+  *   why it goes no further, asked at every step
   */
-private[flight] final class Approach(name: String, vehicle: VehiclePort, clock: Clock)(using
+private[flight] final class Approach(
+    name: String,
+    vehicle: VehiclePort,
+    clock: Clock,
+    calledOff: () => Option[String] = () => None
+)(using
     system: ActorSystem
 ):
   import Approach.*
@@ -41,7 +49,9 @@ private[flight] final class Approach(name: String, vehicle: VehiclePort, clock: 
       before: Option[Move]
   ): Future[Either[String, Kinematics]] =
     look: state =>
-      if limits.hold(state, goalNed) then settle(goalNed, limits, until, before)
+      val over = calledOff()
+      if over.isDefined then park(before).map(_ => Left(over.get))
+      else if limits.hold(state, goalNed) then settle(goalNed, limits, until, before)
       else if clock.now() > until then
         val off = (state.positionNed - goalNed).norm
         park(before).map(_ =>
@@ -69,7 +79,9 @@ private[flight] final class Approach(name: String, vehicle: VehiclePort, clock: 
   ): Future[Either[String, Kinematics]] =
     def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
       val stays = if limits.hold(state, goalNed) then good + 1 else 0
-      if stays == GoodLooks then Future.successful(Right(state))
+      val over  = calledOff()
+      if over.isDefined then Future.successful(Left(over.get))
+      else if stays == GoodLooks then Future.successful(Right(state))
       else if looks == 1 then steer(goalNed, limits, until, None)
       else after(Every.toDuration)(watch(looks - 1, stays))
     park(before).flatMap:

@@ -87,6 +87,8 @@ final case class FlightResult(plan: FlightPlan, outcome: Outcome, written: Eithe
   *   a line for a person, of what goes wrong in flight, as soon as it does
   * @param learnsOn
   *   what policies learn on that learn in flight; without it, each on a thread of its own that gives way to all others
+  * @param calledOff
+  *   why a flight, by its name, goes no further while its vehicles are brought to their starts
   */
 final class FlightAssembler(
     transport: Transport,
@@ -95,7 +97,8 @@ final class FlightAssembler(
     simulator: Option[Address],
     workers: PlanSettings => PlanWorkers = FlightAssembler.threads,
     tell: String => Unit = _ => (),
-    learnsOn: Option[ExecutionContext] = None
+    learnsOn: Option[ExecutionContext] = None,
+    calledOff: String => Option[String] = _ => None
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -159,6 +162,7 @@ final class FlightAssembler(
           SimulatorWatchdog.within(settings.period, FlightAssembler.askTimeout),
           reached.where,
           reached.isOther,
+          () => team.deciding,
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(
@@ -223,7 +227,7 @@ final class FlightAssembler(
       monitor: FlightMonitor
   ): Future[Reached] =
     for
-      ready <- prepare(address)
+      ready <- prepare(plan, address)
       proxy <- between(plan, address)
       client = opened.closing(
         fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), monitor)
@@ -267,7 +271,8 @@ final class FlightAssembler(
           .connection(TransportError.Lost(at, "the link broke"))
           .join(plain())
     val origin  = server.map(_ => WorldSettings.DefaultOrigin)
-    val mavlink = MavlinkFleet(fleet, clock, origin, plain, isDatagrams = server.isEmpty)
+    val mavlink =
+      MavlinkFleet(fleet, clock, origin, plain, isDatagrams = server.isEmpty, () => calledOff(plan.id))
     def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
@@ -345,9 +350,9 @@ final class FlightAssembler(
       .map(contacts => opened.closing(contacts)(_.close()): Unit)
 
   /** Over a connection of its own, without the link: this is not part of the flight. */
-  private def prepare(address: Address): Future[Vector[Multirotor]] =
+  private def prepare(plan: FlightPlan, address: Address): Future[Vector[Multirotor]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
-    val preparation = Preparation(client, clock)
+    val preparation = Preparation(client, clock, () => calledOff(plan.id))
     val prepared    = if simulator.isDefined then preparation.climb(fleet) else preparation.place(fleet)
     prepared
       .flatMap(result => client.close().map(_ => result))

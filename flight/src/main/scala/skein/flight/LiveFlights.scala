@@ -40,6 +40,8 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
     */
   def continue(id: String, who: String): Unit = of(id).foreach(_.continue(who))
 
+  def has(id: String): Boolean = of(id).isDefined
+
   private def of(id: String) = assembler.find(_.plan.id == id)
 
   /** The graphs as they run, by the flights' names. */

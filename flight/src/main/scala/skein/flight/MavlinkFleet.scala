@@ -15,13 +15,16 @@ import skein.units.*
   *
   * @param isDatagrams
   *   whether `connect` gives datagrams, and not pieces of a stream
+  * @param calledOff
+  *   why vehicles that fly to their starts go no further
   */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,
     clock: Clock,
     origin: Option[GeoLocation],
     connect: () => Flow[ByteString, ByteString, ?],
-    isDatagrams: Boolean
+    isDatagrams: Boolean,
+    calledOff: () => Option[String] = () => None
 )(using system: ActorSystem):
   import MavlinkFleet.*
   import system.dispatcher
@@ -39,7 +42,7 @@ private[flight] final class MavlinkFleet(
           val vehicle = MavlinkVehicle(link, number)
           StartPositioning.Starting(
             agent.startPositionNed,
-            Approach(agent.name, vehicle, clock),
+            Approach(agent.name, vehicle, clock, calledOff),
             () => leaveGround(vehicle)
           )
         StartPositioning

@@ -9,8 +9,17 @@ import skein.units.*
 
 /** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a scenario are above
   * the place where each vehicle's own frame has its origin.
+  *
+  * @param calledOff
+  *   why vehicles that fly to their starts go no further
   */
-final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorSystem):
+final class Preparation(
+    client: AirSimClient,
+    clock: Clock,
+    calledOff: () => Option[String] = () => None
+)(using
+    system: ActorSystem
+):
   import StartPositioning.NotReady
   import Preparation.*
   import system.dispatcher
@@ -35,7 +44,7 @@ final class Preparation(client: AirSimClient, clock: Clock)(using system: ActorS
       _        <- StartPositioning.fly(vehicles.map((vehicle, agent) =>
         StartPositioning.Starting(
           agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
-          Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock),
+          Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock, calledOff),
           () => leaveGround(vehicle)
         )
       ))

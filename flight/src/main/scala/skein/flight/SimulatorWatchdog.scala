@@ -16,6 +16,8 @@ import skein.units.Decimals.fixed
   *   asks the simulator that; `Left` where that was not answered, else why it is, if it is
   * @param within
   *   which an answer is to come
+  * @param deciding
+  *   whose policy the loop waits for, and since when: then nobody asks the simulator
   * @param tell
   *   a line for a person
   */
@@ -26,6 +28,7 @@ private[flight] final class SimulatorWatchdog(
     within: Span,
     simulator: String,
     isOther: () => Future[Either[String, Option[String]]],
+    deciding: () => Option[(vehicle: String, since: Instant)],
     tell: String => Unit
 )(using system: ActorSystem):
   import SimulatorWatchdog.*
@@ -42,7 +45,7 @@ private[flight] final class SimulatorWatchdog(
 
   /** How the flight has ended when its time is over. */
   def onTime: Outcome = silentFor.fold(Outcome.Completed)(lasts =>
-    Outcome.Failed(s"no answer from the simulator at $simulator for the last ${seconds(lasts)}")
+    Outcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
   )
 
   def over(flight: Flight): Unit =
@@ -61,13 +64,13 @@ private[flight] final class SimulatorWatchdog(
         note(
           now,
           EventKind.SimulatorSilent,
-          s"no answer from the simulator at $simulator for ${seconds(lasts)}$why"
+          silence(now, seconds(lasts)) + why
         )
       case SignsOfLife.Sign.Back(after) =>
         backAt = now
         note(now, EventKind.SimulatorBack, s"the simulator answers again, after ${seconds(after)}")
     if silentFor.exists(_ > GivesUp) then
-      flight.fail(s"no answer from the simulator at $simulator for ${seconds(GivesUp)}")
+      flight.fail(silence(now, seconds(GivesUp)))
     recognise(flight, now)
 
   /** A connection may break without a silence: a simulator can be back before its silence is noticed. */
@@ -83,6 +86,8 @@ private[flight] final class SimulatorWatchdog(
           case _                         => ()
         asking = false
 
+  private def silence(now: Instant, lasts: String) = Vigil.silence(simulator, lasts, deciding(), now)
+
   private def note(at: Instant, kind: EventKind, line: String): Unit =
     monitor.offer(Event(at, kind, None, line))
     tell(line)
@@ -95,10 +100,27 @@ private[flight] object SimulatorWatchdog:
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)
 
+  /** So long a policy decides that keeps the loop from asking. */
+  private val Slow = Span.ofMillis(200)
+
   /** From the start of a flight to the first look: at no tick of it. */
   private val Offset = Span.ofMillis(137)
 
   /** Which an answer is to come: where a flight asks rarely, two questions may be lost. */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)
+
+  /** What is told of a silence: a loop that waits for a policy asks no simulator. */
+  def silence(
+      simulator: String,
+      lasts: String,
+      deciding: Option[(vehicle: String, since: Instant)],
+      now: Instant
+  ): String =
+    val why = deciding
+      .map(one => (one.vehicle, now.since(one.since)))
+      .collect:
+        case (vehicle, since) if since > Slow =>
+          s": it is not asked while $vehicle's policy has not decided for ${seconds(since)}; --deadline limits that"
+    s"no answer from the simulator at $simulator for $lasts${why.getOrElse("")}"
 
   private def seconds(span: Span): String = span.toSeconds.fixed(1) + " s"

@@ -37,6 +37,12 @@ final class Team(
   /** While it is held, all vehicles hover and nobody decides; they are still asked where they are. */
   val hold: Hold = Hold()
 
+  @volatile private var underWay = Option.empty[(vehicle: Int, at: Instant)]
+
+  /** For whom a policy is asked, which its loop waits for, and since when. */
+  def deciding: Option[(vehicle: String, since: Instant)] =
+    underWay.map(now => (fleet.agents(now.vehicle).name, now.at))
+
   /** What passes the parts of the loop's graph. */
   val meters: StageMeters = StageMeters()
 
@@ -259,7 +265,9 @@ final class Team(
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
-        decideAt(vehicle, memory, seen._1, seen._2))
+        underWay = Some((vehicle, seen._2))
+        try decideAt(vehicle, memory, seen._1, seen._2)
+        finally underWay = None)
       .via(decided(vehicle))
 
   /** What one vehicle shall decide upon, and when it was asked. */

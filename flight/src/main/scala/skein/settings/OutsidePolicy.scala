@@ -121,7 +121,8 @@ object OutsidePolicy:
           val length = received(4, until).getInt
           if length < 0 || length > MostText then
             throw IOException(s"expected at most $MostText bytes of text, came $length")
-          Left(String(received(length, until).array, "UTF-8"))
+          // What another process says must not command a terminal.
+          Left(String(received(length, until).array, "UTF-8").replaceAll("\\p{Cntrl}+", " ").trim)
         case other => throw IOException(s"expected 0 or 1 before an answer, came $other")
 
     private def received(bytes: Int, until: Instant): ByteBuffer =

@@ -62,10 +62,12 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     /** Flies plans one after another, as one command does. */
     def command(
         settings: FlySettings,
-        onStart: () => Unit = () => ()
+        onStart: () => Unit = () => (),
+        calledOff: String => Option[String] = _ => None
     ): Future[Either[String, Vector[Recording]]] =
       server.flatMap: server =>
-        val assembler = FlightAssembler(network, clock, settings, Some(server.address))
+        val assembler =
+          FlightAssembler(network, clock, settings, Some(server.address), calledOff = calledOff)
         settings.plans.foldLeft(Future.successful[Either[String, Vector[Recording]]](Right(Vector.empty))):
           (before, plan) =>
             before.flatMap:
@@ -232,6 +234,25 @@ class RunningSimulatorSimulation extends munit.FunSuite:
       (one, next) <- commands.zip(commands.drop(1))
       if ended.get((one.vehicle, one.sequence)).exists(_.since(next.sentAt) > Span.ofMillis(300))
     yield next.sentAt
+
+  test(
+    "a flight that is called off while its vehicles are brought to their starts lets them hover on the way"
+  ):
+    val (outcome, seen) = on(duel): bench =>
+      import bench.system.dispatcher
+      given ActorSystem = bench.system
+      val requests      = OutsideRequests()
+      requests.stop("another", "not this one")
+      after(5.seconds)(Future.successful(requests.stop("stream-direct", "ended from the page"))): Unit
+      val flown = bench.command(brief, calledOff = requests.calledOff)
+      // Long enough for whatever still moves to show.
+      bench.watch(flown.flatMap(_ => after(10.seconds)(Future.unit))).zip(flown).map((seen, flown) =>
+        (flown, seen)
+      )
+    assertEquals(outcome.map(_.size), Left("stream-direct: ended from the page"))
+    val high = seen.map(_.map(-_.positionNed.z).max)
+    assert(high.max > 2 && high.max < 15, s"the highest were at ${high.max} m")
+    assert(seen.last.forall(_.velocityNed.norm < 0.3), seen.last)
 
   test("without one of the vehicles a flight is refused, with the names of those that are there"):
     assertEquals(

@@ -22,6 +22,13 @@ class SignsOfLifeSuite extends munit.FunSuite:
       assertEquals(sign, look.sign, s"at ${look.now} ms")
       next
 
+  test("where a policy keeps the loop from asking, that is told of the silence"):
+    def told(since: Double) = Vigil.silence("localhost:1", "1.0 s", Some(("Pursuer", at(since))), at(2000))
+    assertEquals(told(1900), "no answer from the simulator at localhost:1 for 1.0 s")
+    assert(
+      clue(told(500)).endsWith("while Pursuer's policy has not decided for 1.5 s; --deadline limits that")
+    )
+
   test("a simulator that answers within a flight's period is never silent, however long that is"):
     assert(SimulatorWatchdog.within(Span.ofMillis(100), FlightAssembler.askTimeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do

@@ -40,13 +40,13 @@ class OutsidePolicySuite extends munit.FunSuite:
   test("a policy that fails, or tells no number, is asked again"):
     assertEquals(
       decided(
-        Peer.refusal("no such luck"),
+        Peer.refusal("no \u001b[2J\r\n such\u0007luck\n"),
         Peer.number(Float.NaN),
         Peer.number(Float.NegativeInfinity),
         Peer.number(0)
       ),
       Seq(
-        Left("the policy: no such luck"),
+        Left("the policy: no  [2J  such luck"),
         Left("the policy: expected a number from -1 to 1, came NaN"),
         Left("the policy: expected a number from -1 to 1, came -Infinity"),
         Right(0.5)

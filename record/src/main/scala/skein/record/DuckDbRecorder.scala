@@ -51,6 +51,9 @@ object DuckDbRecorder:
   /** Rows committed at once at the most. */
   val batchSize = 4096
 
+  /** Whether a recording can be begun there, as far as its name tells; else why not. */
+  def free(file: Path): Either[RecordError, Unit] = RecordingFile.free(file)
+
   /** Makes the file and begins to record. Fails if there is a file already, or if it cannot be made.
     *
     * @param beside

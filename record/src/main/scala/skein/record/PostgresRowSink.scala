@@ -178,7 +178,8 @@ private[record] object PostgresAddress:
   private val Form = """postgres(?:ql)?://([^:@/]+)(?::([^@/]*))?@([^:/@]+)(?::(\d{1,5}))?/([^/?#]+)""".r
 
   def parse(url: String): Either[String, PostgresAddress] = url match
-    case Form(user, password, host, port, database) =>
+    case Form(user, password, host, port, database)
+        if Option(port).forall(one => one.toInt >= 1 && one.toInt <= 65535) =>
       val at = s"$host:${Option(port).getOrElse("5432")}/$database"
       Right(PostgresAddress(s"jdbc:postgresql://$at", user, Option(password).getOrElse(""), at))
     case _ => Left("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")

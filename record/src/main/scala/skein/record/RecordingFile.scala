@@ -14,6 +14,12 @@ private[record] final class RecordingFile private (val path: Path, connection: D
 
   /** Appends records in order and commits them: they survive the process from here on. */
   def write(records: Seq[Record]): Either[RecordError, Unit] =
+    // What is written to a file that has no name any more is lost when it is closed, and nothing else tells.
+    if !Files.exists(path) then
+      failed(RecordError.WriteFailed(path, "it was taken away while it was written"))
+    else append(records)
+
+  private def append(records: Seq[Record]): Either[RecordError, Unit] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):
       val numbered = records.zipWithIndex.map((record, index) => (nextRow + index, record))
       execute("BEGIN")
@@ -24,9 +30,11 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       execute("COMMIT")
       written = written ++ records.map(Table.of(_).name)
       nextRow += records.size
-    .left.map: error =>
-      broken = true
-      error
+    .left.flatMap(failed)
+
+  private def failed(error: RecordError): Left[RecordError, Nothing] =
+    broken = true
+    Left(error)
 
   /** Appends the last record, also behind a write that was refused, as far as the disk takes it then. */
   def end(record: Ending): Either[RecordError, Unit] =
@@ -46,8 +54,7 @@ private[record] object RecordingFile:
 
   /** Makes the file and its tables and writes how it begins. Blocks for a few hundred milliseconds at the first. */
   def create(file: Path, heading: RecordingHeader): Either[RecordError, RecordingFile] =
-    if Files.exists(file) then Left(RecordError.AlreadyExists(file))
-    else
+    free(file).flatMap: _ =>
       attempt(RecordError.CannotCreate(file, _)):
         val connection = connect(file, readOnly = false)
         createTables(connection)
@@ -58,6 +65,11 @@ private[record] object RecordingFile:
           val _ = opened.close()
         begun.map(_ => opened)
 
+  /** Whether a recording could have this name. */
+  def free(file: Path): Either[RecordError, Unit] =
+    if file.toString.contains(';') then Left(RecordError.CannotCreate(file, Unnameable))
+    else Either.cond(!Files.exists(file), (), RecordError.AlreadyExists(file))
+
   /** Makes the file and its tables, with rows that somebody else puts in. Blocks. */
   def filled(file: Path)(rows: DuckDBConnection => Unit): Either[RecordError, Unit] =
     attempt(RecordError.CannotCreate(file, _)):
@@ -66,6 +78,8 @@ private[record] object RecordingFile:
         rows(connection)
         execute(connection, "CHECKPOINT")
 
+  private val Unnameable = "expected a path without ';', which DuckDB's driver takes for the path's end"
+
   private def createTables(connection: DuckDBConnection): Unit =
     execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
     execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
@@ -73,6 +87,8 @@ private[record] object RecordingFile:
 
   /** A connection to the file alone: one thread of its own, no extensions from the network. */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =
+    // What stands behind it the driver would take for its settings.
+    if file.toString.contains(';') then throw SQLException(Unnameable)
     val properties = Properties()
     properties.setProperty("duckdb.read_only", readOnly.toString)
     properties.setProperty("threads", "1")

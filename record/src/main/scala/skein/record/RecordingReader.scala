@@ -1,6 +1,7 @@
 package skein.record
 
-import java.nio.file.{Files, Path}
+import java.io.IOException
+import java.nio.file.{AccessDeniedException, Files, Path}
 import java.sql.Connection
 import scala.util.Using
 
@@ -43,13 +44,16 @@ object RecordingReader:
   ): Either[RecordError, A] =
     if Files.isDirectory(file) then Left(RecordError.NotARecording(file, "it is a folder"))
     else if !Files.isRegularFile(file) then Left(RecordError.NoSuchFile(file))
-    else if !isDuckDb(file) then Left(RecordError.NotARecording(file, "it is not a DuckDB file"))
     else
-      RecordingFile
-        .attempt(RecordError.CannotOpen(file, _))(RecordingFile.connect(file, readOnly = true))
-        .flatMap(Using.resource(_)(connection =>
+      for
+        known  <- isDuckDb(file)
+        _      <- Either.cond(known, (), RecordError.NotARecording(file, "it is not a DuckDB file"))
+        opened <- RecordingFile
+          .attempt(RecordError.CannotOpen(file, _))(RecordingFile.connect(file, readOnly = true))
+        result <- Using.resource(opened)(connection =>
           checkVersion(file, connection).flatMap(_ => action(connection))
-        ))
+        )
+      yield result
 
   private def checkVersion(file: Path, connection: Connection): Either[RecordError, Unit] =
     RecordingFile
@@ -64,7 +68,11 @@ object RecordingReader:
         )
 
   /** DuckDB's files bear its name behind an eight-byte checksum. */
-  private def isDuckDb(file: Path): Boolean =
-    Using.resource(Files.newInputStream(file)): in =>
-      val start = in.readNBytes(12)
-      start.length == 12 && String(start, 8, 4, java.nio.charset.StandardCharsets.US_ASCII) == "DUCK"
+  private def isDuckDb(file: Path): Either[RecordError, Boolean] =
+    try
+      Using.resource(Files.newInputStream(file)): in =>
+        val start = in.readNBytes(12)
+        Right(start.length == 12 && String(start, 8, 4, java.nio.charset.StandardCharsets.US_ASCII) == "DUCK")
+    catch
+      case _: AccessDeniedException => Left(RecordError.CannotOpen(file, "access denied"))
+      case failed: IOException      => Left(RecordError.CannotOpen(file, s"${failed.getMessage}"))

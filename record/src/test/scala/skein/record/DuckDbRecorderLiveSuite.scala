@@ -5,6 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.util.Using
+import scala.util.chaining.scalaUtilChainingOps
 
 /** Needs threads: a database writes while others offer. */
 class DuckDbRecorderLiveSuite extends munit.FunSuite:
@@ -69,6 +70,27 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite:
       case RecordError.WriteFailed(`file`, why) => assert(why.contains("reading"), why)
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
+
+  folder.test("a file that is taken away fails the recording at once, which would end without one"): folder =>
+    val file     = folder.resolve("flight.duckdb")
+    val recorder = open(file, capacity = 1024)
+    recorder.offer(Samples.reading(1))
+    Files.delete(file)
+    recorder.offer(Samples.reading(2))
+    val failed = RecordError.WriteFailed(file, "it was taken away while it was written")
+    assertEquals(Await.result(recorder.failure, 10.seconds), failed)
+    assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
+
+  folder.test("a path that the driver would take for settings is refused, written and read"): folder =>
+    val file = Files.createDirectory(folder.resolve("a;access_mode=READ_ONLY")).resolve("flight.duckdb")
+    val made = Await.result(DuckDbRecorder.open(file, Samples.heading), 30.seconds).left.map(_.message)
+    assert(clue(made).left.exists(_.contains("expected a path without ';'")))
+    open(
+      folder.resolve("flight.duckdb"),
+      16
+    ).close().map(_ => ())(using system.dispatcher).pipe(Await.result(_, 10.seconds))
+    Files.move(folder.resolve("flight.duckdb"), file)
+    assert(clue(RecordingReader.read(file)).left.exists(_.message.contains("expected a path without ';'")))
 
   folder.test("an actor system that ends before the recording is closed fails the recording"): folder =>
     val file     = folder.resolve("flight.duckdb")

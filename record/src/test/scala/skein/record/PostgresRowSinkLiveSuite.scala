@@ -112,7 +112,8 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite:
       nobody.left.exists(why => why.contains("127.0.0.1:1/db") && !why.contains("secret")),
       nobody.toString
     )
-    assertEquals(
-      PostgresRowSink.open("postgres://db", Samples.heading).left.toOption,
-      Some("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")
-    )
+    for wrong <- Seq("postgres://db", "postgres://me:secret@127.0.0.1:99999/db") do
+      assertEquals(
+        PostgresRowSink.open(wrong, Samples.heading).left.toOption,
+        Some("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")
+      )
