@@ -62,7 +62,6 @@ object TestGroups extends AutoPlugin {
     "skein.cli.LearnCommandSuite",
     "skein.cli.SearchCommandSuite",
     "skein.cli.TortureQuestionSuite",
-    "skein.cluster.ClusterLiveSuite",
     "skein.loop.planning.PlanSuite",
     "skein.loop.planning.PlanWorkersLiveSuite",
     "skein.recognition.AprilTagsSuite",

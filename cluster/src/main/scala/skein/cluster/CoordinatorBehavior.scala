@@ -58,7 +58,7 @@ private[cluster] final class CoordinatorBehavior private (
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
       case _: ToCoordinator                              => () // Of an earlier run.
-      case Compute(works, onAnswer, promise)             => compute(works, onAnswer, promise)
+      case asked: Compute                                => compute(asked)
       case Cancel                                        =>
         state = state.cancelled
         ended(Right(None))
@@ -145,11 +145,8 @@ private[cluster] final class CoordinatorBehavior private (
       tell(News.Lost(worker, record.holds.size))
       feed()
 
-  private def compute(
-      works: Vector[ArraySeq[Byte]],
-      onAnswer: ArraySeq[Byte] => Unit,
-      promise: Promise[Outcome]
-  ): Unit =
+  private def compute(asked: Compute): Unit =
+    import asked.*
     if isDone then promise.success(Right(None))
     else if call.isDefined then promise.success(Left("one call at a time"))
     else
@@ -164,7 +161,10 @@ private[cluster] final class CoordinatorBehavior private (
         next += 1
         Block(next, work)
       state = state.offered(blocks)
-      if open.isDone then ended(Right(Some(open.all))) else feed()
+      if open.isDone then ended(Right(Some(open.all)))
+      else
+        onWanted()
+        feed()
 
   /** The call is over; what is still asked of it is asked no more. */
   private def ended(outcome: Outcome): Unit =
@@ -185,6 +185,7 @@ private[cluster] object CoordinatorBehavior:
   final case class Compute(
       works: Vector[ArraySeq[Byte]],
       onAnswer: ArraySeq[Byte] => Unit,
+      onWanted: () => Unit,
       promise: Promise[Outcome]
   ) extends Local
   case object Cancel                             extends Local
