@@ -31,9 +31,13 @@ private[cli] final class ClusterRun private (
         (threads / options.workers.max(1)).max(1).toString
     ),
     number => folder.resolve(s"worker-$number.log"),
-    node.ended,
+    ended(_),
     failed(_)
   )
+
+  private def ended(worker: String): Boolean =
+    node.ended(worker)
+    node.progress.coordinator.workers.get(worker).exists(_.accepted > 0)
 
   private def failed(reason: String): Unit =
     failure.set(Some(reason))

@@ -9,14 +9,14 @@ import scala.jdk.CollectionConverters.*
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from it, whose end
   * it watches for ([[WorkerProcesses.endWithParent]]).
   *
-  * A process that dies is replaced, unless several have ended soon after their start.
+  * A process that dies is replaced, unless several have ended soon after their start and computed nothing.
   *
   * @param command
   *   of a worker
   * @param log
   *   of a worker by its number, from 1
   * @param onEnd
-  *   told the name of a worker whose process has ended, on a thread of its own
+  *   told the name of a worker whose process has ended, on a thread of its own; tells whether it had computed anything
   * @param onGivenUp
   *   told, in a line, when no process is left and none is started again
   */
@@ -24,7 +24,7 @@ final class WorkerProcesses(
     count: Int,
     command: Seq[String],
     log: Int => Path,
-    onEnd: String => Unit,
+    onEnd: String => Boolean,
     onGivenUp: String => Unit
 ) extends AutoCloseable:
   import WorkerProcesses.*
@@ -53,11 +53,11 @@ final class WorkerProcesses(
       process.onExit.thenAccept(_ => ended(number, process, System.nanoTime() - begun)): Unit
 
   private def ended(number: Int, process: Process, livedNanos: Long): Unit =
-    onEnd(WorkerNode.nameOf(process.pid()))
-    if livedNanos > Soon then early.set(0)
+    val isSound = onEnd(WorkerNode.nameOf(process.pid())) || livedNanos > Soon
+    if isSound then early.set(0)
     val again = synchronized:
       processes -= number
-      !isClosing && (livedNanos > Soon || early.incrementAndGet() <= MostEarly)
+      !isClosing && (isSound || early.incrementAndGet() <= MostEarly)
     if again then begin(number)
     else if synchronized(!isClosing && processes.isEmpty) then
       onGivenUp(
