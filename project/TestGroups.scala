@@ -63,7 +63,6 @@ object TestGroups extends AutoPlugin {
     "skein.cli.OwnFamilySuite",
     "skein.cli.SearchCommandSuite",
     "skein.cli.TortureQuestionSuite",
-    "skein.cluster.ClusterLiveSuite",
     "skein.loop.planning.PlanSuite",
     "skein.loop.planning.PlanWorkersLiveSuite",
     "skein.recognition.AprilTagsSuite",

@@ -1,5 +1,6 @@
 package skein.cli
 
+import java.io.IOException
 import java.nio.file.Path
 import java.security.MessageDigest
 import java.util.concurrent.atomic.AtomicReference
@@ -30,16 +31,27 @@ private[cli] final class ClusterRun private (
         (threads / options.workers.max(1)).max(1).toString
     ),
     number => folder.resolve(s"worker-$number.log"),
-    node.ended,
-    reason =>
-      failure.set(Some(reason))
-      node.cancel()
+    ended(_),
+    failed(_)
   )
+
+  private def ended(worker: String): Boolean =
+    node.ended(worker)
+    node.progress.coordinator.workers.get(worker).exists(_.accepted > 0)
+
+  private def failed(reason: String): Unit =
+    failure.set(Some(reason))
+    node.cancel()
+
+  /** Where all answers are in the ledger, nobody is needed. */
+  private def wanted(): Unit =
+    val _ = Thread.ofVirtual().start: () =>
+      try processes.start()
+      catch case cannot: IOException => failed(s"cannot start workers: ${cannot.getMessage}")
 
   private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
     shown.say(s"workers join by ./skein worker --join ${node.address}")
     try
-      processes.start()
       val done = body(this)
       shown.say(account)
       done
@@ -54,7 +66,7 @@ private[cli] final class ClusterRun private (
       onAnswer: ArraySeq[Byte] => Unit
   ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
     node
-      .compute(works, onAnswer)
+      .compute(works, onAnswer, () => wanted())
       .map(_.flatMap(answers => withReason(answers)))(using ExecutionContext.parasitic)
 
   /** A call that was cancelled since nobody is left has a reason. */

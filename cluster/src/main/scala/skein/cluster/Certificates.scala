@@ -4,8 +4,10 @@ import java.io.IOException
 import java.net.InetAddress
 import java.nio.file.attribute.PosixFilePermissions
 import java.nio.file.{FileSystems, Files, Path}
-import java.security.SecureRandom
+import java.security.cert.{Certificate, CertificateFactory}
+import java.security.{GeneralSecurityException, KeyStore, SecureRandom}
 import java.util.HexFormat
+import scala.util.Using
 import scala.util.control.NonFatal
 
 /** Makes a lab's certificates with the JDK's own `keytool`: somebody who signs, and a folder for each host that [[Tls.of]]
@@ -37,7 +39,10 @@ object Certificates:
         made <- hosts.foldLeft[Either[String, Vector[Path]]](Right(Vector.empty)): (before, host) =>
           before.flatMap(all => node(folder, host).map(all :+ _))
       yield made
-    catch case failed: IOException => Left(s"cannot write into $folder: ${failed.getMessage}")
+    catch
+      case failed: IOException              => Left(s"cannot write into $folder: ${failed.getMessage}")
+      case failed: GeneralSecurityException =>
+        Left(s"cannot make certificates in $folder: ${failed.getMessage}")
 
   private def isHost(text: String) = text.matches("""(\*\.)?[A-Za-z0-9][A-Za-z0-9.:-]{0,252}""")
 
@@ -59,11 +64,6 @@ object Certificates:
           "ku:c=keyCertSign"
         ) ++ Key
       )
-      _ <- keytool(
-        secret,
-        folder.resolve(Signer),
-        Seq("-exportcert", "-rfc", "-alias", "signer", "-file", folder.resolve("signer.pem").toString)
-      )
     yield onlyOurs(folder.resolve(Signer))
 
   private def node(folder: Path, host: String): Either[String, Path] =
@@ -74,7 +74,6 @@ object Certificates:
       val secret            = password(own.resolve(Tls.Password))
       val (keys, trusted)   = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
       val (request, signed) = (own.resolve("request.pem"), own.resolve("node.pem"))
-      val signerPem         = folder.resolve("signer.pem").toString
       val isAddress         = host.matches("""[\d.]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*""")
       val names             =
         if host == "localhost" then "dns:localhost,ip:127.0.0.1"
@@ -107,17 +106,40 @@ object Certificates:
               "ku:c=digitalSignature"
             )
           )
-          _ <- keytool(secret, keys, Seq("-importcert", "-noprompt", "-alias", "signer", "-file", signerPem))
-          _ <-
-            keytool(secret, keys, Seq("-importcert", "-noprompt", "-alias", "node", "-file", signed.toString))
-          _ <-
-            keytool(secret, trusted, Seq("-importcert", "-noprompt", "-alias", "signer", "-file", signerPem))
         yield
+          val signer = read(folder.resolve(Signer), signing).getCertificate("signer")
+          certify(keys, secret, signed, signer)
+          trust(trusted, secret, signer)
           onlyOurs(keys)
           own
       Files.deleteIfExists(request): Unit
       Files.deleteIfExists(signed): Unit
       made
+
+  /** A node shows its signed certificate, with that of whoever signed it. */
+  private def certify(keys: Path, password: String, signed: Path, signer: Certificate): Unit =
+    val factory = CertificateFactory.getInstance("X.509")
+    val node    = Using.resource(Files.newInputStream(signed))(factory.generateCertificate)
+    val store   = read(keys, password)
+    store.setKeyEntry(
+      "node",
+      store.getKey("node", password.toCharArray),
+      password.toCharArray,
+      Array(node, signer)
+    )
+    write(store, keys, password)
+
+  private def trust(trusted: Path, password: String, signer: Certificate): Unit =
+    val store = KeyStore.getInstance("PKCS12")
+    store.load(null, null)
+    store.setCertificateEntry("signer", signer)
+    write(store, trusted, password)
+
+  private def read(store: Path, password: String): KeyStore =
+    KeyStore.getInstance(store.toFile, password.toCharArray)
+
+  private def write(store: KeyStore, to: Path, password: String): Unit =
+    Using.resource(Files.newOutputStream(to))(store.store(_, password.toCharArray))
 
   private val Key =
     Seq("-keyalg", "EC", "-groupname", "secp256r1", "-sigalg", "SHA256withECDSA", "-validity", Days.toString)

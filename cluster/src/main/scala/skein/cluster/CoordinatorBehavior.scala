@@ -39,8 +39,9 @@ private[cluster] final class CoordinatorBehavior private (
   private var resumed = 0L
   private var died    = 0
   private var unsaved = false
+  private var isDone  = false
 
-  /** Where each worker is to be answered. */
+  /** Where each worker is to be answered, also one that has the question alone. */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
   /** Who has room, and nothing was there. */
@@ -57,7 +58,7 @@ private[cluster] final class CoordinatorBehavior private (
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
       case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
       case _: ToCoordinator                              => () // Of an earlier run.
-      case Compute(works, onAnswer, promise)             => compute(works, onAnswer, promise)
+      case asked: Compute                                => compute(asked)
       case Cancel                                        =>
         state = state.cancelled
         ended(Right(None))
@@ -69,23 +70,27 @@ private[cluster] final class CoordinatorBehavior private (
         feed()
         save()
       case Farewell =>
+        // Stays until the node ends: there are some who ask only now.
+        isDone = true
         addresses.values.foreach(_ ! ToWorker.Goodbye)
         save()
         ended(Right(None))
     publish()
-    if command == Farewell then Behaviors.stopped else this
+    this
 
   private def asked(ask: ToCoordinator.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
       ask.replyTo ! ToWorker.Refused(reason)
       refuse(ask.worker, reason)
-    else if ask.run != job.run then ask.replyTo ! ToWorker.Welcome(job.run, job.question)
+    else if isDone then ask.replyTo ! ToWorker.Goodbye
     else
-      if !state.workers.get(ask.worker).exists(_.isHere) then tell(News.Joined(ask.worker, ask.cores))
-      state = state.joined(ask.worker, ask.cores)
       addresses += ask.worker -> ask.replyTo
-      serve(ask.worker, ask.holding)
+      if ask.run != job.run then ask.replyTo ! ToWorker.Welcome(job.run, job.question)
+      else
+        if !state.workers.get(ask.worker).exists(_.isHere) then tell(News.Joined(ask.worker, ask.cores))
+        state = state.joined(ask.worker, ask.cores)
+        serve(ask.worker, ask.holding)
 
   private def refuse(worker: String, reason: String): Unit =
     if !refused(worker) && refused.size < MostRefused then
@@ -132,20 +137,18 @@ private[cluster] final class CoordinatorBehavior private (
     unsaved = false
 
   private def lost(worker: String): Unit =
+    addresses -= worker
     state.workers.get(worker).filter(_.isHere).foreach: record =>
       died += 1
       state = state.lost(worker)
       hungry -= worker
-      addresses -= worker
       tell(News.Lost(worker, record.holds.size))
       feed()
 
-  private def compute(
-      works: Vector[ArraySeq[Byte]],
-      onAnswer: ArraySeq[Byte] => Unit,
-      promise: Promise[Outcome]
-  ): Unit =
-    if call.isDefined then promise.success(Left("one call at a time"))
+  private def compute(asked: Compute): Unit =
+    import asked.*
+    if isDone then promise.success(Right(None))
+    else if call.isDefined then promise.success(Left("one call at a time"))
     else
       val open = Call(works.map(BlockKey.of), onAnswer, promise)
       val asks = works.zip(open.keys).distinctBy(_._2).filter: (_, key) =>
@@ -158,7 +161,10 @@ private[cluster] final class CoordinatorBehavior private (
         next += 1
         Block(next, work)
       state = state.offered(blocks)
-      if open.isDone then ended(Right(Some(open.all))) else feed()
+      if open.isDone then ended(Right(Some(open.all)))
+      else
+        onWanted()
+        feed()
 
   /** The call is over; what is still asked of it is asked no more. */
   private def ended(outcome: Outcome): Unit =
@@ -179,6 +185,7 @@ private[cluster] object CoordinatorBehavior:
   final case class Compute(
       works: Vector[ArraySeq[Byte]],
       onAnswer: ArraySeq[Byte] => Unit,
+      onWanted: () => Unit,
       promise: Promise[Outcome]
   ) extends Local
   case object Cancel                             extends Local

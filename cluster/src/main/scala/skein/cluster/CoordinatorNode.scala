@@ -37,15 +37,18 @@ final class CoordinatorNode private (
     *
     * @param onAnswer
     *   told each answer when it comes or is found in the ledger, in any order, on a thread of the node's own
+    * @param onWanted
+    *   told, on such a thread, that the ledger does not have all answers
     * @return
     *   the answers in the order of the works; none if it was cancelled; or why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
-      onAnswer: ArraySeq[Byte] => Unit = _ => ()
+      onAnswer: ArraySeq[Byte] => Unit = _ => (),
+      onWanted: () => Unit = () => ()
   ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]] =
     val promise = Promise[CoordinatorBehavior.Outcome]()
-    coordinator ! CoordinatorBehavior.Compute(works, onAnswer, promise)
+    coordinator ! CoordinatorBehavior.Compute(works, onAnswer, onWanted, promise)
     promise.future
 
   def cancel(): Unit = coordinator ! CoordinatorBehavior.Cancel

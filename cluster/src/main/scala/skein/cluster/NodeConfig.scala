@@ -60,9 +60,10 @@ private[cluster] object NodeConfig:
       cluster {
         jmx.enabled = off
         log-info = off
-        # A process joins within a second, where nobody else waits for the same.
-        gossip-interval = 200 ms
-        leader-actions-interval = 200 ms
+        # A process is a member within a few of these.
+        periodic-tasks-initial-delay = 50 ms
+        gossip-interval = 100 ms
+        leader-actions-interval = 100 ms
         seed-node-timeout = 3 s
         retry-unsuccessful-join-after = 1 s
         shutdown-after-unsuccessful-join-seed-nodes = 10 s

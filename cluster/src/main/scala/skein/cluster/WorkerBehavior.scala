@@ -8,7 +8,8 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
 
-/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers.
+/** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the question before
+  * it is a member, and for blocks once it is: whoever is no member would not be missed.
   *
   * @param pool
   *   of as many threads as cores
@@ -29,6 +30,7 @@ private[cluster] final class WorkerBehavior private (
 
   private var run     = 0L
   private var solvers = Option.empty[ArrayBlockingQueue[Solver]]
+  private var member  = false
   private var held    = Set.empty[Long]
   private var begun   = 0L
   private var blocks  = 0L
@@ -38,8 +40,12 @@ private[cluster] final class WorkerBehavior private (
   def onMessage(command: Command): Behavior[Command] = command match
     case Beat =>
       beats += 1
-      if solvers.isDefined || run == 0 then ask()
+      if run == 0 then ask() else askIfReady()
       if beats % BeatsAReport == 0 && blocks > 0 then tell(summary)
+      this
+    case Member =>
+      member = true
+      askIfReady()
       this
     case ToWorker.Welcome(welcome, question) =>
       if welcome != run then
@@ -53,14 +59,14 @@ private[cluster] final class WorkerBehavior private (
       made match
         case Right(ready) =>
           solvers = Some(ready)
-          ask()
+          askIfReady()
           this
         case Left(reason) =>
           coordinator ! ToCoordinator.Unable(run, self.name, reason)
           end(End.Refused(s"cannot answer the coordinator's question: $reason"))
     case ToWorker.Give(of, number, work) if of == run && !held(number) && held.size < MessageCodec.MostHeld =>
       solvers.foreach: ready =>
-        if begun == 0 then tell("computes its first block")
+        if begun == 0 then tell(s"computes its first block, ${self.age}")
         begun += 1
         held += number
         inPool(solved(of, number, work, ready))
@@ -79,6 +85,8 @@ private[cluster] final class WorkerBehavior private (
     case ToWorker.Goodbye         => end(End.Finished)
     case Unreachable              => end(End.Lost)
     case _                        => this // Of an earlier run, or a block that it has.
+
+  private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
   private def ask(): Unit =
     coordinator ! ToCoordinator.Ask(self.name, self.cores, self.build, run, held, context.self)
@@ -105,7 +113,9 @@ private[cluster] final class WorkerBehavior private (
         val ready = ArrayBlockingQueue[Solver](self.cores)
         for _ <- 0 until self.cores do ready.put(make())
         ready
-    catch case NonFatal(failed) => Left(failed.toString)
+    catch
+      case NonFatal(failed)        => Left(failed.toString)
+      case _: InterruptedException => Left("the worker ends")
 
   private def solved(
       of: Long,
@@ -128,7 +138,14 @@ private[cluster] object WorkerBehavior:
   /** @param build
     *   see [[BuildId]]
     */
-  final case class Self(name: String, cores: Int, build: String, solvers: Solvers)
+  final case class Self(name: String, cores: Int, build: String, solvers: Solvers, startedAt: Long):
+    /** For a person; it started at `startedAt` by `System.nanoTime`. */
+    def age: String =
+      String.format(
+        Locale.ROOT,
+        "%.1f s after its start",
+        (System.nanoTime() - startedAt) * 1e-9: java.lang.Double
+      )
 
   enum End:
     case Finished, Lost
@@ -143,6 +160,9 @@ private[cluster] object WorkerBehavior:
       answer: Either[String, ArraySeq[Byte]],
       nanos: Long
   ) extends Local
+
+  /** This process is a member of the cluster. */
+  case object Member extends Local
 
   /** The coordinator is out of reach. */
   case object Unreachable extends Local

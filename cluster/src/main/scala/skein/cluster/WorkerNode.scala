@@ -2,7 +2,7 @@ package skein.cluster
 
 import com.typesafe.config.Config
 import java.net.InetAddress
-import java.util.concurrent.{ExecutorService, Executors, TimeUnit}
+import java.util.concurrent.{ExecutorService, Executors, TimeUnit, TimeoutException}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
@@ -14,7 +14,7 @@ import org.apache.pekko.cluster.ClusterEvent.{
   UnreachableMember
 }
 import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
-import scala.concurrent.duration.{Duration, FiniteDuration}
+import scala.concurrent.duration.{Duration, DurationLong, FiniteDuration}
 import scala.concurrent.{Await, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
@@ -61,17 +61,18 @@ final class WorkerNode(
   def run(): Either[String, Unit] =
     NodeConfig.of(listen, tls).flatMap: config =>
       val pool = Executors.newFixedThreadPool(cores, WorkerNode.thread(_))
+      val self = WorkerBehavior.Self(name, cores, build, solvers, System.nanoTime())
       try
         tell(s"$name, $cores ${if cores == 1 then "core" else "cores"}, build $build: joining $coordinator")
-        contactAt = System.nanoTime()
+        contactAt = self.startedAt
         var outcome = Option.empty[Either[String, Unit]]
         while outcome.isEmpty do
-          val how    = once(config, pool)
+          val how    = once(config, self, pool)
           val waited = System.nanoTime() - contactAt
           outcome = how match
-            case _ if stopped        => Some(Right(tell("told to end")))
-            case End.Finished        => Some(Right(tell("the coordinator has all that it asked")))
-            case End.Refused(reason) => Some(Left(reason))
+            case _ if stopped => Some(Right(tell("told to end")))
+            case End.Finished => Some(Right(tell("the work is done: the coordinator has all that it asked")))
+            case End.Refused(reason)                   => Some(Left(reason))
             case End.Lost if waited > patience.toNanos =>
               Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s"))
             case End.Lost =>
@@ -83,7 +84,7 @@ final class WorkerNode(
       finally pool.shutdownNow(): Unit
 
   /** From joining to the end, once. */
-  private def once(config: Config, pool: ExecutorService): End =
+  private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End =
     val promise            = Promise[End]()
     @volatile var isMember = false
     ending = promise
@@ -96,14 +97,18 @@ final class WorkerNode(
       )
       val to =
         ActorRefResolver(system.toTyped).resolveActorRef[ToCoordinator](s"$seed/user/${CoordinatorNode.Name}")
-      val self = WorkerBehavior.Self(name, cores, build, solvers)
-      val _    = system.spawn(
-        WorkerNode.member(seed, () => { isMember = true; tell(s"joined $coordinator") }):
-          WorkerBehavior(to, self, pool, tell, end => { val _ = promise.trySuccess(end) })
-        ,
-        "worker"
+      val work =
+        system.spawn(
+          WorkerBehavior(to, self, pool, tell, end => { val _ = promise.trySuccess(end) }),
+          "worker"
+        )
+      val _ = system.spawn(
+        WorkerNode.member(seed, work, () => { isMember = true; tell(s"joined $coordinator, ${self.age}") }),
+        "member"
       )
-      val how = Await.result(promise.future, Duration.Inf)
+      val left = patience.toNanos - (System.nanoTime() - contactAt)
+      val how  = WorkerNode.within(left)(promise).getOrElse:
+        if isMember then Await.result(promise.future, Duration.Inf) else End.Lost
       if isMember then contactAt = System.nanoTime()
       how
     finally
@@ -120,9 +125,16 @@ object WorkerNode:
     made.setDaemon(true)
     made
 
-  /** Joins, works as a member, and tells the work when the coordinator is out of reach. */
-  private def member(seed: Address, onUp: () => Unit)(
-      work: Behavior[WorkerBehavior.Command]
+  /** What it comes to, if it does so soon enough. */
+  private def within[A](nanos: Long)(promise: Promise[A]): Option[A] =
+    try Some(Await.result(promise.future, nanos.max(0).nanos))
+    catch case _: TimeoutException => None
+
+  /** Joins, and tells the work that it has, and when the coordinator is out of reach. */
+  private def member(
+      seed: Address,
+      work: ActorRef[WorkerBehavior.Command],
+      onUp: () => Unit
   ): Behavior[SelfUp | MemberEvent | ReachabilityEvent] =
     Behaviors.setup: context =>
       val cluster = Cluster(context.system)
@@ -130,13 +142,12 @@ object WorkerNode:
       cluster.subscriptions ! Subscribe(context.self, classOf[MemberEvent])
       cluster.subscriptions ! Subscribe(context.self, classOf[ReachabilityEvent])
       cluster.manager ! JoinSeedNodes(Vector(seed))
-      var working                  = Option.empty[ActorRef[WorkerBehavior.Command]]
-      def lostIf(address: Address) = if address == seed then working.foreach(_ ! WorkerBehavior.Unreachable)
+      def lostIf(address: Address) = if address == seed then work ! WorkerBehavior.Unreachable
       Behaviors.receiveMessage: event =>
         event match
           case _: SelfUp =>
             onUp()
-            working = Some(context.spawn(work, "blocks"))
+            work ! WorkerBehavior.Member
           case UnreachableMember(member) => lostIf(member.address)
           case MemberRemoved(member, _)  => lostIf(member.address)
           case _                         => ()

@@ -9,14 +9,14 @@ import scala.jdk.CollectionConverters.*
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from it, whose end
   * it watches for ([[WorkerProcesses.endWithParent]]).
   *
-  * A process that dies is replaced, unless several have ended soon after their start.
+  * A process that dies is replaced, unless several have ended soon after their start and computed nothing.
   *
   * @param command
   *   of a worker
   * @param log
   *   of a worker by its number, from 1
   * @param onEnd
-  *   told the name of a worker whose process has ended, on a thread of its own
+  *   told the name of a worker whose process has ended, on a thread of its own; tells whether it had computed anything
   * @param onGivenUp
   *   told, in a line, when no process is left and none is started again
   */
@@ -24,16 +24,23 @@ final class WorkerProcesses(
     count: Int,
     command: Seq[String],
     log: Int => Path,
-    onEnd: String => Unit,
+    onEnd: String => Boolean,
     onGivenUp: String => Unit
 ) extends AutoCloseable:
   import WorkerProcesses.*
 
   private var processes = Map.empty[Int, Process]
+  private var isStarted = false
   private var isClosing = false
   private val early     = AtomicInteger()
 
-  def start(): Unit = for number <- 1 to count do begin(number)
+  /** Once, however often it is called. */
+  def start(): Unit =
+    val first = synchronized:
+      val is = !isStarted
+      isStarted = true
+      is
+    if first then for number <- 1 to count do begin(number)
 
   private def begin(number: Int): Unit = synchronized:
     if !isClosing then
@@ -46,11 +53,11 @@ final class WorkerProcesses(
       process.onExit.thenAccept(_ => ended(number, process, System.nanoTime() - begun)): Unit
 
   private def ended(number: Int, process: Process, livedNanos: Long): Unit =
-    onEnd(WorkerNode.nameOf(process.pid()))
-    if livedNanos > Soon then early.set(0)
+    val isSound = onEnd(WorkerNode.nameOf(process.pid())) || livedNanos > Soon
+    if isSound then early.set(0)
     val again = synchronized:
       processes -= number
-      !isClosing && (livedNanos > Soon || early.incrementAndGet() <= MostEarly)
+      !isClosing && (isSound || early.incrementAndGet() <= MostEarly)
     if again then begin(number)
     else if synchronized(!isClosing && processes.isEmpty) then
       onGivenUp(
@@ -73,6 +80,14 @@ object WorkerProcesses:
   private val MostEarly = 3
   private val Grace     = 5_000_000_000L
 
+  /** What `X.jsa` is to this program, `X-worker.jsa` is to its workers. */
+  private[cluster] def ofWorkers(option: String): String =
+    if option.startsWith("-XX:SharedArchiveFile=") && !option.endsWith(OfWorkers) then
+      option.stripSuffix(".jsa") + OfWorkers
+    else option
+
+  private val OfWorkers = "-worker.jsa"
+
   /** In a worker: calls `end` once the process that started it has ended, or closed its pipe. */
   def endWithParent(end: () => Unit): Unit =
     val watching = Thread(() =>
@@ -84,7 +99,8 @@ object WorkerProcesses:
     watching.setName("parent")
     watching.start()
 
-  /** A command that runs a program as this one runs: the same JVM, options and class path.
+  /** A command that runs a program as this one runs: the same JVM, options and class path. An archive of classes
+    * that the JVM makes by itself is another, since workers need other classes: it is made by the first of them.
     *
     * @param program
     *   the class with `main`
@@ -92,5 +108,6 @@ object WorkerProcesses:
   def likeThis(program: String, words: Seq[String]): Seq[String] =
     val options = ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
       .filterNot(option => option.startsWith("-agentlib") || option.startsWith("-Xrun"))
+      .map(ofWorkers)
     val java = Path.of(sys.props("java.home"), "bin", "java").toString
     (java +: options.toSeq) ++ Seq("-cp", sys.props("java.class.path"), program) ++ words

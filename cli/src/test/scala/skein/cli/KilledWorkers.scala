@@ -1,0 +1,61 @@
+package skein.cli
+
+import java.io.ByteArrayOutputStream
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.{Files, Path}
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, ExecutionContext, Future, blocking}
+import scala.jdk.CollectionConverters.*
+import scala.util.Random
+import skein.blocks.Ledger
+
+/** One search by three workers, of whom one is killed every 5 s, 20 times; then the same search by this process alone:
+  * `./sbtw "cli/Test/runMain skein.cli.killWorkers"`. Ends with an error where their files differ, or where a block counts
+  * twice.
+  *
+  * @param candidates
+  *   so many that the search lasts for all kills
+  */
+@main def killWorkers(candidates: Int, kills: Int, out: String): Unit =
+  given ExecutionContext = ExecutionContext.global
+  val question           =
+    s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
+      .split(' ')
+      .toSeq
+  val Seq(together, alone)           = Seq("together", "alone").map(Path.of(out).resolve(_))
+  def search(words: String*): String =
+    val said   = ByteArrayOutputStream()
+    val status = Console.withOut(said)(Console.withErr(said)(Main.run(question ++ words)))
+    require(status == 0, said.toString(UTF_8))
+    said.toString(UTF_8)
+
+  val random    = Random(1)
+  val searching =
+    Future(blocking(search(
+      "--workers",
+      "3",
+      "--threads",
+      "3",
+      "--block",
+      "2048",
+      "--out",
+      together.toString
+    )))
+  var killed = 0
+  while killed < kills && !searching.isCompleted do
+    Thread.sleep(5000)
+    val workers = ProcessHandle.current().children().toList.asScala.filter(_.isAlive)
+    if workers.nonEmpty && !searching.isCompleted then
+      workers(random.nextInt(workers.size)).destroyForcibly(): Unit
+      killed += 1
+  val said = Await.result(searching, 1.hour)
+  search("--out", alone.toString): Unit
+
+  println(said.linesIterator.filter(line =>
+    line.contains("blocks counted") || line.contains("is gone")
+  ).mkString("\n"))
+  for name <- Seq("search.json", "policy.conf", "landscape.csv") do
+    require(Files.mismatch(together.resolve(name), alone.resolve(name)) == -1, s"$name differs")
+  val audit = Ledger.audit(together.resolve(Ledger.Name))
+  require(audit.repeats == 0 && audit.broken == 0, audit.toString)
+  println(s"$killed workers killed; the same files to the bit; ${audit.blocks} blocks, each counted once")

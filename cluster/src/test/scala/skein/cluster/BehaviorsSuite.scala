@@ -1,0 +1,79 @@
+package skein.cluster
+
+import java.nio.file.Files
+import java.util.concurrent.{ConcurrentLinkedQueue, Executors, LinkedBlockingQueue, TimeUnit}
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.actor.typed.scaladsl.Behaviors
+import org.apache.pekko.actor.typed.scaladsl.adapter.*
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.Await
+import scala.concurrent.duration.DurationInt
+import scala.jdk.CollectionConverters.*
+import skein.blocks.Ledger
+
+/** Coordinator and worker, each alone, with what it says in a queue. */
+class BehaviorsSuite extends munit.FunSuite:
+
+  private val question = ArraySeq[Byte](1, 2, 3)
+  private val pool     = Executors.newFixedThreadPool(1)
+
+  private lazy val system = ActorSystem("behaviors")
+
+  override def afterAll(): Unit =
+    pool.shutdownNow()
+    Await.result(system.terminate(), 30.seconds): Unit
+
+  private final class Heard[A]:
+    private val queue = LinkedBlockingQueue[A]()
+    val actor         = system.spawnAnonymous(Behaviors.receiveMessage[A] { message =>
+      queue.add(message)
+      Behaviors.same
+    })
+    def said: Vector[A] = queue.asScala.toVector
+    def next(): A       = Option(queue.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was said"))
+
+  private def run(asked: ToCoordinator) = asked match
+    case ask: ToCoordinator.Ask => ask.run
+    case other                  => fail(s"expected an Ask, came $other")
+
+  test("a worker gets its question ready before it is a member, and asks for blocks once it is"):
+    val heard  = Heard[ToCoordinator]()
+    val told   = ConcurrentLinkedQueue[String]()
+    val ready  = LinkedBlockingQueue[Int]()
+    val solver = new Solvers:
+      def of(asked: ArraySeq[Byte]) = Right(() =>
+        ready.add(1)
+        work => work
+      )
+    val worker = system.spawnAnonymous(WorkerBehavior(
+      heard.actor,
+      WorkerBehavior.Self("anna", 1, "one", solver, System.nanoTime()),
+      pool,
+      told.add(_): Unit,
+      _ => ()
+    ))
+    assertEquals(run(heard.next()), 0L)
+    worker ! ToWorker.Welcome(7, question)
+    assert(ready.poll(30, TimeUnit.SECONDS) == 1, "was not made ready")
+    assert(heard.said.forall(run(_) == 0), "asked for blocks")
+    worker ! WorkerBehavior.Member
+    assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
+
+  test("when all is done everybody is told: who works, who is still preparing, and who asks only then"):
+    val ledger = Ledger
+      .open(Files.createTempDirectory("cluster").resolve(Ledger.Name), ArraySeq.fill(32)(7))
+      .fold(fail(_), identity)
+    val coordinator =
+      system.spawnAnonymous(CoordinatorBehavior(Job(7, "one", question), ledger, _ => (), _ => ()))
+    def worker(name: String, run: Long) =
+      val heard = Heard[ToWorker]()
+      coordinator ! ToCoordinator.Ask(name, 1, "one", run, Set.empty, heard.actor)
+      heard
+    val preparing = worker("anna", 0)
+    assertEquals(preparing.next(), ToWorker.Welcome(7, question))
+    val working = worker("ben", 7)
+    coordinator ! CoordinatorBehavior.Farewell
+    assertEquals(preparing.next(), ToWorker.Goodbye)
+    assertEquals(working.next(), ToWorker.Goodbye)
+    assertEquals(worker("cleo", 0).next(), ToWorker.Goodbye)
+    ledger.close()

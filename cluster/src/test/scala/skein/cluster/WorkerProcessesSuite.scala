@@ -1,0 +1,33 @@
+package skein.cluster
+
+import java.nio.file.Files
+import java.util.concurrent.{CompletableFuture, TimeUnit}
+import java.util.concurrent.atomic.AtomicInteger
+
+class WorkerProcessesSuite extends munit.FunSuite:
+
+  test("workers have an archive of classes of their own, and share it with those that are started by hand"):
+    val option = "-XX:SharedArchiveFile=/opt/skein/skein-vector.jsa"
+    val own    = WorkerProcesses.ofWorkers(option)
+    assertEquals(own, "-XX:SharedArchiveFile=/opt/skein/skein-vector-worker.jsa")
+    assertEquals(WorkerProcesses.ofWorkers(own), own)
+    assertEquals(WorkerProcesses.ofWorkers("-Xmx1g"), "-Xmx1g")
+
+  test(
+    "workers that are killed again and again are replaced while they compute; those that never do are given up"
+  ):
+    val folder    = Files.createTempDirectory("workers")
+    val ended     = AtomicInteger()
+    val givenUp   = CompletableFuture[String]()
+    val processes = WorkerProcesses(
+      1,
+      Seq("false"),
+      number => folder.resolve(s"$number.log"),
+      _ => ended.incrementAndGet() <= 9,
+      givenUp.complete(_): Unit
+    )
+    processes.start()
+    assert(clue(givenUp.get(60, TimeUnit.SECONDS)).contains("end soon after their start, with status 1"))
+    // The tenth and three more.
+    assertEquals(ended.get, 13)
+    processes.close()
