@@ -86,7 +86,8 @@ private[flight] final class SimulatorWatchdog(
           case _                         => ()
         asking = false
 
-  private def silence(now: Instant, lasts: String) = Vigil.silence(simulator, lasts, deciding(), now)
+  private def silence(now: Instant, lasts: String) =
+    SimulatorWatchdog.silence(simulator, lasts, deciding(), now)
 
   private def note(at: Instant, kind: EventKind, line: String): Unit =
     monitor.offer(Event(at, kind, None, line))

@@ -23,7 +23,8 @@ class SignsOfLifeSuite extends munit.FunSuite:
       next
 
   test("where a policy keeps the loop from asking, that is told of the silence"):
-    def told(since: Double) = Vigil.silence("localhost:1", "1.0 s", Some(("Pursuer", at(since))), at(2000))
+    def told(since: Double) =
+      SimulatorWatchdog.silence("localhost:1", "1.0 s", Some(("Pursuer", at(since))), at(2000))
     assertEquals(told(1900), "no answer from the simulator at localhost:1 for 1.0 s")
     assert(
       clue(told(500)).endsWith("while Pursuer's policy has not decided for 1.5 s; --deadline limits that")
