@@ -9,8 +9,8 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Random
 import skein.blocks.Ledger
 
-/** One search by three workers, of whom one is killed every 5 s, 20 times; then the same search by this process alone:
-  * `./sbtw "cli/Test/runMain skein.cli.killWorkers"`. Ends with an error where their files differ, or where a block counts
+/** One search by three workers, of whom one is killed every 5 s; then the same search by this process alone:
+  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Ends with an error where their files differ, or where a block counts
   * twice.
   *
   * @param candidates

@@ -23,13 +23,16 @@ private[cluster] final case class Job(run: Long, build: String, question: ArrayS
   *
   * @param onProgress
   *   told after every change
+  * @param down
+  *   takes a process that has ended out of the cluster, before it is missed
   */
 private[cluster] final class CoordinatorBehavior private (
     context: ActorContext[CoordinatorBehavior.Command],
     job: Job,
     ledger: Ledger,
     tell: News => Unit,
-    onProgress: Progress => Unit
+    onProgress: Progress => Unit,
+    down: Address => Unit
 ) extends AbstractBehavior[CoordinatorBehavior.Command](context):
   import CoordinatorBehavior.*
 
@@ -64,8 +67,10 @@ private[cluster] final class CoordinatorBehavior private (
         ended(Right(None))
       case Unreachable(address) =>
         addresses.keys.filter(worker => addresses(worker).path.address == address).foreach(lost)
-      case Ended(worker) => lost(worker)
-      case Tick          =>
+      case Ended(worker) =>
+        addresses.get(worker).foreach(one => down(one.path.address))
+        lost(worker)
+      case Tick =>
         state = state.at(System.nanoTime())
         feed()
         save()
@@ -218,7 +223,13 @@ private[cluster] object CoordinatorBehavior:
     def isDone: Boolean             = answers.size == asked
     def all: Vector[ArraySeq[Byte]] = keys.map(answers)
 
-  def apply(job: Job, ledger: Ledger, tell: News => Unit, onProgress: Progress => Unit): Behavior[Command] =
+  def apply(
+      job: Job,
+      ledger: Ledger,
+      tell: News => Unit,
+      onProgress: Progress => Unit,
+      down: Address => Unit
+  ): Behavior[Command] =
     Behaviors.withTimers: (timers: TimerScheduler[Command]) =>
       timers.startTimerWithFixedDelay(Tick, 1.second)
-      Behaviors.setup(context => new CoordinatorBehavior(context, job, ledger, tell, onProgress))
+      Behaviors.setup(context => new CoordinatorBehavior(context, job, ledger, tell, onProgress, down))

@@ -12,7 +12,7 @@ import org.apache.pekko.cluster.ClusterEvent.{
   ReachabilityEvent,
   UnreachableMember
 }
-import org.apache.pekko.cluster.typed.{Cluster, Join, Subscribe}
+import org.apache.pekko.cluster.typed.{Cluster, Down, Join, Subscribe}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future, Promise}
@@ -95,11 +95,13 @@ object CoordinatorNode:
         try Right(ActorSystem(NodeConfig.System, config))
         catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
     yield
-      val latest = AtomicReference(Progress(Coordinator(), 0, 0, 0, 0))
-      val job    = Job(SecureRandom().nextLong() | 1, build, question)
-      val actor  = system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set), Name)
-      val _      = system.spawn(watching(actor), "members")
-      Cluster(system.toTyped).manager ! Join(addressOf(system))
+      val latest  = AtomicReference(Progress(Coordinator(), 0, 0, 0, 0))
+      val job     = Job(SecureRandom().nextLong() | 1, build, question)
+      val manager = Cluster(system.toTyped).manager
+      val actor   =
+        system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set, manager ! Down(_)), Name)
+      val _ = system.spawn(watching(actor), "members")
+      manager ! Join(addressOf(system))
       CoordinatorNode(system, actor, latest)
 
   private[cluster] def addressOf(system: ActorSystem): Address =
@@ -110,7 +112,9 @@ object CoordinatorNode:
       _.getCause
     ).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
 
-  /** Tells the coordinator who is out of reach. */
+  /** Tells the coordinator who is out of reach, and takes them out of the cluster: until that is done nobody else becomes
+    * a member. Who was there all the same joins again.
+    */
   private def watching(coordinator: ActorRef[CoordinatorBehavior.Command])
       : Behavior[MemberEvent | ReachabilityEvent] =
     Behaviors.setup: context =>
@@ -119,7 +123,9 @@ object CoordinatorNode:
       events ! Subscribe(context.self, classOf[ReachabilityEvent])
       Behaviors.receiveMessage: event =>
         event match
-          case UnreachableMember(member) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
-          case MemberRemoved(member, _)  => coordinator ! CoordinatorBehavior.Unreachable(member.address)
-          case _                         => ()
+          case UnreachableMember(member) =>
+            coordinator ! CoordinatorBehavior.Unreachable(member.address)
+            Cluster(context.system).manager ! Down(member.address)
+          case MemberRemoved(member, _) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case _                        => ()
         Behaviors.same

@@ -74,6 +74,8 @@ private[cluster] object NodeConfig:
           active-strategy = keep-oldest
           stable-after = 7 s
           keep-oldest.down-if-alone = off
+          # Else workers that are killed one after the other take the coordinator with them.
+          down-all-when-unstable = off
         }
       }
       coordinated-shutdown {

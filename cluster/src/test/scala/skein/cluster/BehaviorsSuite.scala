@@ -2,7 +2,7 @@ package skein.cluster
 
 import java.nio.file.Files
 import java.util.concurrent.{ConcurrentLinkedQueue, Executors, LinkedBlockingQueue, TimeUnit}
-import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.actor.{ActorSystem, Address}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import scala.collection.immutable.ArraySeq
@@ -59,12 +59,21 @@ class BehaviorsSuite extends munit.FunSuite:
     worker ! WorkerBehavior.Member
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
-  test("when all is done everybody is told: who works, who is still preparing, and who asks only then"):
+  test(
+    "who has ended is taken out of the cluster; when all is done everybody else is told: who works, who is still preparing, and who asks only then"
+  ):
     val ledger = Ledger
       .open(Files.createTempDirectory("cluster").resolve(Ledger.Name), ArraySeq.fill(32)(7))
       .fold(fail(_), identity)
+    val down        = LinkedBlockingQueue[Address]()
     val coordinator =
-      system.spawnAnonymous(CoordinatorBehavior(Job(7, "one", question), ledger, _ => (), _ => ()))
+      system.spawnAnonymous(CoordinatorBehavior(
+        Job(7, "one", question),
+        ledger,
+        _ => (),
+        _ => (),
+        down.add(_): Unit
+      ))
     def worker(name: String, run: Long) =
       val heard = Heard[ToWorker]()
       coordinator ! ToCoordinator.Ask(name, 1, "one", run, Set.empty, heard.actor)
@@ -72,6 +81,11 @@ class BehaviorsSuite extends munit.FunSuite:
     val preparing = worker("anna", 0)
     assertEquals(preparing.next(), ToWorker.Welcome(7, question))
     val working = worker("ben", 7)
+    // Also while it has not asked for a block.
+    for (name, heard) <- Seq("dora" -> worker("dora", 0)) do
+      heard.next(): Unit
+      coordinator ! CoordinatorBehavior.Ended(name)
+    assertEquals(down.poll(30, TimeUnit.SECONDS), system.deadLetters.path.address)
     coordinator ! CoordinatorBehavior.Farewell
     assertEquals(preparing.next(), ToWorker.Goodbye)
     assertEquals(working.next(), ToWorker.Goodbye)
