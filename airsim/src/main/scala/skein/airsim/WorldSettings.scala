@@ -78,7 +78,25 @@ object WorldSettings:
         case other     => Left(SettingsError.Unexpected("the whole", "an object", kindOf(other)))
     catch
       case e: Misfit   => Left(e.error)
-      case NonFatal(e) => Left(SettingsError.NotJson(e.getMessage))
+      case NonFatal(e) => Left(notJson(text, e))
+
+  /** Where a text stopped to be JSON, and what is wrong there.
+    *
+    * @param mistake
+    *   of `ujson`, which names the mistake in its cause, and before it the whole path to it
+    */
+  def notJson(text: String, mistake: Throwable): SettingsError =
+    Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {
+      case wrong: ujson.ParseException =>
+        val line = text.take(wrong.index).count(_ == '\n') + 1
+        s"${wrong.clue}, in line $line"
+      case _: ujson.IncompleteParseException => "it ends too early"
+    } match
+      case Some(reason) => SettingsError.NotJson(reason)
+      case None         => SettingsError.NotJson(s"${mistake.getMessage}".take(MostOfReason))
+
+  private val MostCauses   = 16
+  private val MostOfReason = 200
 
   /** A `settings.json` with these vehicles, and what they carry to see by. */
   def render(vehicles: Seq[VehicleSettings], equipment: Seq[Equipment] = Nil): String =

@@ -44,7 +44,10 @@ class WorldSettingsSuite extends munit.FunSuite:
     assertEquals(problem("""{"Vehicles": [1]}"""), "Vehicles: expected an object, found an array")
     assertEquals(problem("""{"ClockSpeed": 0}"""), "ClockSpeed: expected a number above 0, found 0.0")
     assertEquals(problem("[]"), "the whole: expected an object, found an array")
-    assert(problem("{").startsWith("not JSON: "))
+    assertEquals(problem("{"), "not JSON: it ends too early")
+    assertEquals(problem(""), "not JSON: it ends too early")
+    assert(clue(problem("{\n  \"A\": 1,\n  oops\n}")).endsWith(", in line 3"))
+    assert(clue(problem("[" * 100_000)).length < 250)
 
   private def only(fields: String, more: String = ""): VehicleSettings =
     WorldSettings.parse(s"""{"Vehicles": {"A": {$fields}} $more}""").fold(

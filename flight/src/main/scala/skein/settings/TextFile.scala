@@ -22,7 +22,8 @@ object TextFile:
         val bytes = Using.resource(Files.newInputStream(file))(_.readNBytes(MostBytes + 1))
         Either.cond(
           bytes.length <= MostBytes,
-          UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString,
+          // Some editors begin a text with a mark of its byte order, which is no part of it.
+          UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString.stripPrefix("\ufeff"),
           s"expected a file of at most ${MostBytes >> 20} MiB, came $path, which is larger"
         )
       catch

@@ -18,6 +18,8 @@ class TextFileSuite extends munit.FunSuite:
     val folder = Files.createTempDirectory("texts")
     val file   = Files.writeString(folder.resolve("a.conf"), "zwei = \u0662")
     assertEquals(TextFile.read(file.toString), Right("zwei = \u0662"))
+    Files.writeString(file, "\ufeffzwei = 2"): Unit
+    assertEquals(TextFile.read(file.toString), Right("zwei = 2"))
     Files.write(file, Array[Byte](-1, -2))
     assert(TextFile.read(file.toString).left.exists(_.contains("no text in UTF-8")))
     assert(TextFile.read(folder.toString).left.exists(_.contains("came the folder")))

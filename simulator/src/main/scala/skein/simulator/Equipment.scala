@@ -1,7 +1,7 @@
 package skein.simulator
 
 import scala.util.control.NonFatal
-import skein.airsim.{SensorKind, SettingsError}
+import skein.airsim.{SensorKind, SettingsError, WorldSettings}
 import skein.scene.{Lidar, Placement}
 import skein.units.Vector3
 import ujson.{Num, Obj, Str, Value}
@@ -57,7 +57,7 @@ private[simulator] object Equipment:
         case _         => Right(None)
     catch
       case e: Misfit   => Left(e.error)
-      case NonFatal(e) => Left(SettingsError.NotJson(e.getMessage))
+      case NonFatal(e) => Left(WorldSettings.notJson(text, e))
 
   private def of(root: Section): Equipment =
     val vehicles                                         = root.sections("Vehicles")
