@@ -44,11 +44,14 @@ object TestGroups extends AutoPlugin {
     "skein.simulator.OfficialPythonClientLiveSuite"
   )
 
-  /** These tell the compilers of their JVM to give way, for good, as is done before a live flight: on a busy machine
-    * everything behind them would be interpreted. Each has a JVM of its own.
+  /** Each has a JVM of its own: the long ones, which then run beside one another, and those that tell the compilers of
+    * their JVM to give way, for good, as is done before a live flight: on a busy machine everything behind them would be
+    * interpreted.
     */
   private val alone = Set(
+    "skein.cli.DocumentedClustersLiveSuite",
     "skein.cli.DocumentedCommandsLiveSuite",
+    "skein.cli.DocumentedFlightsLiveSuite",
     "skein.flight.WarmUpSimulation",
     "skein.loop.planning.BackgroundThreadLiveSuite"
   )
