@@ -16,7 +16,6 @@ import skein.flight.{
 }
 import skein.link.{Address, TcpTransport}
 import skein.loop.{LoopKind, Outcome}
-import skein.measure.FlightSet
 import skein.record.{ClockKind, DuckDbRecorder, Record}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
@@ -287,22 +286,14 @@ final class FlyCommand(using Scenarios)
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written =
           Report.write(flights, out).map(output => shown.say(s"Report: ${output.page}"))
-        all(written, undecided(flights))
+        val ended = landed.filter(_.outcome == Outcome.Stopped).map(_.plan.id).toSet
+        all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)
 
   /** Both mistakes, where there are two. */
   private def all(one: Either[String, Unit], other: Either[String, Unit]): Either[String, Unit] =
     val mistakes = one.left.toSeq ++ other.left.toSeq
     Either.cond(mistakes.isEmpty, (), mistakes.mkString("\n"))
-
-  /** A flight in which no vehicle was ever read for a decision is none, however it ended. */
-  private def undecided(flights: FlightSet): Either[String, Unit] =
-    val idle = flights.all.filter(_.decisions == 0).map(_.flight.id)
-    Either.cond(
-      idle.isEmpty,
-      (),
-      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightAssembler.askTimeout.toMillis.round} ms?"
-    )
 
   private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
@@ -314,6 +305,21 @@ final class FlyCommand(using Scenarios)
       )
     Either.cond(failures.isEmpty, (), failures.mkString("\n"))
 
-private object FlyCommand:
+private[cli] object FlyCommand:
   /** Vehicles on the way to their starts are told to hover within so long, about. */
   private val CalledOffWithin = 5.seconds
+
+  /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
+    *
+    * @param decisions
+    *   by flight
+    * @param ended
+    *   flights that somebody ended
+    */
+  def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
+    val idle = decisions.collect { case (id, 0) if !ended(id) => id }
+    Either.cond(
+      idle.isEmpty,
+      (),
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightAssembler.askTimeout.toMillis.round} ms?"
+    )

@@ -25,3 +25,9 @@ class OutputSuite extends munit.FunSuite:
     val both   = OutFolder.alone(folder)(Right(OutFolder.alone(folder)(Right(1))))
     assert(clue(both).exists(_.left.exists(_.contains("another command is at work"))))
     assertEquals(OutFolder.alone(folder)(Right(2)), Right(2))
+
+  test("a flight without a decision is a mistake, unless somebody ended it before"):
+    val decisions = Seq("stream-vpn" -> 0, "futures-vpn" -> 12, "predictive-vpn" -> 0)
+    val told      = FlyCommand.undecided(decisions, ended = Set("predictive-vpn"))
+    assert(told.left.exists(_.startsWith("nothing was decided in stream-vpn: ")), told.toString)
+    assertEquals(FlyCommand.undecided(decisions, ended = Set("predictive-vpn", "stream-vpn")), Right(()))
