@@ -297,6 +297,7 @@ lazy val mutation = project
   .settings(
     publish / skip      := true,
     run / baseDirectory := (ThisBuild / baseDirectory).value,
+    Compile / run / mainClass := Some("skein.mutation.mutate"),
     libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
       "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
   )
