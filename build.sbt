@@ -298,6 +298,9 @@ lazy val mutation = project
     publish / skip      := true,
     run / baseDirectory := (ThisBuild / baseDirectory).value,
     Compile / run / mainClass := Some("skein.mutation.mutate"),
+    // It changes folders of classes; sbt would run it on jars, copied aside.
+    Runtime / fullClasspathAsJars     := (Runtime / fullClasspath).value,
+    Compile / bgRun / bgCopyClasspath := false,
     libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
       "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
   )

@@ -112,9 +112,7 @@ object CoordinatorNode:
       _.getCause
     ).takeWhile(_ != null).map(_.getMessage).filter(_ != null).toVector.last
 
-  /** Tells the coordinator who is out of reach, and takes them out of the cluster: until that is done nobody else becomes
-    * a member. Who was there all the same joins again.
-    */
+  /** Tells the coordinator who is out of reach. */
   private def watching(coordinator: ActorRef[CoordinatorBehavior.Command])
       : Behavior[MemberEvent | ReachabilityEvent] =
     Behaviors.setup: context =>
@@ -123,9 +121,7 @@ object CoordinatorNode:
       events ! Subscribe(context.self, classOf[ReachabilityEvent])
       Behaviors.receiveMessage: event =>
         event match
-          case UnreachableMember(member) =>
-            coordinator ! CoordinatorBehavior.Unreachable(member.address)
-            Cluster(context.system).manager ! Down(member.address)
-          case MemberRemoved(member, _) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
-          case _                        => ()
+          case UnreachableMember(member) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case MemberRemoved(member, _)  => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case _                         => ()
         Behaviors.same
