@@ -54,6 +54,9 @@ lazy val root =
 /** What a part is published as: `skein-core` and so on. */
 def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)
 
+/** What tests of several modules share. */
+lazy val testing = project.settings(publish / skip := true, libraryDependencies ++= munit.map(_.withConfigurations(None)))
+
 /** Pure: units, signals, vehicle dynamics, policies, scenarios. No Pekko, no I/O. */
 lazy val core = project
   .settings(artifact("core", "Pure: units, signals, dynamics, policies, scenarios"))
@@ -117,12 +120,13 @@ lazy val scene = project
 /** The built-in simulator, which speaks AirSim's wire. */
 lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
-  .dependsOn(scene, autopilot, airsim % "compile->compile;test->test", vtime % Test)
+  .dependsOn(scene, autopilot, airsim % "compile->compile;test->test", vtime % Test, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
 lazy val mcap = project
   .settings(artifact("mcap", "MCAP files, read and written"))
+  .dependsOn(testing % Test)
   .settings(libraryDependencies ++= zstd +: munit ++: Seq(lz4Oracle, upickle % Test))
 
 /** The field's protocol of vehicles. Depends on nothing of ours. */
@@ -145,19 +149,19 @@ lazy val offboard = project
 /** What is in an image: tags, and what any ONNX model finds. An artifact of its own, for its libraries are large. */
 lazy val recognition = project
   .settings(artifact("recognition", "What is in an image: AprilTags, and any ONNX model"))
-  .dependsOn(airsim, flight % Test)
+  .dependsOn(airsim, flight % "test->test")
   .settings(underAgent, libraryDependencies ++= Seq(boofcv, onnxruntime) ++ munit)
 
 /** Work cut into blocks for many machines, each counted once. Depends on nothing. */
 lazy val blocks = project
   .settings(artifact("blocks", "Work for many machines, each block of it counted once"))
-  .dependsOn(core % Test)
+  .dependsOn(core % Test, testing % Test)
   .settings(libraryDependencies ++= munit)
 
 /** Blocks computed by any number of machines that come and go, over Pekko Cluster. */
 lazy val cluster = project
   .settings(artifact("cluster", "Work on many machines that come and go, counted once, over Pekko Cluster"))
-  .dependsOn(blocks)
+  .dependsOn(blocks, testing % Test)
   .settings(libraryDependencies ++= pekkoCluster ++ munit)
 
 /** Recordings. */

@@ -2,10 +2,11 @@ package skein.blocks
 
 import java.nio.file.{Files, Path}
 import scala.collection.immutable.ArraySeq
+import skein.testing.TemporaryFolders
 
-class LedgerSuite extends munit.FunSuite:
+class LedgerSuite extends munit.FunSuite, TemporaryFolders:
   private val file = FunFixture[Path](
-    _ => Files.createTempDirectory("ledger").resolve(Ledger.Name),
+    _ => temporaryFolder().resolve(Ledger.Name),
     path =>
       Files.deleteIfExists(path)
       Files.delete(path.getParent)

@@ -135,7 +135,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     import options.forward
     for
       _ <- Either.cond(options.set.isEmpty, (), "--set: expected with --scenario, whose settings they are")
-      policy <- policyOf(options.policy.getOrElse("paper-pursuer")).left.map("--policy: " + _)
+      policy <- PolicyFile.named(options.policy.getOrElse("paper-pursuer"), None).left.map("--policy: " + _)
       other  <- forward.opponentOf(policy.role)
       named  <- forward.conditions(period)
     yield BudgetQuestion.OfDuel(
@@ -184,11 +184,6 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
               fly(swept.zipWithIndex.map((one, number) =>
                 ClusterSwept(one, number, run, () => run.share, asked.block)
               ))
-
-  private def policyOf(text: String): Either[String, PolicyFile] =
-    scenarios.family(text).toOption match
-      case Some(family) => PolicyFile.roleOf(family, None).map(PolicyFile.ofDefaults(_, family))
-      case None         => PolicyFile.read(text)
 
   private def milliseconds(option: String, text: Option[String], otherwise: Double, legs: Legs) =
     text

@@ -1,5 +1,7 @@
 package skein.cli
 
+import skein.report.Paragraph
+
 /** What `--help` prints of a command. */
 private[cli] object HelpText:
 
@@ -31,19 +33,12 @@ private[cli] object HelpText:
       head -> (option.summary + default)
     val column = rows.map(_._1.length).maxOption.getOrElse(0).min(width / 3)
     val lines  = rows.flatMap: (head, says) =>
-      val wrapped = wrap(says, width - column - 4)
+      val wrapped = Paragraph.lines(says, width - column - 4)
       val first   =
         if head.length <= column then Vector(s"  ${head.padTo(column, ' ')}  ${wrapped.head}")
         else Vector(s"  $head", " " * (column + 4) + wrapped.head)
       first ++ wrapped.tail.map(" " * (column + 4) + _)
-    (usage +: (wrap(summary, width) ++ lines)).mkString("", "\n", "\n")
-
-  private def wrap(text: String, width: Int): Vector[String] =
-    text.split(' ').foldLeft(Vector("")): (lines, word) =>
-      val last = lines.last
-      if last.isEmpty then lines.init :+ word
-      else if last.length + 1 + word.length <= width then lines.init :+ s"$last $word"
-      else lines :+ word
+    (usage +: (Paragraph.lines(summary, width) ++ lines)).mkString("", "\n", "\n")
 
   /** Where neither type nor name says it. */
   private val Named: Map[String, String] =

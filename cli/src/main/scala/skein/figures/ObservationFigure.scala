@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{FlightSet, FlightSummary, TimingObservation, Published, RoleSummary}
+import skein.measure.{FlightSet, FlightSummary, Published, RoleSummary, TimingObservation}
 import skein.plot.*
 
 /** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the evader's

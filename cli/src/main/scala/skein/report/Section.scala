@@ -26,17 +26,7 @@ object Section:
     sections.flatMap(section => section.table.map(textOf(section, _))).mkString("\n\n")
 
   private def textOf(section: Section, table: TextTable): String =
-    (Vector(section.title, table.render) ++ wrapped(section.note)).mkString("\n")
-
-  /** In lines of at most 100 letters. */
-  private def wrapped(note: String): Vector[String] =
-    note
-      .split(' ')
-      .foldLeft(Vector.empty[String]): (lines, word) =>
-        lines.lastOption match
-          case Some(last) if last.length + 1 + word.length <= 100 => lines.init :+ s"$last $word"
-          case _                                                  => lines :+ word
-      .filter(_.nonEmpty)
+    (Vector(section.title, table.render) ++ Paragraph.lines(section.note, 100)).mkString("\n")
 
   /** All tables: `{"tables": [{"title", "note", "columns", "rows"}]}`. A row is a list as long as the columns; a cell is a
     * number where it is one, null where it is empty, and else text.

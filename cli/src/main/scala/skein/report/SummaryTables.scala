@@ -1,7 +1,7 @@
 package skein.report
 
 import java.util.Locale
-import skein.measure.{Distribution, FlightSet, FlightSummary, TimingObservation, Published, Twin}
+import skein.measure.{Distribution, FlightSet, FlightSummary, Published, TimingObservation, Twin}
 import skein.measure.Numbers.*
 import skein.record.EventKind
 

@@ -1,7 +1,7 @@
 package skein.budget
 
 import scala.concurrent.duration.*
-import skein.optimise.{Direction, LatencyBudget, DuelMeasure, Objective}
+import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions

@@ -1,31 +1,22 @@
 package skein.cli
 
-import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
-import scala.util.Using
 import skein.record.MemoryRecorder
 import skein.report.DuelReport
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
 /** What is wrong is told in a line, before anything long is begun. */
-class BadInputSuite extends munit.FunSuite:
+class BadInputSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("input"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def assertRefused(command: Command, arguments: Seq[String], expected: String)(using
       munit.Location
   ): Unit =
-    val said   = ByteArrayOutputStream()
-    val status =
-      Console.withErr(PrintStream(said))(Console.withOut(PrintStream(said))(command.run(arguments)))
-    assert(status != 0)
-    assert(clue(said.toString).contains(expected), s"expected: $expected")
-    assert(said.toString.linesIterator.size <= 2)
+    val ran = Ran.of(command.run(arguments))
+    assert(ran.status != 0)
+    assert(clue(ran.said).contains(expected), s"expected: $expected")
+    assert(ran.said.linesIterator.size <= 2)
 
   folder.test("a folder that cannot be made is told before the flight"): path =>
     val file     = Files.writeString(path.resolve("file"), "").toString
@@ -97,11 +88,10 @@ class BadInputSuite extends munit.FunSuite:
   folder.test("no password is shown of what --record does not know"): path =>
     for one <- Seq("Postgres://me:secret@db/flights", "postgres:me:secret@db", "mysql://db?password=secret")
     do
-      val said = ByteArrayOutputStream()
-      val out  = path.resolve("flights").toString
-      assert(Console.withErr(PrintStream(said))(FlyCommand().run(Seq("--record", one, "--out", out))) != 0)
-      assert(clue(said.toString).contains(s"came '${one.takeWhile(_ != ':')}:…'"))
-      assert(!said.toString.contains("secret"))
+      val ran = Ran.of(FlyCommand().run(Seq("--record", one, "--out", path.resolve("flights").toString)))
+      assert(ran.status != 0)
+      assert(clue(ran.err).contains(s"came '${one.takeWhile(_ != ':')}:…'"))
+      assert(!ran.said.contains("secret"))
 
   folder.test("a recording without vehicles is not replayed"): path =>
     val heading  = skein.report.SyntheticFlight("stream", "vpn", seed = 1, seconds = 12).heading

@@ -1,7 +1,5 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import scala.concurrent.duration.*
@@ -10,9 +8,10 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
+import skein.testing.TemporaryFolders
 
 /** Searches by processes of this machine, over loopback. */
-class ClusterCommandsLiveSuite extends munit.FunSuite:
+class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 10.minutes
   private given ExecutionContext      = ExecutionContext.global
 
@@ -24,7 +23,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite:
   /** Half a second's blocks would be too few to be interrupted in. */
   private def elsewhere(workers: Int) = Seq("--workers", workers.toString, "--block", "512")
 
-  private lazy val parent          = Files.createTempDirectory("cluster-search")
+  private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)
 
   /** By this process alone. */
@@ -33,10 +32,9 @@ class ClusterCommandsLiveSuite extends munit.FunSuite:
     folder("alone")
 
   private def searched(words: Seq[String]): String =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
-    assertEquals(status, 0, said.toString(UTF_8))
-    said.toString(UTF_8)
+    val ran = Ran.of(Main.run(words))
+    assertEquals(ran.status, 0, ran.said)
+    ran.said
 
   private def assertSame(found: Path): Unit =
     for name <- Seq("search.json", "policy.conf", "landscape.csv") do
@@ -97,12 +95,9 @@ class ClusterCommandsLiveSuite extends munit.FunSuite:
 
   test("who cannot compute is told: options that need workers, and workers that cannot start"):
     def refused(words: String*): String =
-      val said = ByteArrayOutputStream()
-      assertEquals(
-        Console.withErr(said)(Main.run(question ++ words ++ Seq("--out", folder("refused").toString))),
-        1
-      )
-      said.toString(UTF_8)
+      val ran = Ran.of(Main.run(question ++ words ++ Seq("--out", folder("refused").toString)))
+      assertEquals(ran.status, 1)
+      ran.err
     assert(clue(refused("--block", "7")).contains("--workers"))
     assert(clue(refused("--workers", "0")).contains("expected 1 to"))
     assert(clue(refused("--cluster", "0.0.0.0:0")).contains("certificates"))

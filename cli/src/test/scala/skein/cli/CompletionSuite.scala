@@ -1,16 +1,13 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
 import scala.sys.process.{Process, ProcessLogger}
 
 /** What shells are told; bash is asked itself. */
 class CompletionSuite extends munit.FunSuite:
 
   private def printed(words: String*): (Int, String) =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
-    (status, said.toString(UTF_8))
+    val ran = Ran.of(Main.run(words))
+    (ran.status, ran.said)
 
   /** What bash offers for a line whose last word is being typed. */
   private def offered(line: String*): Set[String] =

@@ -5,17 +5,11 @@ import java.nio.charset.StandardCharsets.{ISO_8859_1, US_ASCII, UTF_8}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
-import scala.util.Using
+import skein.testing.TemporaryFolders
 
 /** Commands as users start them, each in a process of its own, in environments that are not ours. */
-class EnvironmentLiveSuite extends munit.FunSuite:
+class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 3.minutes
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("environment"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private case class Ended(status: Int, out: String, err: String)
 

@@ -1,7 +1,5 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, blocking}
@@ -24,10 +22,9 @@ import skein.blocks.Ledger
       .toSeq
   val Seq(together, alone)           = Seq("together", "alone").map(Path.of(out).resolve(_))
   def search(words: String*): String =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(Main.run(question ++ words)))
-    require(status == 0, said.toString(UTF_8))
-    said.toString(UTF_8)
+    val ran = Ran.of(Main.run(question ++ words))
+    require(ran.status == 0, ran.said)
+    ran.said
 
   val random    = Random(1)
   val searching =

@@ -4,15 +4,16 @@ import java.io.File
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
+import skein.testing.TemporaryFolders
 
 /** `./skein` itself, in a checkout whose build is a script, so that each start takes a moment. */
-class LauncherLiveSuite extends munit.FunSuite:
+class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
 
   private val copy = FunFixture[Path](
     _ =>
-      val folder = Files.createTempDirectory("checkout").toRealPath()
+      val folder = temporaryFolder().toRealPath()
       Files.createDirectories(folder.resolve("project"))
       for name <- Seq("skein", "project/find-jdk") do
         Files.copy(checkout.toPath.resolve(name), folder.resolve(name))

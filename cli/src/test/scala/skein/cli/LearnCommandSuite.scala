@@ -1,14 +1,13 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.testing.TemporaryFolders
 import skein.training.*
 
-class LearnCommandSuite extends munit.FunSuite:
+class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   override val munitTimeout: Duration = 5.minutes
@@ -18,13 +17,12 @@ class LearnCommandSuite extends munit.FunSuite:
       "--duration 12s --updates-per-step 0.02 --threads 1").split(' ').toSeq
 
   private def run(words: Seq[String]): (Int, String, String) =
-    val (out, err) = (ByteArrayOutputStream(), ByteArrayOutputStream())
-    val status     = Console.withOut(out)(Console.withErr(err)(Main.run("learn" +: words)))
-    (status, out.toString(UTF_8), err.toString(UTF_8))
+    val ran = Ran.of(Main.run("learn" +: words))
+    (ran.status, ran.out, ran.err)
 
   for (algorithm, side) <- Seq("sac" -> "pursuer", "ddpg" -> "evader", "ppo" -> "pursuer") do
     test(s"$algorithm teaches the $side, and writes a policy that can be read back"):
-      val folder             = Files.createTempDirectory("learn").resolve("learned")
+      val folder             = temporaryFolder().resolve("learned")
       val (status, out, err) =
         run(Seq("--algorithm", algorithm, "--side", side, "--json", "--out", folder.toString) ++ short)
       assertEquals(status, 0, err)
@@ -37,14 +35,13 @@ class LearnCommandSuite extends munit.FunSuite:
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
   test("what was learned learns on beside a flight, which is flown again to an equal digest"):
-    val folder           = Files.createTempDirectory("in-flight")
+    val folder           = temporaryFolder()
     val learned          = folder.resolve("learned").toString
     val (status, _, err) = run(Seq("--out", learned, "--batch", "32") ++ short)
     assertEquals(status, 0, err)
     def flown(words: String*) =
-      val said   = ByteArrayOutputStream()
-      val status = Console.withOut(said)(Console.withErr(said)(Main.run(words)))
-      (status, said.toString(UTF_8))
+      val ran = Ran.of(Main.run(words))
+      (ran.status, ran.said)
     val flight =
       Seq(
         "fly",
@@ -90,8 +87,8 @@ class LearnCommandSuite extends munit.FunSuite:
       LearnRun(setup, setup.batch(1), Some(folder), () => later())
         .run(from, 1, () => done >= rounds)(state => done = state.rounds)
         .fold(fail(_), identity)
-    val whole  = learn(Files.createTempDirectory("whole"), LearnState(), setup.rounds)
-    val folder = Files.createTempDirectory("halves")
+    val whole  = learn(temporaryFolder(), LearnState(), setup.rounds)
+    val folder = temporaryFolder()
     assert(setup.rounds >= 3, setup.rounds.toString)
     learn(folder, LearnState(), 1): Unit
     val file = LearnFile.read(folder).fold(fail(_), identity)
@@ -102,7 +99,7 @@ class LearnCommandSuite extends munit.FunSuite:
   test("what cannot be learned is told in a line"):
     def refused(expected: String, words: String*) =
       val (status, _, err) =
-        run(words ++ Seq("--out", Files.createTempDirectory("no").resolve("no").toString))
+        run(words ++ Seq("--out", temporaryFolder().resolve("no").toString))
       assert(status != 0)
       assert(clue(err).contains(expected))
       assertEquals(err.linesIterator.size, 1)
@@ -118,7 +115,7 @@ class LearnCommandSuite extends munit.FunSuite:
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
   test("a folder of something else, or with a damaged state, is not gone on with"):
-    val folder = Files.createTempDirectory("damaged")
+    val folder = temporaryFolder()
     assert(
       LearnFile.read(folder).left.exists(_.contains("expected the folder of learning, of ./skein learn"))
     )

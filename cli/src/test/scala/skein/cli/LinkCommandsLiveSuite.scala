@@ -1,15 +1,14 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
-import java.nio.file.{Files, Path}
+import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import skein.link.{Address, TcpTransport}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.TemporaryFolders
 import skein.units.Clock
 
 /** Real sockets on loopback and the real clock. */
-class LinkCommandsLiveSuite extends munit.FunSuite:
+class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("latency-command")
   private lazy val server           = Edge.await(
     SimulatorServer.start(SimulatorSettings(address = Address("127.0.0.1", 0)), TcpTransport(), Clock.system)
@@ -19,16 +18,8 @@ class LinkCommandsLiveSuite extends munit.FunSuite:
 
   /** Exit status, standard output, standard error. */
   private def run(command: Command, arguments: String*): (Int, String, String) =
-    val (out, err) = (ByteArrayOutputStream(), ByteArrayOutputStream())
-    val status     = Console.withOut(out)(Console.withErr(err)(command.run(arguments)))
-    (status, out.toString(UTF_8), err.toString(UTF_8))
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("latency"),
-    directory =>
-      directory.toFile.listFiles.foreach(_.delete(): Unit)
-      Files.delete(directory)
-  )
+    val ran = Ran.of(command.run(arguments))
+    (ran.status, ran.out, ran.err)
 
   folder.test("round trips over an emulated link are printed and drawn"): directory =>
     val (status, printed, told) = run(

@@ -1,7 +1,6 @@
 package skein.cli
 
 import com.typesafe.config.ConfigFactory
-import java.io.{ByteArrayOutputStream, PrintStream}
 import java.lang.classfile.ClassFile
 import java.lang.classfile.instruction.InvokeInstruction
 import java.nio.file.{Files, Path}
@@ -41,10 +40,9 @@ class LocaleSuite extends munit.FunSuite:
     val before = Locale.getDefault
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
-      val said   = ByteArrayOutputStream()
-      val status = Console.withErr(PrintStream(said))(SpreadCommand().run(Seq("--moves-in-flight", "x")))
-      assertEquals(status, 2)
-      assert(clue(said.toString).contains("--moves-in-flight: expected a whole number"))
+      val ran = Ran.of(SpreadCommand().run(Seq("--moves-in-flight", "x")))
+      assertEquals(ran.status, 2)
+      assert(clue(ran.err).contains("--moves-in-flight: expected a whole number"))
     finally Locale.setDefault(before)
 
   private val always    = Set("toLowerCase()Ljava/lang/String;", "toUpperCase()Ljava/lang/String;")

@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.io.{ByteArrayOutputStream, PrintStream}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
@@ -9,9 +8,8 @@ class MisuseSuite extends munit.FunSuite:
 
   /** Exit status and what was said before the hint at `--help`. */
   private def misused(command: Command, arguments: String*): (Int, Seq[String]) =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withErr(PrintStream(said))(command.run(arguments))
-    (status, said.toString.linesIterator.toSeq.dropRight(1))
+    val ran = Ran.of(command.run(arguments))
+    (ran.status, ran.err.linesIterator.toSeq.dropRight(1))
 
   test("a mistake is told in a line: which option, what was expected, what came"):
     for

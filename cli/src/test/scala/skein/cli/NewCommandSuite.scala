@@ -1,20 +1,15 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
+import skein.testing.TemporaryFolders
 
-class NewCommandSuite extends munit.FunSuite:
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("new"),
-    folder => Using.resource(Files.walk(folder))(_.iterator.asScala.toVector.reverse.foreach(Files.delete))
-  )
+class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
 
   private def run(words: String*): (Int, String) =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(NewCommand.run(words)))
-    (status, said.toString)
+    val ran = Ran.of(NewCommand.run(words))
+    (ran.status, ran.said)
 
   folder.test("a project is written whole, with its name in it, and nothing left open"): folder =>
     val project = folder.resolve("somewhere")

@@ -1,9 +1,9 @@
 package skein.cli
 
 import java.io.{ByteArrayOutputStream, IOException, OutputStream, PrintStream}
-import java.nio.file.Files
+import skein.testing.TemporaryFolders
 
-class OutputSuite extends munit.FunSuite:
+class OutputSuite extends munit.FunSuite, TemporaryFolders:
   private def broken(why: String): OutputStream = _ => throw IOException(why)
 
   private def status(why: String): (Int, String) =
@@ -21,7 +21,7 @@ class OutputSuite extends munit.FunSuite:
     assertEquals(status("Broken pipe"), (0, ""))
 
   test("one command at a time works in a folder"):
-    val folder = Files.createTempDirectory("alone")
+    val folder = temporaryFolder()
     val both   = OutFolder.alone(folder)(Right(OutFolder.alone(folder)(Right(1))))
     assert(clue(both).exists(_.left.exists(_.contains("another command is at work"))))
     assertEquals(OutFolder.alone(folder)(Right(2)), Right(2))

@@ -1,12 +1,11 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
-import java.nio.file.{Files, Path}
+import java.nio.file.Files
 import scala.concurrent.duration.*
 import scala.util.Using
 import skein.policy.*
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
 /** Turns towards where the opponent is, the less the older that is known to be. */
 final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
@@ -15,7 +14,7 @@ final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends Obser
   def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
     val wanted = math.IEEEremainder(StrictMath.atan2(seen.dyM, seen.dxM) - seen.ownHeadingRad, 2 * math.Pi)
     val most   = turnRateRadPerS * seen.elapsedS * doubtS / (doubtS + seen.opponentAgeS)
-    Decided(seen.ownHeadingRad + wanted.max(-most).min(most), memory + 1)
+    Decided(seen.ownHeadingRad + wanted.max(-most).min(most), memory)
 
 /** A program with a family of policies of its own, as a user writes it. */
 object Doubters extends SkeinApp(Scenarios.ours.kinds*):
@@ -30,19 +29,12 @@ object Doubters extends SkeinApp(Scenarios.ours.kinds*):
       numbers => Doubting(numbers(0), numbers(1))
     )
 
-class OwnFamilySuite extends munit.FunSuite:
+class OwnFamilySuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 2.minutes
 
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("families"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
-
   private def run(program: SkeinApp, words: String): (Int, String) =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(program.run(words.split(' ').toSeq)))
-    (status, said.toString(UTF_8))
+    val ran = Ran.of(program.run(words.split(' ').toSeq))
+    (ran.status, ran.said)
 
   private def done(words: String): String =
     val (status, said) = run(Doubters, words)

@@ -1,19 +1,17 @@
 package skein.cli
 
-import java.io.ByteArrayOutputStream
-import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import skein.policy.PolicyFamily
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.testing.TemporaryFolders
 
-class PolicyCommandSuite extends munit.FunSuite:
+class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private def run(words: String*): (Int, String) =
-    val said   = ByteArrayOutputStream()
-    val status = Console.withOut(said)(Console.withErr(said)(Main.run("policy" +: words)))
-    (status, said.toString(UTF_8))
+    val ran = Ran.of(Main.run("policy" +: words))
+    (ran.status, ran.said)
 
   private def written(folder: Path, name: String): String =
     val family = PolicyFamily.parse(name).fold(fail(_), identity)
@@ -23,7 +21,7 @@ class PolicyCommandSuite extends munit.FunSuite:
       .toString
 
   test("a network goes to ONNX and back, to the bit"):
-    val folder         = Files.createTempDirectory("policy")
+    val folder         = temporaryFolder()
     val file           = written(folder, "learned:4x3")
     val onnx           = folder.resolve("policy.onnx").toString
     val conf           = folder.resolve("again.conf").toString
@@ -36,7 +34,7 @@ class PolicyCommandSuite extends munit.FunSuite:
     assertEquals(PolicyFile.read(conf).map(_.role), PolicyFile.read(file).map(_.role))
 
   test("what is no network, no file, or no folder to write into, is told"):
-    val folder = Files.createTempDirectory("policy")
+    val folder = temporaryFolder()
     for
       (words, expected) <- Seq(
         Seq(written(folder, "paper-pursuer"), "--onnx", folder.resolve("x.onnx").toString) -> "only networks",

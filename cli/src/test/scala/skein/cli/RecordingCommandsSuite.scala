@@ -1,7 +1,6 @@
 package skein.cli
 
 import com.typesafe.config.ConfigFactory
-import java.io.{ByteArrayOutputStream, PrintStream}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.util.Using
@@ -17,17 +16,18 @@ import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, ModelFile, PredictionModel}
 import skein.signal.LatencyProfile
+import skein.testing.TemporaryFolders
 import skein.units.Span
 import skein.vehicle.ReducedModel
 
-class RecordingCommandsSuite extends munit.FunSuite:
+class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   override val munitTimeout: Duration = 2.minutes
 
   private val recordings = FunFixture[Path](
     _ =>
-      val folder = Files.createTempDirectory("flights")
+      val folder = temporaryFolder()
       for (loop, link) <- Seq("paused" -> "none", "stream" -> "vpn") do
         write(SyntheticFlight(loop, link, seed = 1, seconds = 12), folder.resolve(s"$loop-$link.duckdb"))
       folder
@@ -43,10 +43,8 @@ class RecordingCommandsSuite extends munit.FunSuite:
 
   /** Exit status, standard output and error output. */
   private def run(command: Command, arguments: String*): (Int, String, String) =
-    val out    = ByteArrayOutputStream()
-    val err    = ByteArrayOutputStream()
-    val status = Console.withOut(PrintStream(out))(Console.withErr(PrintStream(err))(command.run(arguments)))
-    (status, out.toString, err.toString)
+    val ran = Ran.of(command.run(arguments))
+    (ran.status, ran.out, ran.err)
 
   recordings.test("report rebuilds page and tables from the files alone"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
@@ -84,7 +82,7 @@ class RecordingCommandsSuite extends munit.FunSuite:
 
   private val flown = FunFixture[Path](
     _ =>
-      val folder   = Files.createTempDirectory("flown")
+      val folder   = temporaryFolder()
       val settings = FlySettings(
         List(LoopKind.Stream),
         List(LatencyProfile.vpn),

@@ -4,7 +4,7 @@ import java.io.ByteArrayOutputStream
 import java.net.URI
 import java.net.http.HttpResponse.BodyHandlers
 import java.net.http.{HttpClient, HttpRequest}
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import java.util.concurrent.Executors
 import scala.concurrent.duration.{Duration, DurationInt}
 import scala.concurrent.{Await, ExecutionContext, Future}
@@ -12,21 +12,16 @@ import scala.util.Using
 import skein.record.*
 import skein.report.DuelReport
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 import skein.units.Clock
 import skein.view.{RecordedShow, Shows, ViewServer}
 
 /** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
-class ViewLiveSuite extends munit.FunSuite:
+class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
 
   override val munitTimeout: Duration = 5.minutes
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("view"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def needed[A](tool: Either[String, A]): A =
     tool.left.foreach(why => assume(false, why))

@@ -8,11 +8,12 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
+import skein.testing.TemporaryFolders
 import skein.units.Span
 import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
-class AltitudeSuite extends munit.FunSuite:
+class AltitudeSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   private def settings(hocon: String): Either[String, FlySettings] = FlySettings.read(
@@ -31,7 +32,7 @@ class AltitudeSuite extends munit.FunSuite:
   private val file = FunFixture[Path](
     _ =>
       Files.writeString(
-        Files.createTempFile("skein-model", ".conf"),
+        temporaryFolder().resolve("skein-model.conf"),
         """skein.model {
           |  use = drag
           |  altitude-m = 20

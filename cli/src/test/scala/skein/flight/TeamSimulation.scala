@@ -9,10 +9,11 @@ import skein.report.DuelReport
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.TemporaryFolders
 import skein.units.*
 
 /** Scenarios of teams in virtual time. */
-class TeamSimulation extends munit.FunSuite:
+class TeamSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   // Twenty vehicles in virtual time take a while where others work too.
@@ -99,7 +100,7 @@ class TeamSimulation extends munit.FunSuite:
       val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head
       val recorder = VirtualFlights.fly(chosen, plan).fold(fail(_), identity).recorder
-      val folder   = Files.createTempDirectory("team")
+      val folder   = temporaryFolder()
       val file     = plan.file(folder)
       try
         assert(recorder.writeTo(file).isRight)

@@ -3,19 +3,13 @@ package skein.report
 import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
-import scala.util.Using
 import skein.measure.Numbers
 import skein.record.{MemoryRecorder, RecordError, Recording}
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
-class ReportSuite extends munit.FunSuite:
+class ReportSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("report"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private lazy val set = Report.of(
     Seq(

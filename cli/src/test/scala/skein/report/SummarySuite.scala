@@ -1,6 +1,6 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, TimingObservation, Published}
+import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, Published, TimingObservation}
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.signal.{Kinematics, Stamped}

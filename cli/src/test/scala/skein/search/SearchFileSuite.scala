@@ -4,8 +4,9 @@ import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
 import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
-class SearchFileSuite extends munit.FunSuite:
+class SearchFileSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private def question(method: String) = SearchQuestion(
@@ -41,7 +42,7 @@ class SearchFileSuite extends munit.FunSuite:
       assertEquals(broken, unbroken)
 
   test("a run leaves its last state in the folder, and nothing half-written"):
-    val folder = Files.createTempDirectory("skein-search")
+    val folder = temporaryFolder()
     val ready  = setup("cma-es")
     var steps  = 0
     val run    = SearchRun(
@@ -60,7 +61,7 @@ class SearchFileSuite extends munit.FunSuite:
   test(
     "a run that is stopped within a step keeps the state before it, and goes on from there to the same end"
   ):
-    val folder = Files.createTempDirectory("skein-search")
+    val folder = temporaryFolder()
     val ready  = setup("cma-es")
     val flying = ready.evaluator(ready.batch(1))
     var calls  = 0

@@ -24,7 +24,8 @@ private[cluster] final case class Job(run: Long, build: String, question: ArrayS
   * @param onProgress
   *   told after every change
   * @param down
-  *   takes a process that has ended out of the cluster, before it is missed
+  *   takes a process out of the cluster that has ended or is out of reach: until that is done nobody else becomes a
+  *   member. Who was there all the same joins again
   */
 private[cluster] final class CoordinatorBehavior private (
     context: ActorContext[CoordinatorBehavior.Command],
@@ -66,6 +67,7 @@ private[cluster] final class CoordinatorBehavior private (
         state = state.cancelled
         ended(Right(None))
       case Unreachable(address) =>
+        down(address)
         addresses.keys.filter(worker => addresses(worker).path.address == address).foreach(lost)
       case Ended(worker) =>
         addresses.get(worker).foreach(one => down(one.path.address))

@@ -1,6 +1,5 @@
 package skein.cluster
 
-import java.nio.file.Files
 import java.util.concurrent.{ConcurrentLinkedQueue, Executors, LinkedBlockingQueue, TimeUnit}
 import org.apache.pekko.actor.{ActorSystem, Address}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
@@ -10,9 +9,10 @@ import scala.concurrent.Await
 import scala.concurrent.duration.DurationInt
 import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
+import skein.testing.TemporaryFolders
 
 /** Coordinator and worker, each alone, with what it says in a queue. */
-class BehaviorsSuite extends munit.FunSuite:
+class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
 
   private val question = ArraySeq[Byte](1, 2, 3)
   private val pool     = Executors.newFixedThreadPool(1)
@@ -60,10 +60,10 @@ class BehaviorsSuite extends munit.FunSuite:
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
   test(
-    "who has ended is taken out of the cluster; when all is done everybody else is told: who works, who is still preparing, and who asks only then"
+    "who has ended or is out of reach is taken out of the cluster; when all is done everybody else is told: who works, who is still preparing, and who asks only then"
   ):
     val ledger = Ledger
-      .open(Files.createTempDirectory("cluster").resolve(Ledger.Name), ArraySeq.fill(32)(7))
+      .open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7))
       .fold(fail(_), identity)
     val down        = LinkedBlockingQueue[Address]()
     val coordinator =
@@ -82,10 +82,12 @@ class BehaviorsSuite extends munit.FunSuite:
     assertEquals(preparing.next(), ToWorker.Welcome(7, question))
     val working = worker("ben", 7)
     // Also while it has not asked for a block.
-    for (name, heard) <- Seq("dora" -> worker("dora", 0)) do
-      heard.next(): Unit
-      coordinator ! CoordinatorBehavior.Ended(name)
+    worker("dora", 0).next(): Unit
+    coordinator ! CoordinatorBehavior.Ended("dora")
     assertEquals(down.poll(30, TimeUnit.SECONDS), system.deadLetters.path.address)
+    val elsewhere = Address("pekko", "behaviors", "somewhere", 2552)
+    coordinator ! CoordinatorBehavior.Unreachable(elsewhere)
+    assertEquals(down.poll(30, TimeUnit.SECONDS), elsewhere)
     coordinator ! CoordinatorBehavior.Farewell
     assertEquals(preparing.next(), ToWorker.Goodbye)
     assertEquals(working.next(), ToWorker.Goodbye)

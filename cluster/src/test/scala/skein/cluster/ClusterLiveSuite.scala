@@ -9,9 +9,10 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
+import skein.testing.TemporaryFolders
 
 /** Coordinator and workers as nodes of their own in one JVM, over loopback. */
-class ClusterLiveSuite extends munit.FunSuite:
+class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 3.minutes
   import scala.concurrent.ExecutionContext.Implicits.global
 
@@ -58,7 +59,7 @@ class ClusterLiveSuite extends munit.FunSuite:
       ledger.close()
 
   private def coordinating(body: Coordinating => Unit): Unit =
-    val coordinator = Coordinating(Files.createTempDirectory("cluster"))
+    val coordinator = Coordinating(temporaryFolder())
     try body(coordinator)
     finally coordinator.close()
 
@@ -77,7 +78,7 @@ class ClusterLiveSuite extends munit.FunSuite:
 
   /** Folders of a lab, of a host each. Made by other processes while other tests run, which mostly wait. */
   private def certificates(hosts: String*): Future[Vector[Path]] = Future(blocking(
-    Certificates.make(Files.createTempDirectory("certificates"), hosts).fold(fail(_), identity)
+    Certificates.make(temporaryFolder(), hosts).fold(fail(_), identity)
   ))
   private val makingLab    = certificates("127.0.0.1", "*.workers.lab")
   private val makingOthers = certificates("127.0.0.1")
@@ -178,7 +179,7 @@ class ClusterLiveSuite extends munit.FunSuite:
       ben.stop()
 
   test("a coordinator that is started again at its address finds its workers and what it had"):
-    val folder  = Files.createTempDirectory("cluster")
+    val folder  = temporaryFolder()
     val first   = Coordinating(folder)
     val port    = first.node.address.port
     val reached = CountDownLatch(30)
@@ -207,7 +208,7 @@ class ClusterLiveSuite extends munit.FunSuite:
     assert(clue(told.asScala.toVector).exists(_.contains("joined")))
 
   test("beyond loopback nobody listens without certificates"):
-    val folder  = Files.createTempDirectory("cluster")
+    val folder  = temporaryFolder()
     val ledger  = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
     assert(clue(refused.swap.getOrElse("started")).contains("certificates"))
@@ -218,7 +219,7 @@ class ClusterLiveSuite extends munit.FunSuite:
   ):
     val Vector(own, elsewhere) = lab.map(tls): @unchecked
     val strangers              = tls(Await.result(makingOthers, 60.seconds).head)
-    val coordinator            = Coordinating(Files.createTempDirectory("cluster"), tls = Some(own))
+    val coordinator            = Coordinating(temporaryFolder(), tls = Some(own))
     try
       val to      = coordinator.node.address
       val solvers = Reversing()

@@ -1,10 +1,10 @@
 package skein.cluster
 
-import java.nio.file.Files
 import java.util.concurrent.{CompletableFuture, TimeUnit}
 import java.util.concurrent.atomic.AtomicInteger
+import skein.testing.TemporaryFolders
 
-class WorkerProcessesSuite extends munit.FunSuite:
+class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
 
   test("workers have an archive of classes of their own, and share it with those that are started by hand"):
     val option = "-XX:SharedArchiveFile=/opt/skein/skein-vector.jsa"
@@ -16,7 +16,7 @@ class WorkerProcessesSuite extends munit.FunSuite:
   test(
     "workers that are killed again and again are replaced while they compute; those that never do are given up"
   ):
-    val folder    = Files.createTempDirectory("workers")
+    val folder    = temporaryFolder()
     val ended     = AtomicInteger()
     val givenUp   = CompletableFuture[String]()
     val processes = WorkerProcesses(

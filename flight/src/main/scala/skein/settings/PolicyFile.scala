@@ -99,13 +99,23 @@ object PolicyFile:
     *   or what was expected and came
     */
   def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
-    val read = summon[Scenarios].family(text) match
-      case Right(family) => roleOf(family, Some(name(role))).map(ofDefaults(_, family))
-      case Left(_)       => PolicyFile.read(text, Some(role))
-    read.filterOrElse(
+    named(text, Some(role)).filterOrElse(
       _.role == role,
       s"expected a policy for the ${name(role)}, came one for the other role: $text"
     )
+
+  /** A policy of a file, or of a family with its defaults.
+    *
+    * @param asked
+    *   whose it is where neither file nor family says so; without it, such a family is refused and such a file is a
+    *   pursuer's
+    * @return
+    *   or what was expected and came
+    */
+  def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
+    summon[Scenarios].family(text) match
+      case Right(family) => roleOf(family, asked.map(name)).map(ofDefaults(_, family))
+      case Left(_)       => read(text, asked)
 
   /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
     *

@@ -11,11 +11,12 @@ import skein.record.*
 import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.TemporaryFolders
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights that somebody pauses after a while and lets go on 5 s later, in virtual time. */
-class HeldFlightSimulation extends munit.FunSuite:
+class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private val settings = FlySettings(
@@ -99,7 +100,7 @@ class HeldFlightSimulation extends munit.FunSuite:
           assert(held.last.value.velocityNed.norm < 2, s"$name: ${held.last.value.velocityNed}")
       assert(to.since(from) - Span.ofSeconds(5) < Span.ofMillis(1))
       assertEquals(FlightSummary.of(recording).paused.map(_.toSeconds.round), Some(5L))
-      val file = Files.createTempDirectory("held").resolve("flight.duckdb")
+      val file = temporaryFolder().resolve("flight.duckdb")
       try
         assert(recorder.writeTo(file).isRight)
         assertEquals(Replayed.of(file).map(_.decidedAgain), Right(None))

@@ -1,6 +1,5 @@
 package skein.flight
 
-import java.nio.file.Files
 import scala.concurrent.duration.{Duration, DurationInt}
 import skein.loop.{LoopKind, Outcome}
 import skein.loop.learning.{FlownLearner, Learning, Transition}
@@ -9,10 +8,11 @@ import skein.record.{EventKind, Recording}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.signal.{LatencyProfile, SplitMix64}
+import skein.testing.TemporaryFolders
 import skein.units.*
 
 /** Flights in virtual time whose pursuer's policy is another every now and then. */
-class LearningFlightSimulation extends munit.FunSuite:
+class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 5.minutes
 
   private given Scenarios = Scenarios(ScenarioKind(PaperDuel()))
@@ -70,7 +70,7 @@ class LearningFlightSimulation extends munit.FunSuite:
         1e-12
       )
     assertEquals(flown(every10(_ => ())).recorder.digest, landed.recorder.digest)
-    val file = Files.createTempDirectory("learning").resolve("flight.duckdb")
+    val file = temporaryFolder().resolve("flight.duckdb")
     landed.recorder.writeTo(file).fold(error => fail(error.message), _ => ())
     val replayed = Replayed.of(file).fold(fail(_), identity)
     assertEquals(replayed.decidedAgain.map(_.message), None)

@@ -1,17 +1,17 @@
 package skein.flight
 
-import java.nio.file.{Files, Path}
-import scala.util.Using
+import java.nio.file.Path
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.record.*
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
+import skein.testing.TemporaryFolders
 import skein.units.*
 import skein.vehicle.ReducedModel
 
 /** Run = run = replay, for every loop. */
-class ReplaySimulation extends munit.FunSuite:
+class ReplaySimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   override val munitTimeout: scala.concurrent.duration.Duration =
@@ -28,12 +28,6 @@ class ReplaySimulation extends munit.FunSuite:
 
   private val predictive =
     settings.plans.find(_.loop == LoopKind.Predictive).getOrElse(fail("there is no such flight"))
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("replay"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def fly(settings: FlySettings, plan: FlightPlan): MemoryRecorder =
     VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder

@@ -1,48 +1,18 @@
 package skein.onnx
 
-import java.nio.file.{Files, Path}
-import scala.util.Using
+import java.nio.file.Path
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
-import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-class OnnxPolicySuite extends munit.FunSuite:
-  private given Scenarios = Scenarios.ours
-
-  private val seed = 20261122L
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("onnx"),
-    path =>
-      Using.resource(Files.list(path))(_.forEach(Files.delete(_)))
-      Files.delete(path)
-  )
-
-  private def written(folder: Path, bytes: Array[Byte]): String =
-    Files.write(folder.resolve("policy.onnx"), bytes).toString
-
+class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
   /** Weights that 32-bit floats can be. */
   private def drawn(name: String): Policy =
     val random = SplitMix64(seed)
     val family = PolicyFamily.parse(name).fold(fail(_), identity)
     val values = Vector.fill(family.space.dimension)((2 * random.nextDouble() - 1).toFloat.toDouble)
     family.policy(values)
-
-  private def seen(random: SplitMix64): PlanarObservation =
-    def number(most: Double) = most * (2 * random.nextDouble() - 1)
-    PlanarObservation(
-      number(30),
-      number(30),
-      number(10),
-      number(10),
-      number(4),
-      number(4),
-      random.nextDouble(),
-      random.nextDouble(),
-      random.nextDouble()
-    )
 
   /** Of nine inputs. */
   private def graph(nodes: Node*)(constants: (String, Tensor)*): Array[Byte] =
@@ -65,7 +35,7 @@ class OnnxPolicySuite extends munit.FunSuite:
       assertEquals(PolicyFile.parse(again.role, again.text).map(_.policy), Right(again.policy))
       val random = SplitMix64(seed)
       for _ <- 1 to 50 do
-        val what = seen(random)
+        val what = seen(random, 1)
         // A neural policy is not told ages.
         def heading(policy: Policy) = ObservingPolicy.decide(policy, what, 0.0).headingRad
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
@@ -136,7 +106,7 @@ class OnnxPolicySuite extends munit.FunSuite:
       val policy = file.policy.asInstanceOf[LearnedPolicy]
       val random = SplitMix64(seed)
       for _ <- 1 to 50 do
-        val one = seen(random)
+        val one = seen(random, 1)
         assertEqualsDouble(policy.share(one), expected(one, hidden, output), 1e-9)
         val heading = one.ownHeadingRad + policy.share(one) * one.elapsedS
         assertEquals(policy.decide(one, 0).headingRad, heading)

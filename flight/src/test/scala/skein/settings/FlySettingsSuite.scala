@@ -4,9 +4,10 @@ import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{PaperDuel, Scenarios, Surround}
+import skein.testing.TemporaryFolders
 import skein.units.Span
 
-class FlySettingsSuite extends munit.FunSuite:
+class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private def read(text: String): Either[String, FlySettings] =
@@ -48,7 +49,7 @@ class FlySettingsSuite extends munit.FunSuite:
     assertEquals(read("").map(_.world.name), Right("empty"))
     assertEquals(read("skein.fly.scenario = forest").map(_.world.name), Right("forest"))
     assertEquals(read("skein.fly { scenario = forest, scene = street }").map(_.world.name), Right("street"))
-    val file = Files.createTempFile("scene", ".conf")
+    val file = temporaryFolder().resolve("scene.conf")
     try
       Files.writeString(file, "objects = [{ pole = [0.1, 5], at = [10, 0] }]")
       val own = read(s"""skein.fly.scene = "$file" """).map(_.world)
@@ -97,7 +98,7 @@ class FlySettingsSuite extends munit.FunSuite:
     assertEquals(read("skein.fly.duration = 5 s").map(_.duration), Right(Span.ofSeconds(5)))
 
   test("a policy file needs a scenario in which its role plays against one opponent"):
-    val file = Files.createTempFile("policy", ".conf")
+    val file = temporaryFolder().resolve("policy.conf")
     Files.writeString(
       file,
       PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse("lead-pursuit").toOption.get).hocon("")

@@ -3,12 +3,12 @@ package skein.settings
 import java.io.IOException
 import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
 import java.nio.channels.ServerSocketChannel
-import java.nio.file.Files
 import scala.util.{Try, Using}
 import skein.policy.PlanarObservation
+import skein.testing.TemporaryFolders
 import skein.units.Span
 
-class OutsidePolicySuite extends munit.FunSuite:
+class OutsidePolicySuite extends munit.FunSuite, TemporaryFolders:
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
 
   /** What is decided, or why nothing, of as many questions as there are answers. */
@@ -77,7 +77,7 @@ class OutsidePolicySuite extends munit.FunSuite:
     )
 
   test("a process that ends between two questions has ended, and is not asked again"):
-    val path = Files.createTempDirectory("skein-policy").resolve("policy")
+    val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit
       val policy = OutsidePolicy.reach(s"unix:pursuer:$path").fold(fail(_), identity).policy
@@ -87,7 +87,7 @@ class OutsidePolicySuite extends munit.FunSuite:
         assertEquals(reason, "the policy: its process has ended")
 
   test("who accepts nobody is not waited for longer than for an answer"):
-    val path = Files.createTempDirectory("skein-policy").resolve("policy")
+    val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path), 1): Unit
       // The first ones wait in line.

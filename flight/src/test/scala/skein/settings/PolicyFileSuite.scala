@@ -3,14 +3,10 @@ package skein.settings
 import java.nio.file.{Files, Path}
 import skein.policy.{PaperPursuer, PolicyFamily, Role}
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
-class PolicyFileSuite extends munit.FunSuite:
+class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("skein-policies"),
-    path => { Files.list(path).forEach(Files.delete(_)); Files.delete(path) }
-  )
 
   private def read(folder: Path, text: String): Either[String, PolicyFile] =
     PolicyFile.read(Files.writeString(folder.resolve("policy.conf"), text).toString)

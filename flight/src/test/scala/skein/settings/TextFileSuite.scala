@@ -2,11 +2,12 @@ package skein.settings
 
 import java.io.RandomAccessFile
 import java.nio.file.Files
+import skein.testing.TemporaryFolders
 
-class TextFileSuite extends munit.FunSuite:
+class TextFileSuite extends munit.FunSuite, TemporaryFolders:
 
   test("a file that is too large is refused, not read"):
-    val file = Files.createTempFile("large", ".conf")
+    val file = temporaryFolder().resolve("large.conf")
     val size = RandomAccessFile(file.toFile, "rw")
     try size.setLength(3L << 30)
     finally size.close()
@@ -15,7 +16,7 @@ class TextFileSuite extends munit.FunSuite:
     finally Files.delete(file)
 
   test("a text is read whole; other bytes, folders and nothing are told"):
-    val folder = Files.createTempDirectory("texts")
+    val folder = temporaryFolder()
     val file   = Files.writeString(folder.resolve("a.conf"), "zwei = \u0662")
     assertEquals(TextFile.read(file.toString), Right("zwei = \u0662"))
     Files.writeString(file, "\ufeffzwei = 2"): Unit

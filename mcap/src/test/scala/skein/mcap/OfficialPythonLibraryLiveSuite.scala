@@ -4,20 +4,13 @@ import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
 import skein.mcap.file.McapFile
+import skein.testing.TemporaryFolders
 
 /** The proof that others read what is written here, and the reverse: the official library of PyPI, unmodified, reads our
   * files and writes others. Runs where Python can install that library; it fetches it once per user.
   */
-class OfficialPythonLibraryLiveSuite extends munit.FunSuite:
+class OfficialPythonLibraryLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 5.minutes
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("mcap"),
-    folder => {
-      Files.list(folder).forEach(Files.delete(_))
-      Files.delete(folder)
-    }
-  )
 
   folder.test("the official library opens every file we write, and finds what we wrote"): folder =>
     val python  = library()

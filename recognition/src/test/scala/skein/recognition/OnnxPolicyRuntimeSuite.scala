@@ -1,49 +1,20 @@
 package skein.recognition
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import scala.concurrent.duration.{Duration, DurationInt}
 import scala.util.Using
 import skein.flight.VirtualFlights
 import skein.loop.{LoopKind, Outcome}
-import skein.onnx.{OnnxFormat, OnnxGraph, OnnxPolicy}
+import skein.onnx.{OnnxFiles, OnnxFormat, OnnxGraph, OnnxPolicy}
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
-import skein.scenario.Scenarios
 import skein.settings.{FlySettings, PolicyFile}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 
 /** Policies of ONNX files beside onnxruntime's own evaluation, and those that only it runs. */
-class OnnxPolicyRuntimeSuite extends munit.FunSuite:
-  private given Scenarios = Scenarios.ours
-
+class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles:
   override val munitTimeout: Duration = 5.minutes
-
-  private val seed = 20261122L
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("onnx"),
-    path =>
-      Using.resource(Files.list(path))(_.forEach(Files.delete(_)))
-      Files.delete(path)
-  )
-
-  private def written(folder: Path, bytes: Array[Byte]): String =
-    Files.write(folder.resolve("policy.onnx"), bytes).toString
-
-  private def seen(random: SplitMix64): PlanarObservation =
-    def number(most: Double) = most * (2 * random.nextDouble() - 1)
-    PlanarObservation(
-      number(30),
-      number(30),
-      number(10),
-      number(10),
-      number(4),
-      number(4),
-      0.2 * random.nextDouble(),
-      0.2 * random.nextDouble(),
-      0.2 * random.nextDouble()
-    )
 
   for name <- Seq("learned:64x64", "learned:32tanhx32tanh:clip") do
     folder.test(s"$name: onnxruntime answers what our network does, within 2e-6"): folder =>
@@ -55,7 +26,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite:
       val file = written(folder, OnnxPolicy.write(policy, "pursuer").fold(fail(_), identity))
       Using.resource(OnnxModel.load(Path.of(file)).fold(fail(_), identity)): model =>
         val differences = Vector.fill(500):
-          val what   = seen(random)
+          val what   = seen(random, 0.2)
           val answer = model.run(what.fromOwnHeading.map(_.toFloat), Vector(1, 9)).fold(fail(_), identity)
           math.abs(answer("action").values.head - policy.share(what))
         assert(differences.max < 2e-6, s"seed $seed: ${differences.max}")

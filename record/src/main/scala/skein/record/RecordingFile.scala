@@ -67,7 +67,7 @@ private[record] object RecordingFile:
 
   /** Whether a recording could have this name. */
   def free(file: Path): Either[RecordError, Unit] =
-    if file.toString.contains(';') then Left(RecordError.CannotCreate(file, Unnameable))
+    if isUnnameable(file) then Left(RecordError.CannotCreate(file, Unnameable))
     else Either.cond(!Files.exists(file), (), RecordError.AlreadyExists(file))
 
   /** Makes the file and its tables, with rows that somebody else puts in. Blocks. */
@@ -80,6 +80,8 @@ private[record] object RecordingFile:
 
   private val Unnameable = "expected a path without ';', which DuckDB's driver takes for the path's end"
 
+  private def isUnnameable(file: Path) = file.toString.contains(';')
+
   private def createTables(connection: DuckDBConnection): Unit =
     execute(connection, "CREATE TABLE format (version INTEGER NOT NULL)")
     execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
@@ -87,8 +89,7 @@ private[record] object RecordingFile:
 
   /** A connection to the file alone: one thread of its own, no extensions from the network. */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =
-    // What stands behind it the driver would take for its settings.
-    if file.toString.contains(';') then throw SQLException(Unnameable)
+    if isUnnameable(file) then throw SQLException(Unnameable)
     val properties = Properties()
     properties.setProperty("duckdb.read_only", readOnly.toString)
     properties.setProperty("threads", "1")

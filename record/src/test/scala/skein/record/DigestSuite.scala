@@ -4,8 +4,9 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.Files
 import java.security.MessageDigest
 import java.util.HexFormat
+import skein.testing.TemporaryFolders
 
-class DigestSuite extends munit.FunSuite:
+class DigestSuite extends munit.FunSuite, TemporaryFolders:
   private def digest(records: Record*) = Digest.of(records.iterator)
 
   test("the digest is the SHA-256 of the bytes that its documentation lays out"):
@@ -74,7 +75,7 @@ class DigestSuite extends munit.FunSuite:
     assertNotEquals(digest(event.copy(decision = Some(0))), digest(event))
 
   test("a file has the digest of the records that were written into it"):
-    val folder   = Files.createTempDirectory("digest")
+    val folder   = temporaryFolder()
     val file     = folder.resolve("flight.duckdb")
     val recorder = MemoryRecorder(Samples.heading)
     Samples.oneOfEach.foreach(recorder.offer)

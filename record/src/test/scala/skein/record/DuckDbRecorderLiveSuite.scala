@@ -6,17 +6,12 @@ import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.util.Using
 import scala.util.chaining.scalaUtilChainingOps
+import skein.testing.TemporaryFolders
 
 /** Needs threads: a database writes while others offer. */
-class DuckDbRecorderLiveSuite extends munit.FunSuite:
+class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("DuckDbRecorderLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def open(file: Path, capacity: Int): DuckDbRecorder =
     Await.result(

@@ -1,23 +1,17 @@
 package skein.record
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Files
 import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
-import scala.util.Using
 import skein.mcap.{OfficialPythonLibrary, Told}
 import skein.mcap.file.McapFile
+import skein.testing.TemporaryFolders
 
 /** The proof that others read what is exported: the official library of PyPI, unmodified. Runs where Python can install
   * it.
   */
-class McapRecordingLiveSuite extends munit.FunSuite:
+class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 5.minutes
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   folder.test("the official library opens what is exported, and finds the same messages at the same times"):
     folder =>

@@ -1,16 +1,11 @@
 package skein.record
 
 import java.nio.file.{Files, Path}
-import scala.util.Using
 import skein.mcap.{Bytes, McapWriter, Query, TopicMessage}
 import skein.mcap.file.McapFile
+import skein.testing.TemporaryFolders
 
-class McapRecordingSuite extends munit.FunSuite:
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
+class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
 
   private def recorded(folder: Path): Path =
     val file     = folder.resolve("flight.duckdb")

@@ -4,21 +4,15 @@ import java.nio.file.{Files, Path}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
-import scala.util.Using
 import skein.mcap.Parsed
 import skein.mcap.Record.Message
 import skein.mcap.file.McapFile
+import skein.testing.TemporaryFolders
 
 /** MCAP files that are written while a recording is. */
-class McapRowSinkLiveSuite extends munit.FunSuite:
+class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("McapRowSinkLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def recorded(file: Path, sinks: Vector[RowSink])(offer: DuckDbRecorder => Unit): Unit =
     val recorder = Await

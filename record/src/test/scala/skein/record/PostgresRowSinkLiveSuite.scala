@@ -1,15 +1,15 @@
 package skein.record
 
 import io.zonky.test.db.postgres.embedded.EmbeddedPostgres
-import java.nio.file.{Files, Path}
 import java.sql.Connection
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.util.{Try, Using}
+import skein.testing.TemporaryFolders
 
 /** A real Postgres, in a process of its own. */
-class PostgresRowSinkLiveSuite extends munit.FunSuite:
+class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
   override val munitTimeout: Duration = 3.minutes
   private given system: ActorSystem   = ActorSystem("PostgresRowSinkLiveSuite")
 
@@ -22,12 +22,6 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite:
   private def url: String =
     server.failed.foreach(why => assume(false, s"no Postgres starts here: $why"))
     s"postgres://postgres:postgres@127.0.0.1:${server.get.getPort}/postgres"
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
 
   private def opened(heading: RecordingHeader) = PostgresRowSink.open(url, heading).fold(fail(_), identity)
 

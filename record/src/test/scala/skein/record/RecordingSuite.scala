@@ -3,13 +3,9 @@ package skein.record
 import java.nio.file.{Files, Path}
 import java.sql.DriverManager
 import scala.util.Using
+import skein.testing.TemporaryFolders
 
-class RecordingSuite extends munit.FunSuite:
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
+class RecordingSuite extends munit.FunSuite, TemporaryFolders:
 
   private def record(file: Path, records: Record*): Unit =
     val recorder = MemoryRecorder(Samples.heading)

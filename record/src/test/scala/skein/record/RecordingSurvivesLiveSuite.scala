@@ -1,18 +1,12 @@
 package skein.record
 
 import java.io.{BufferedReader, InputStreamReader}
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import scala.jdk.CollectionConverters.*
-import scala.util.Using
+import skein.testing.TemporaryFolders
 
 /** Needs the real clock and processes of its own: what survives a kill is seen only in another process. */
-class RecordingSurvivesLiveSuite extends munit.FunSuite:
-
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("recording"),
-    path =>
-      Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
-  )
+class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders:
 
   private def read(file: Path): Recording = RecordingReader.read(file).fold(e => fail(e.message), identity)
 

@@ -1,11 +1,12 @@
 package skein.simulator
 
 import java.nio.charset.StandardCharsets.US_ASCII
-import java.nio.file.{Files, Path}
+import java.nio.file.Files
 import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
+import skein.testing.TemporaryFolders
 import skein.units.Vector3
 
-class VoxelGridSuite extends munit.FunSuite:
+class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
 
   private def boxes(centres: Seq[Vector3]): Moment = Moment(
     Scene.Empty,
@@ -13,12 +14,6 @@ class VoxelGridSuite extends munit.FunSuite:
   )
 
   private val ground = boxes(Seq.empty)
-  private val folder = FunFixture[Path](
-    _ => Files.createTempDirectory("voxels"),
-    folder =>
-      Files.list(folder).forEach(Files.delete(_))
-      Files.delete(folder)
-  )
 
   /** The header's lines, and the cells. */
   private def read(file: Array[Byte]): (Seq[String], Vector[Boolean]) =

@@ -3,11 +3,12 @@ package skein.mcap.file
 import java.nio.channels.Channels
 import java.nio.file.{Files, Path}
 import skein.mcap.*
+import skein.testing.TemporaryFolders
 
-class McapFileSuite extends munit.FunSuite:
+class McapFileSuite extends munit.FunSuite, TemporaryFolders:
   private val folder =
     FunFixture[Path](
-      _ => Files.createTempDirectory("mcap"),
+      _ => temporaryFolder(),
       folder => {
         Files.list(folder).forEach(Files.delete(_))
         Files.delete(folder)

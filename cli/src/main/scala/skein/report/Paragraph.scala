@@ -1,0 +1,15 @@
+package skein.report
+
+/** Text in lines. */
+object Paragraph:
+
+  /** Broken between words. A word that is longer has a line of its own.
+    *
+    * @param width
+    *   of the longest line, in letters
+    */
+  def lines(text: String, width: Int): Vector[String] =
+    text.split(' ').filter(_.nonEmpty).foldLeft(Vector.empty[String]): (lines, word) =>
+      lines.lastOption match
+        case Some(last) if last.length + 1 + word.length <= width => lines.init :+ s"$last $word"
+        case _                                                    => lines :+ word
