@@ -2,6 +2,7 @@ package skein.cli
 
 import mainargs.{ArgSig, ParserForClass, Result, Util}
 import skein.record.{ClockKind, LoopKind}
+import skein.report.TextTable
 
 /** A command of `./skein`: one file each.
   *
@@ -67,7 +68,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       parser.constructRaw(optionsFirst(arguments)) match
         case failure: Result.Failure =>
           Misuse.text(failure, names).linesIterator.foreach(mistake =>
-            Console.err.println(s"skein $name: $mistake")
+            Console.err.println(s"skein $name: ${TextTable.printable(mistake)}")
           )
           Console.err.println(s"skein $name: --help tells the options")
           2
@@ -75,7 +76,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
           execute(options) match
             case Right(())    => 0
             case Left(reason) =>
-              Console.err.println(s"skein $name: $reason")
+              Console.err.println(s"skein $name: ${TextTable.printable(reason)}")
               1
 
   /** `report FILE --out DIR` and `report --out DIR FILE` mean the same; mainargs takes everything behind the first word

@@ -7,6 +7,7 @@ import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.link.{TcpTransport, TransportError}
 import skein.settings.{NamedScene, TextFile}
+import skein.report.TextTable
 import skein.simulator.{MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 import skein.view.Shows
@@ -84,7 +85,7 @@ object ServeCommand
     given system: ActorSystem = ActorSystem("skein")
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
-      val vehicles = settings.world.vehicles.map(_.name).mkString(", ")
+      val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
       val mavlink  = settings.mavlink.fold(""): open =>
         s", and by MAVLink from UDP ports ${open.udp.map(port =>
             s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"

@@ -11,6 +11,7 @@ final case class TextTable(header: Vector[String], rows: Vector[Vector[String]])
 
   def render: String =
     val names                               = header.map(_.stripPrefix("<"))
+    val rows                                = this.rows.map(_.map(TextTable.printable))
     val widths                              = (names +: rows).transpose.map(_.map(_.length).max)
     def line(cells: Vector[String]): String =
       cells.indices
@@ -20,3 +21,9 @@ final case class TextTable(header: Vector[String], rows: Vector[Vector[String]])
         .mkString("  ")
         .stripTrailing
     (Vector(line(names), widths.map("─" * _).mkString("  ")) ++ rows.map(line)).mkString("\n")
+
+object TextTable:
+
+  /** Names come from files and from other machines: what would move a terminal's cursor or colour it is shown as `�`. */
+  def printable(text: String): String = text.map: letter =>
+    if letter.isControl && letter != '\n' && letter != '\t' then '\ufffd' else letter

@@ -75,13 +75,14 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders:
     assert(stream.contains("8.50"), stream)
 
   test("columns of a text table stand below their names"):
-    val table = TextTable(Vector("<name", "m"), Vector(Vector("a", "10.5"), Vector("long name", "2")))
+    val table =
+      TextTable(Vector("<name", "m"), Vector(Vector("a", "10.5"), Vector("lon\u001b name", "2")))
     assertEquals(
       table.render,
       """name          m
         |─────────  ────
         |a          10.5
-        |long name     2""".stripMargin
+        |lon� name     2""".stripMargin
     )
 
   folder.test("every file that cannot be read is named"): folder =>

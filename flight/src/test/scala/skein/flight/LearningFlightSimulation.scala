@@ -42,8 +42,8 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders:
       learned += transitions.size
       Option.when(learned / 10 > before)(drawn((1e6 * transitions.last.distanceM).toLong))
 
-  private def flown(learner: FlownLearner, settings: FlySettings = settings) =
-    val chosen = ChosenPolicy("learning", first, Some(Learning.Beside(0.1, _ => learner)))
+  private def flown(learner: FlownLearner, explore: Double = 0.1) =
+    val chosen = ChosenPolicy("learning", first, Some(Learning.Beside(explore, _ => learner)))
     VirtualFlights.fly(settings, settings.plansWith(chosen).last).fold(fail(_), identity)
 
   private def learned(recording: Recording) = recording.events.filter(_.kind == EventKind.Learned)
@@ -75,6 +75,19 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders:
     val replayed = Replayed.of(file).fold(fail(_), identity)
     assertEquals(replayed.decidedAgain.map(_.message), None)
     assertEquals(replayed.flownAgain.map(again => again.again), Some(landed.recorder.digest))
+
+  private def headings(recording: Recording) =
+    recording.decisions.filter(_.vehicle == "Pursuer").map(_.heading)
+
+  test("it tries out as much as it is told to: nothing, and never more than the most that it turns"):
+    val alone = VirtualFlights.fly(settings, settings.plansWith(ChosenPolicy("alone", first)).last)
+    val same  = flown(_ => None, explore = 0)
+    assertEquals(headings(same.recorder.recording), headings(alone.fold(fail(_), _.recorder.recording)))
+    var shares = Vector.empty[Double]
+    val noisy  = flown(transitions => { shares ++= transitions.map(_.share); None }, explore = 1)
+    assertNotEquals(headings(noisy.recorder.recording), headings(same.recorder.recording))
+    assertEquals((shares.min, shares.max), (-1.0, 1.0))
+    assert(shares.distinct.sizeIs > shares.size / 3, shares)
 
   test("a version that is not finite is refused, and the last one decides on"):
     val learner: FlownLearner = _ => Some(first.parameters.updated(3, Double.NaN))

@@ -1,5 +1,6 @@
 package skein.torture
 
+import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, Event, EventKind, RecordError, TrueAge}
@@ -234,6 +235,8 @@ class ChecksSuite extends munit.FunSuite:
     assertEquals(found(clean.copy(lastHovers = lastMoves.toMap)), "", "at the same moment is in time")
     val early = lastMoves.toMap.map((name, at) => name -> (at - Span.ofNanos(1)))
     assert(found(clean.copy(lastHovers = early)).contains("Evader: no command to hover came"))
+    val one = found(unheard.copy(arrivals = clean.arrivals.filter(_.vehicle == "Pursuer")))
+    assert(one.contains("Pursuer: no command to hover came") && !one.contains("Evader: no command to hover"))
     val still = unheard.copy(arrivals = Vector.empty)
     assert(!found(still).contains("no command to hover came"), "who never moved need not be told")
 
@@ -268,6 +271,9 @@ class ChecksSuite extends munit.FunSuite:
         clean.recording.decisions.find(one => one.vehicle == vehicle && one.sequence == number.toLong).get
       case other => fail(other)
     assertEqualsDouble(first.decidedAt.since(clean.startedAt).toSeconds, 5.5, 0.1)
+    // Nobody knows the new clock before every vehicle has answered by it.
+    val silent = WatchedVehicle(clean.crafts.head, Clock.system)(using ExecutionContext.parasitic)
+    assert(!found(restarted(4, Span.ofSeconds(100)).copy(crafts = clean.crafts :+ silent)).contains(wrong))
     // Of three runs only two are alike.
     val again = restarted(4, Span.ofSeconds(0.5))
     val third = Run(clean.startedAt + Span.ofSeconds(4.5), clean.runs.head.clockOffset + Span.ofSeconds(100))

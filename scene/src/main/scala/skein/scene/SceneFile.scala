@@ -1,6 +1,8 @@
 package skein.scene
 
 import com.typesafe.config.*
+import java.io.File
+import java.net.URL
 import scala.jdk.CollectionConverters.*
 import skein.signal.SplitMix64
 import skein.units.Vector3
@@ -32,19 +34,27 @@ object SceneFile:
   def parse(text: String, from: String): Either[SceneError, Scene] =
     try
       val options = ConfigParseOptions.defaults.setOriginDescription(from).setAllowMissing(false)
-      val config  = ConfigFactory.parseString(text, options.setIncluder(NoIncludes(from))).resolve()
+      val config  = ConfigFactory.parseString(text, options.setIncluder(NoIncludes(from)))
+        .resolve(ConfigResolveOptions.noSystem)
       Right(read(config))
     catch
       case e: Misfit          => Left(SceneError(e.place, e.problem))
       case e: ConfigException =>
         val place = Option(e.origin).fold(from)(_.description)
         Left(SceneError(place, e.getMessage.stripPrefix(s"$place: ")))
+      case _: StackOverflowError =>
+        Left(SceneError(from, "its braces and brackets are nested too deeply to be read"))
 
-  /** A scene reads no other file. */
-  final private class NoIncludes(from: String) extends ConfigIncluder:
-    def withFallback(other: ConfigIncluder): ConfigIncluder                = this
-    def include(context: ConfigIncludeContext, what: String): ConfigObject =
-      throw Misfit(from, s"a scene includes no other file: $what")
+  /** A scene reads no other file, and asks nobody for one. */
+  final private class NoIncludes(from: String)
+      extends ConfigIncluder, ConfigIncluderFile, ConfigIncluderURL, ConfigIncluderClasspath:
+    private def refuse(what: Any): Nothing = throw Misfit(from, s"a scene includes no other file: $what")
+
+    def withFallback(other: ConfigIncluder): ConfigIncluder                         = this
+    def include(context: ConfigIncludeContext, what: String): ConfigObject          = refuse(what)
+    def includeFile(context: ConfigIncludeContext, what: File): ConfigObject        = refuse(what)
+    def includeURL(context: ConfigIncludeContext, what: URL): ConfigObject          = refuse(what)
+    def includeResources(context: ConfigIncludeContext, what: String): ConfigObject = refuse(what)
 
   final private class Misfit(val place: String, val problem: String)
       extends RuntimeException(problem, null, false, false)

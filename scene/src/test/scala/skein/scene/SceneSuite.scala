@@ -49,7 +49,11 @@ class SceneSuite extends munit.FunSuite:
     )
     assert(error("objects = [").startsWith("my.conf: 1"))
     assert(error("objects = [{}]").contains("expected one of box, pole, wall or tag"))
-    assert(error("include \"/etc/passwd\"").contains("includes no other file"))
+    for what <- Seq("\"/etc/passwd\"", "file(\"/a\")", "required(file(\"/a\"))", "classpath(\"a\")") ++
+        Seq("url(\"http://127.0.0.1:9/a.conf\")", "required(url(\"http://127.0.0.1:9/a.conf\"))")
+    do assert(clue(error(s"include $what")).contains("includes no other file"), what)
+    assert(clue(error("ground = ${PATH}")).contains("PATH"))
+    assert(clue(error("objects = " + "[" * 100_000)).contains("nested too deeply"))
 
   private val house =
     SceneObject("House", Shape.Box(Vector3(2, 3, 4)), Placement(Vector3(10, 0, -4)), 0, None)

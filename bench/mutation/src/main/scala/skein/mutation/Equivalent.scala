@@ -21,6 +21,9 @@ object Equivalent:
   private val Rows  = "twenty troubles in a row are as good as never drawn"
   private val Stray = "any message that is no answer will do"
 
+  private val Instant = "that two things happen in the same nanosecond is as good as never met"
+  private val Choice  = "as good a number; a test would repeat it"
+
   val all: Vector[Equivalent] = Vector(
     Equivalent("Digest.scala", "ByteBuffer.allocate(9)", "9", "10", "room that is not used"),
     Equivalent(
@@ -29,6 +32,21 @@ object Equivalent:
       "headOption",
       "lastOption",
       "a file holds one flight"
+    ),
+    Equivalent("KnowledgeChecks.scala", "runs.lastIndexWhere", "<=", "<", Instant),
+    Equivalent("KnowledgeChecks.scala", "a.state.sentAt >= asked", "<=", "<", Instant),
+    Equivalent("KnowledgeChecks.scala", "private val Recent = 64", "64", "65", Choice),
+    Equivalent("TortureFlight.scala", "if ended > faultPlan.calmFrom", ">", ">=", Instant),
+    Equivalent("TortureFlight.scala", "private val ComesToRest", "5", "6", Choice),
+    Equivalent("UntilCertain.scala", "val Attempts", "20", "21", Choice),
+    Equivalent("PlanSettings.scala", "step: Span", "100", "101", Choice),
+    Equivalent("PlanSettings.scala", "stepsPerKnot", "3", "4", Choice),
+    Equivalent(
+      "TeamLog.scala",
+      "action.breaches.headOption",
+      "headOption",
+      "lastOption",
+      "one limit is named of those that a plan breaks"
     ),
     Equivalent("TeamPlanning.scala", "if sinceDecisionS > 0 then", ">", ">=", "over 0 it is infinite, too"),
     Equivalent("FaultPlan.scala", "added.nextDouble() < 0.3", "<", "<=", Never),

@@ -20,7 +20,9 @@ private object Modules:
         "skein.loop.RunningGraphLiveSuite",
         "skein.loop.planning.BackgroundThreadLiveSuite",
         "skein.loop.planning.PlanWorkersLiveSuite",
+        "skein.loop.learning.LessonsBesideLiveSuite",
         "skein.flight.FailureTellingSimulation",
+        "skein.flight.LearningFlightSimulation",
         "skein.flight.OutsidePolicySimulation",
         "skein.flight.ReplaySimulation"
       )
