@@ -46,6 +46,12 @@ final case class PlannerSettings(
 ):
   require(steps > 0 && dtS > 0, s"the horizon must be positive, came $steps steps of $dtS s")
   require(blocksPerSlice > 0 && stepsPerKnot > 0, "blocks per slice and steps per knot must be positive")
+  method match
+    case Method.CrossEntropy(elites, smoothing) =>
+      require(elites > 0, s"expected one elite at least, came $elites")
+      require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, came $smoothing")
+    case Method.PathIntegral(temperature) =>
+      require(temperature > 0, s"the temperature must be positive, came $temperature")
 
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size

@@ -1,5 +1,7 @@
 package skein.record
 
+import java.net.URLDecoder
+import java.nio.charset.StandardCharsets
 import java.sql.{Connection, DriverManager, PreparedStatement, SQLException, Types}
 import java.util.Properties
 import java.util.concurrent.atomic.AtomicLong
@@ -181,5 +183,15 @@ private[record] object PostgresAddress:
     case Form(user, password, host, port, database)
         if Option(port).forall(one => one.toInt >= 1 && one.toInt <= 65535) =>
       val at = s"$host:${Option(port).getOrElse("5432")}/$database"
-      Right(PostgresAddress(s"jdbc:postgresql://$at", user, Option(password).getOrElse(""), at))
+      for
+        name   <- decoded(user)
+        secret <- decoded(Option(password).getOrElse(""))
+      yield PostgresAddress(s"jdbc:postgresql://$at", name, secret, at)
     case _ => Left("expected postgres://USER:PASSWORD@HOST:PORT/DATABASE")
+
+  /** `%40` stands for `@`, as in all addresses (RFC 3986). */
+  private def decoded(text: String): Either[String, String] =
+    try Right(URLDecoder.decode(text.replace("+", "%2B"), StandardCharsets.UTF_8))
+    catch
+      case _: IllegalArgumentException =>
+        Left("expected two hexadecimal digits behind each % of user and password, %25 for % itself")

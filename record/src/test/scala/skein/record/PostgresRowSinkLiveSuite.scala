@@ -100,6 +100,12 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
       found.next(): Unit
       assertEquals(found.getInt(1), 0)
 
+  test("letters that an address has for itself stand in user and password as percent and two digits"):
+    val read = PostgresAddress.parse("postgres://m%40e:a%3Ab%2Fc+%25@db/flights").fold(fail(_), identity)
+    assertEquals((read.user, read.password, read.shown), ("m@e", "a:b/c+%", "db:5432/flights"))
+    val wrong = PostgresAddress.parse("postgres://me:se%zzcret@db/flights").left.toOption.get
+    assert(wrong.contains("two hexadecimal digits") && !wrong.contains("cret"), wrong)
+
   test("where there is no server, or no address, one line says so, and no password"):
     val nobody = PostgresRowSink.open("postgres://me:secret@127.0.0.1:1/db", Samples.heading)
     assert(
