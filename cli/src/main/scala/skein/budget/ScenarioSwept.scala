@@ -85,8 +85,7 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
     TeamCandidate(plane, TeamQuestion.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
 
   private def fly(timing: LoopTiming, link: DelayTable, episodes: Int, isCancelled: () => Boolean) =
-    val batch = TeamBatch(timing, flown.vehicle.response, question.threads)
-    TeamEvaluator(batch, _ => candidate, link, question.terms.map(_._1), question.seed)
+    TeamEvaluator(batch(timing), _ => candidate, link, question.terms.map(_._1), question.seed)
       .talliesUnless(isCancelled)(Vector(Vector.empty), 0 until episodes)
       .map(_.head)
       .toRight(Swept.Stopped)
@@ -94,11 +93,10 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
   def truth: Either[String, Double] =
     fly(flown.paused.timing, DelayTable.none, 1, () => false).map(_.mean)
 
-  def engine(links: Vector[LatencyDistribution]): String =
-    val batch = TeamBatch(flown.timing, flown.vehicle.response, question.threads)
-    if batch.fliesByLanes(candidate) then
-      "SIMD; every episode has delays of its own, and a timetable made for it"
-    else batch.engine(candidate)
+  private def batch(timing: LoopTiming) =
+    TeamBatch(timing, flown.vehicle.response, question.threads, areShared = false)
+
+  def engine(links: Vector[LatencyDistribution]): String = batch(flown.timing).engine(candidate)
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = 10
 

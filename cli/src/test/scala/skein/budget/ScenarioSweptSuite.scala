@@ -29,22 +29,22 @@ class ScenarioSweptSuite extends munit.FunSuite:
     .fold(fail(_), _.head.mean)
 
   test(
-    "a measure of a quantity comes to the same by lanes and, with the whole flight's tracks, by the scalar engine"
+    "a measure of a quantity comes to the same as with the whole flight's tracks"
   ):
-    val lanes = swept(surround)
-    assert(lanes.engine(Vector.empty).startsWith("SIMD"), lanes.engine(Vector.empty))
-    assertEquals((lanes.formula, lanes.unit), ("off-ring", "m"))
+    val plain = swept(surround)
+    assertEquals(plain.engine(Vector.empty), "scalar: every world has delays of its own")
+    assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
     val both   = swept(surround, Some("off-ring + 0*surrounded-after"))
     val scalar = both.engine(Vector.empty)
     assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
     for latencyMs <- Seq(0.0, 200.0) do
-      // Tracks are judged every 20 ms, on lines between the places of each period; lanes once a period.
-      assertEqualsDouble(at(lanes, latencyMs), at(both, latencyMs), 0.1 * at(lanes, latencyMs))
+      // Tracks are judged every 20 ms, on lines between the places of each period; a quantity once a period.
+      assertEqualsDouble(at(plain, latencyMs), at(both, latencyMs), 0.1 * at(plain, latencyMs))
 
   test("without latency the truth is met, and more latency is further off it"):
-    val lanes = swept(surround)
-    val truth = lanes.truth.fold(fail(_), identity)
-    val off   = Seq(0.0, 200.0, 400.0).map(at(lanes, _) - truth).map(_.abs)
+    val plain = swept(surround)
+    val truth = plain.truth.fold(fail(_), identity)
+    val off   = Seq(0.0, 200.0, 400.0).map(at(plain, _) - truth).map(_.abs)
     assert(off(0) < 0.02 * truth && off(1) > off(0) && off(2) > off(1), s"$off off $truth")
 
   test("any measure is judged: vehicles that cross come to their goals later over a slow link"):

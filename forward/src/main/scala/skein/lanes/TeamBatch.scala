@@ -12,11 +12,16 @@ import skein.simd.LaneMath
   * formulas fly by lanes ([[TimetableKernel]]), all of an episode by one [[Timetable]], which is made once; others by the
   * scalar reference ([[Rollout]]), which is told. Which engine flies a world depends on its candidate alone, so results do
   * not depend on threads, on a call's other worlds or on their order. One call at a time.
+  *
+  * @param areShared
+  *   whether several candidates meet the same episode. Where none do, the scalar reference flies them: it is what makes
+  *   a timetable, and that would be made for one world
   */
 final class TeamBatch(
     timing: LoopTiming,
     model: VelocityResponse,
-    threads: Int = Runtime.getRuntime.availableProcessors
+    threads: Int = Runtime.getRuntime.availableProcessors,
+    areShared: Boolean = true
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
@@ -34,6 +39,7 @@ final class TeamBatch(
     val engagement = candidate.engagement
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
+      _        <- Either.cond(areShared, (), "every world has delays of its own")
       _        <- LaneSupport.present
       vehicles <- TimetableModel.under(timing, model, engagement.agents)
       _        <- Either.cond(

@@ -38,6 +38,7 @@ object Equivalent:
     Equivalent("KnowledgeChecks.scala", "private val Recent = 64", "64", "65", Choice),
     Equivalent("TortureFlight.scala", "if ended > faultPlan.calmFrom", ">", ">=", Instant),
     Equivalent("TortureFlight.scala", "private val ComesToRest", "5", "6", Choice),
+    Equivalent("LearningPolicy.scala", "policy.share(observed) + explore", "+", "-", "noise is as likely to either side"),
     Equivalent("UntilCertain.scala", "val Attempts", "20", "21", Choice),
     Equivalent("PlanSettings.scala", "step: Span", "100", "101", Choice),
     Equivalent("PlanSettings.scala", "stepsPerKnot", "3", "4", Choice),
