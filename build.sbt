@@ -28,6 +28,7 @@ ThisBuild / scalacOptions ++= Seq(
 ThisBuild / packageDoc / publishArtifact := Publishing.isWanted
 ThisBuild / packageSrc / publishArtifact := Publishing.isWanted
 ThisBuild / Test / publishArtifact       := false // else the two above hold for tests, too
+ThisBuild / pomPostProcess              := Publishing.withoutTests
 ThisBuild / Test / fork               := true
 ThisBuild / run / fork                := true
 ThisBuild / Test / testForkedParallel := false
