@@ -1,8 +1,7 @@
 package skein.airsim
 
-import scala.util.Random
 import skein.airsim.wire.{ImageResponse, LidarData, Pose, Quaternionr, Vector3r}
-import skein.rpc.{MessageReader, Mutation, Received, Wire}
+import skein.rpc.{MessageReader, Received, Wire}
 import skein.units.*
 import upack.*
 
@@ -125,16 +124,5 @@ class ImagesSuite extends munit.FunSuite:
     )
 
   test("of malformed replies nothing is thrown"):
-    val replies = Vector(
-      (sent(picture, picture), (bytes: Array[Byte]) => images(bytes, raw, raw)),
-      (
-        LidarData.encode(LidarData(at, Array.fill(30)(1f), segmentation = Array.fill(10)(1))).bytes.toArray,
-        scan
-      )
-    )
-    var refused = 0
-    for seed <- 1 to 20_000 do
-      val random        = Random(seed)
-      val (bytes, read) = replies(seed % 2)
-      if read(Mutation.mutated(bytes, random)).isLeft then refused += 1
-    assert(refused > 5_000, refused)
+    val figures = ImageFuzz.run(20_000, seed = 1)
+    assert(figures.refused > 5_000 && figures.images > 500 && figures.scans > 500, figures)

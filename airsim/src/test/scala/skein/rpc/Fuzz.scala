@@ -1,12 +1,13 @@
 package skein.rpc
 
 import org.apache.pekko.actor.ActorSystem
+import skein.airsim.ImageFuzz
 import skein.link.PreciseScheduler
 
-/** The long fuzz: mutated byte sequences against the codec, a live server and a live client. Ends with an error that
+/** The long fuzz: mutated byte sequences against the codec, the reader of images and scans, a live server and a live client. Ends with an error that
   * names the seed when anything crashes, hangs, or comes out wrong.
   *
-  * Arguments: sequences for the codec (default 1,000,000), for each of server and client (default 20,000), the first
+  * Arguments: sequences for the codec and for the reader (default 1,000,000), for each of server and client (default 20,000), the first
   * seed (default 1).
   */
 object Fuzz:
@@ -19,6 +20,7 @@ object Fuzz:
 
     println(s"at the start: $elapsed")
     println(s"${CodecFuzz.run(codecSequences, seed)}; $elapsed")
+    println(s"${ImageFuzz.run(codecSequences, seed)}; $elapsed")
     given system: ActorSystem = ActorSystem("fuzz", PreciseScheduler.config)
     println(s"${PairFuzz.server(liveSequences, seed)}; $elapsed")
     println(s"${PairFuzz.client(liveSequences, seed)}; $elapsed")
