@@ -246,7 +246,7 @@ lazy val cli = project
       """    ;;""",
       """  *) addJava "-XX:SharedArchiveFile=${app_home}/../skein.jsa" ;;""",
       """esac""",
-      // The experiment's seven flights of a minute in virtual time have landed before optimising them pays.
+      // The experiment's nine flights of a minute in virtual time have landed before optimising them pays.
       """case " $* " in""",
       """  *" plan "*|*" --config"*|*" --duration"*|*" --pairs"*|*" --scenario"*) ;;""",
       """  *" fly"*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;;""",

@@ -140,9 +140,9 @@ final class RpcClient(
         try Right(readAs(trace = true))
         catch case NonFatal(e) => Left(RpcError.Malformed(method, s"$e"))
 
-  private def start(channel: Channel): LaneInput =
+  private def start(channel: Channel): ChannelInput =
     val stage =
-      LaneStage(
+      ChannelStage(
         channel,
         transport,
         address,

@@ -46,7 +46,7 @@ final case class Autopilot(
     cruise: Option[Double] = None
 ) extends Status:
   import Autopilot.*
-  import Numbers.{Command, Result, Severity}
+  import CommonDialect.{Command, Result, Severity}
 
   /** What comes of a message that is meant for this vehicle, or for all.
     *
@@ -119,7 +119,7 @@ final case class Autopilot(
 
   private def obey(order: Order, motion: Motion): Either[Refusal, Heard] = order.command match
     case Command.Arm if order.isOne(0)       => arm(motion)
-    case Command.Arm                         => disarm(motion, order.numbers(1) == Numbers.Force)
+    case Command.Arm                         => disarm(motion, order.numbers(1) == CommonDialect.Force)
     case Command.Terminate if order.isOne(0) => disarm(motion, isForced = true)
     case Command.Takeoff                     =>
       val above = order.numbers(6)
@@ -197,7 +197,7 @@ final case class Autopilot(
   private def reposition(order: Order, motion: Motion): Either[Refusal, Heard] =
     val here = motion.state.positionNed
     // A command without a frame has PX4's: above the sea.
-    Target.heightOf(order.frame.getOrElse(Numbers.Frame.Global), order.numbers(6), home) match
+    Target.heightOf(order.frame.getOrElse(CommonDialect.Frame.Global), order.numbers(6), home) match
       case None           => Left(Refusal(Result.Denied, s"frame ${order.frame.getOrElse(0)} unsupported"))
       case Some(altitude) =>
         val place = GeoLocation(order.numbers(4), order.numbers(5), altitude).nedFrom(home)
@@ -359,7 +359,7 @@ final case class Autopilot(
         case ReturnToLaunch =>
           reached(copy(mission = mission.next, mode = FlightMode.Return, enteredAt = now))
         case command =>
-          val place = Mission.place(item, home, mission.reachedAt.fold(anchor)(_ => anchor))
+          val place = Mission.place(item, home, anchor)
           val goal  = if command == Land then place.copy(z = here.z) else place
           val near  = math.max(
             if item.param2 > 0 && command == Waypoint then item.param2.toDouble
@@ -406,7 +406,7 @@ final case class Autopilot(
           val away   = here.copy(z = 0).norm
           // First up, then across; who is near already goes down where it is.
           if away > NearHomeM && here.z > height + 1 then over(anchor, -parameters(Parameters.TakeoffSpeed))
-          else to(Vector3.Zero.copy(z = here.z.min(height.max(here.z))), Target.Turn.None)
+          else to(Vector3.Zero.copy(z = here.z), Target.Turn.None)
         case FlightMode.Mission if !motion.isFlying =>
           Setpoint.velocity(0, 0, -parameters(Parameters.TakeoffSpeed))
         case FlightMode.Mission =>

@@ -19,7 +19,7 @@ final class Channel(
     isDatagrams: Boolean = false,
     mostBytes: Int = 1400
 ):
-  private val writers = systems.map(system => system -> FrameWriter(system, Numbers.Autopilot1)).toMap
+  private val writers = systems.map(system => system -> FrameWriter(system, CommonDialect.Autopilot1)).toMap
   private val every   = mutable.HashMap.empty[(Int, Int), Span]
   private val due     = mutable.HashMap.empty[(Int, Int), Span]
   private val pieces  = Vector.newBuilder[Array[Byte]]

@@ -42,8 +42,8 @@ object Mission:
 
   /** Why an item cannot be flown: the acknowledgement's kind and a text. */
   def mistake(item: MissionItemInt): Option[(Int, String)] =
-    import Numbers.Command.*
-    import Numbers.Frame
+    import CommonDialect.Command.*
+    import CommonDialect.Frame
     val places  = Set(Waypoint, LoiterUnlimited, LoiterTime, Land, Takeoff)
     val others  = Set(ReturnToLaunch, Delay, ChangeSpeed)
     val isPlace = places(item.command)

@@ -1,5 +1,6 @@
 package skein.autopilot
 
+import skein.mavlink.FlightMode
 import skein.units.GeoLocation
 
 /** What an autopilot tells of itself. */

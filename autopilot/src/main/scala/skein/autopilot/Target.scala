@@ -42,7 +42,7 @@ object Target:
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, Target]] = message match
     case one: SetPositionTargetLocalNed =>
-      import Numbers.Frame.*
+      import CommonDialect.Frame.*
       val frame = one.coordinateFrame
       Some(
         if !Set(LocalNed, BodyNed, BodyFrd).contains(frame) then
@@ -89,7 +89,7 @@ object Target:
 
   /** Above the sea, of an altitude in one of the frames that are known. */
   private[autopilot] def heightOf(frame: Int, altitudeM: Double, home: GeoLocation): Option[Metres] =
-    import Numbers.Frame.*
+    import CommonDialect.Frame.*
     if frame == Global || frame == GlobalInt then Some(Metres(altitudeM))
     else if frame == RelativeAltitude || frame == RelativeAltitudeI then
       Some(Metres(home.altitude.value + altitudeM))
@@ -111,7 +111,7 @@ object Target:
       yaw: Float,
       yawRate: Float
   ): Either[String, Target.Move] =
-    import Numbers.Ignore
+    import CommonDialect.Ignore
     def asked(value: Double, bit: Int) = Option.when((mask & bit) == 0 && !value.isNaN)(value)
     val place                          = places.zip(Seq(Ignore.X, Ignore.Y, Ignore.Z)).map(asked)
     val velocity = speeds.map(_.toDouble).zip(Seq(Ignore.Vx, Ignore.Vy, Ignore.Vz)).map(asked)

@@ -132,8 +132,8 @@ object Telemetry:
         val body = turn.toBody(speed)
         Some(Odometry(
           bootUs,
-          frameId = Numbers.Frame.LocalNed,
-          childFrameId = Numbers.Frame.BodyFrd,
+          frameId = CommonDialect.Frame.LocalNed,
+          childFrameId = CommonDialect.Frame.BodyFrd,
           place.x.toFloat,
           place.y.toFloat,
           place.z.toFloat,
@@ -152,7 +152,7 @@ object Telemetry:
       case _ => None
 
   def heartbeat(autopilot: Status): Message =
-    import Numbers.ModeFlag.*
+    import CommonDialect.ModeFlag.*
     val guided = if autopilot.mode == FlightMode.Offboard then Guided else Automatic
     val armed  = if autopilot.isArmed then Armed else 0
     Heartbeat(

@@ -3,7 +3,7 @@ package skein.cli
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
 
-/** Where a command's main thread waits for what runs asynchronously. Nothing else in Skein blocks. */
+/** Where a command's main thread waits for what runs asynchronously. */
 private[cli] object Edge:
 
   def await[A](future: Future[A]): A = Await.result(future, Duration.Inf)

@@ -6,7 +6,7 @@ import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.scenario.PaperDuel
 import skein.settings.{FlySettings, TextFile, VehicleChoice}
-import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.signal.LatencyProfile
 import skein.units.Span
 import upickle.default.ReadWriter
 import upickle.implicits.key
@@ -67,32 +67,8 @@ object Conditions:
     LoopTimings
       .of(loop, settings, FlightAssembler.askTimeout)
       .toRight(
-        s"a search has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
+        s"forward simulation has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
       )
 
-  /** The round trips of a link, which forward simulation takes to be independent of one another. */
-  def roundTrips(link: String): Either[String, LatencyDistribution] =
-    profile(link).flatMap:
-      case LatencyProfile.Steady(_, roundTrip) =>
-        Either.cond(
-          roundTrip.quantile(1).toSeconds <= LongestRoundTripS,
-          roundTrip,
-          s"expected round trips of at most $LongestRoundTripS s, came $link with up to ${roundTrip.quantile(1).toSeconds} s"
-        )
-      case alternating: LatencyProfile.Alternating =>
-        Left(s"expected a link whose latency does not come in stretches, came ${alternating.name}")
-      case other => Left(notForward(other))
-
-  private def notForward(link: LatencyProfile) =
-    s"expected a link without rate and correlation, which forward simulation does not have, came ${link.name}"
-
-  /** Forward simulation keeps so much under way. */
-  val LongestRoundTripS = 2.0
-
-  def delays(link: String): Either[String, Delays] = profile(link).flatMap:
-    case steady: LatencyProfile.Steady           => roundTrips(link).map(_ => LinkDelays.of(steady))
-    case alternating: LatencyProfile.Alternating => Right(LinkDelays.of(alternating))
-    case other                                   => Left(notForward(other))
-
-  private def profile(link: String): Either[String, LatencyProfile] =
-    LatencyProfile.parse(link, TextFile.read).left.map(_.message)
+  def delays(link: String): Either[String, Delays] =
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)

@@ -2,6 +2,7 @@ package skein.budget
 
 import scala.concurrent.duration.*
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
+import skein.plot.Shape
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
@@ -96,4 +97,5 @@ class BudgetSuite extends munit.FunSuite:
     val json = ujson.read(BudgetMap.json(Vector(map)))(0)
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
-    assert(BudgetFigure(Vector(map)).shapes.nonEmpty)
+    val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Shape.Text => text.content }
+    assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)

@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.optimise.{Evaluator, RunningStats}
+import skein.plot.Shape
 import skein.policy.{Axis, SearchSpace}
 
 class LandscapeSuite extends munit.FunSuite:
@@ -33,4 +34,5 @@ class LandscapeSuite extends munit.FunSuite:
     assertEquals(land.y, None)
     assertEqualsDouble(land.cells.head.map(_.mean).min, 0, 1e-12)
     val drawing = LandscapeFigure(land, "title", "value")
-    assert(drawing.shapes.nonEmpty)
+    val texts   = drawing.shapes.collect { case text: Shape.Text => text.content }
+    assert(texts.contains("title") && texts.contains("x") && texts.contains("value"), texts)

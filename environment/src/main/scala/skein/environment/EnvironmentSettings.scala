@@ -86,10 +86,7 @@ final case class EnvironmentSettings(
     yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
 
   private def delaysOf(link: String): Either[String, Delays] =
-    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap:
-      case steady: LatencyProfile.Steady           => Right(LinkDelays.of(steady))
-      case alternating: LatencyProfile.Alternating => Right(LinkDelays.of(alternating))
-      case other => Left(s"expected a link that forward simulation flies, came ${other.name}")
+    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)
 
   private def opponentFile(roles: Vector[Role]): Either[String, Option[PolicyFile]] =
     if opponent.isEmpty then Right(None)

@@ -4,8 +4,8 @@ import java.io.IOException
 import java.net.UnixDomainSocketAddress
 import java.nio.ByteBuffer
 import java.nio.channels.{SelectionKey, Selector, SocketChannel}
-import scala.concurrent.{blocking, Await, Future, TimeoutException}
-import scala.util.{Failure, Success, Try}
+import java.util.concurrent.TimeUnit.NANOSECONDS
+import java.util.concurrent.{ExecutionException, FutureTask, TimeoutException}
 import skein.policy.*
 import skein.units.{Clock, Instant, Span}
 
@@ -68,12 +68,12 @@ object OutsidePolicy:
 
   /** To connect blocks for as long as the other side's line of those who wait is full. */
   private def connected(path: String, within: Span): Either[String, Connection] =
-    val connecting =
-      Future(blocking(Connection(path, within)))(using scala.concurrent.ExecutionContext.global)
-    Try(Await.result(connecting, within.toDuration)) match
-      case Success(connection)          => Right(connection)
-      case Failure(_: TimeoutException) => Left(s"it accepts nobody within ${within.toMillis.round} ms")
-      case Failure(reason)              => Left(reason.getMessage)
+    val connecting = FutureTask(() => Connection(path, within))
+    Thread.ofPlatform.daemon.name("connect").start(connecting): Unit
+    try Right(connecting.get(within.toNanos, NANOSECONDS))
+    catch
+      case _: TimeoutException        => Left(s"it accepts nobody within ${within.toMillis.round} ms")
+      case failed: ExecutionException => Left(failed.getCause.getMessage)
 
   /** Whether another process decides. */
   def decides(file: PolicyFile): Boolean = file.family.name == Name

@@ -7,7 +7,7 @@ import skein.units.Instant
 /** What a decision is made from: a reading of each vehicle, and the headings sent to them until then. Mutable.
   *
   * @see
-  *   `skein.loop.View`, which the live loops hold
+  *   `skein.loop.TeamView`, which the live loops hold
   */
 private[skein] final class DuelObservation(count: Int) extends Grounds:
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)

@@ -14,9 +14,6 @@ final class DelayTable private (val delaysS: Array[Float]) extends Delays:
   private val delaysNs =
     delaysS.map(s => math.round(Span.ofSeconds(s).toNanos.toDouble / DelayTable.GrainNs) * DelayTable.GrainNs)
 
-  /** The delay that these random bits choose, s. */
-  def delayS(bits: Int): Float = delaysS(bits >>> DelayTable.Drop)
-
   def maxS: Float = delaysS.last
 
   /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight seconds. */

@@ -1,10 +1,37 @@
 package skein.forward
 
-import skein.signal.LatencyProfile
+import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 
 /** The delays of links that are told by a profile. */
 object LinkDelays:
+
+  /** So much is kept under way, s. */
+  val LongestRoundTripS = 2.0
+
+  /** The delays of a link that forward simulation can fly.
+    *
+    * @return
+    *   or what was expected and came
+    */
+  def checked(link: LatencyProfile): Either[String, Delays] = link match
+    case steady: LatencyProfile.Steady           => bounded(steady, steady.roundTrip)
+    case alternating: LatencyProfile.Alternating => bounded(alternating, alternating.busy, alternating.quiet)
+    case other                                   =>
+      Left(
+        s"expected a link without rate and correlation, which forward simulation does not have, came ${other.name}"
+      )
+
+  private def bounded(
+      link: LatencyProfile.Steady | LatencyProfile.Alternating,
+      roundTrips: LatencyDistribution*
+  ): Either[String, Delays] =
+    val longestS = roundTrips.map(_.quantile(1).toSeconds).max
+    Either.cond(
+      longestS <= LongestRoundTripS,
+      of(link),
+      s"expected round trips of at most $LongestRoundTripS s, came ${link.name} with up to $longestS s"
+    )
 
   /** The delays of a link: half of a sampled round trip each. */
   def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): Delays = profile match

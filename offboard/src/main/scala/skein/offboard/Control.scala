@@ -1,6 +1,7 @@
 package skein.offboard
 
 import skein.mavlink.*
+import skein.mavlink.CommonDialect.{Command, ModeFlag, NoAutopilot, Result, Severity}
 import skein.policy.Action
 import skein.port.VehicleError
 import skein.signal.{Kinematics, Stamped}
@@ -89,7 +90,7 @@ final case class Control(
       action match
         case Action.Hover => hover(token, now)
         case Action.Land  =>
-          givenUp(order(token, Land, now, Vector.fill(7)(Float.NaN)))
+          givenUp(order(token, Command.Land, now, Vector.fill(7)(Float.NaN)))
         case _ =>
           val next = copy(
             asked = asked :+ Asked(token, lastSync.max(now), now + lasts, replacedAt = None),
@@ -97,12 +98,12 @@ final case class Control(
             until = now + lasts
           ).replacing(now)
           val entering =
-            if mode == OffboardMode || orders.exists(_.isOffboard) then Step(next)
-            else next.order(Silent, SetMode, now, modeNumbers(6, 0))
+            if mode == Offboard || orders.exists(_.isOffboard) then Step(next)
+            else next.order(Silent, Command.SetMode, now, modeNumbers(FlightMode.Offboard))
           entering.andThen(_.send(now))
 
   def hover(token: Long, now: Instant): Step =
-    givenUp(order(token, SetMode, now, modeNumbers(4, 3)))
+    givenUp(order(token, Command.SetMode, now, modeNumbers(FlightMode.Hold)))
 
   /** Does nothing more by itself; actions under way end as replaced. */
   private def givenUp(step: Step): Step =
@@ -182,15 +183,15 @@ final case class Control(
 
   private def taken(message: Message, now: Instant): Step = message match
     case Heartbeat(_, autopilot, base, custom, _, _) if autopilot != NoAutopilot =>
-      Step(copy(mode = custom, isArmed = (base & Armed) != 0))
+      Step(copy(mode = custom, isArmed = (base & ModeFlag.Armed) != 0))
     case ExtendedSysState(_, landed)       => Step(copy(isOnGround = landed == 1))
     case GpsGlobalOrigin(lat, lon, alt, _) =>
       Step(copy(origin = Some(GeoLocation(lat * 1e-7, lon * 1e-7, Metres(alt / 1000.0)))))
     case Timesync(theirs, ours, _, _) if theirs != 0 =>
       received(Instant.ofNanos(ours), Instant.ofNanos(theirs), now)
-    case CommandAck(command, result, _, _, _, _)                 => acknowledged(command, result, now)
-    case Statustext(severity, text, _, _) if severity <= Warning => explained(text)
-    case sample                                                  =>
+    case CommandAck(command, result, _, _, _, _) => acknowledged(command, result, now)
+    case Statustext(severity, text, _, _) if severity <= Severity.Warning => explained(text)
+    case sample                                                           =>
       val (told, isNew) = estimate.heard(sample)
       val next          = copy(estimate = told)
       if !isNew then Step(next) else next.sampled(now)
@@ -222,19 +223,19 @@ final case class Control(
     val why = s"$name has left the geofence: ${awayM.fixed(0)} m away, ${upM.fixed(0)} m up"
     val out = copy(isOut = true, flown = None, asked = Vector.empty)
     Step(out, answers = asked.map(_.token -> Left(VehicleError.Refused(why))))
-      .andThen(_.order(Silent, SetMode, now, modeNumbers(4, 3)))
+      .andThen(_.order(Silent, Command.SetMode, now, modeNumbers(FlightMode.Hold)))
 
   private def acknowledged(command: Int, result: Int, now: Instant): Step =
     orders.find(_.command == command) match
       case None                     => Step(this)
       case Some(one) if result == 0 =>
-        val entered = if command == SetMode then modeOf(one.numbers) else mode
-        val armed   = if command == Arm then one.numbers(0) == 1 else isArmed
+        val entered = if command == Command.SetMode then modeOf(one.numbers) else mode
+        val armed   = if command == Command.Arm then one.numbers(0) == 1 else isArmed
         Step(
           copy(orders = orders.filter(_ ne one), mode = entered, isArmed = armed),
           answers = Vector(one.token -> Right(true))
         )
-      case Some(_) if result == InProgress => Step(this)
+      case Some(_) if result == Result.InProgress => Step(this)
       // Setpoints may not have come yet.
       case Some(one) if one.isOffboard && one.tries < MostTries => Step(this)
       case Some(one)                                            =>
@@ -309,7 +310,7 @@ object Control:
       sendAt: Instant,
       refusal: Option[(Int, Instant)]
   ):
-    private[offboard] def isOffboard: Boolean = command == SetMode && modeOf(numbers) == OffboardMode
+    private[offboard] def isOffboard: Boolean = command == Command.SetMode && modeOf(numbers) == Offboard
 
     private[offboard] def message(system: Int): Message = CommandLong(
       system,
@@ -339,31 +340,20 @@ object Control:
   /** Of an asker that needs no answer. */
   private[offboard] val Silent = -1L
 
-  private[offboard] val Takeoff = 22
-  private[offboard] val Land    = 21
-  private[offboard] val SetMode = 176
-  private[offboard] val Arm     = 400
-
-  private val NoAutopilot = 8
-  private val Armed       = 128
-  private val Warning     = 4
-  private val InProgress  = 5
-
   /** What a vehicle does whose action's time is over. */
   private val Stay = Action.Velocity(Vector3.Zero)
 
-  private def numberOf(main: Int, sub: Int): Long = main.toLong << 16 | sub.toLong << 24
-
-  private[offboard] val OffboardMode = numberOf(6, 0)
+  private val Offboard = FlightMode.Offboard.customMode
 
   /** Modes out of which it is taken into offboard: that itself, and PX4's automatic takeoff and hold. Whoever puts it into
     * another one, a pilot or a failsafe, has it.
     */
-  private val Flyable = Set(OffboardMode, numberOf(4, 2), numberOf(4, 3))
+  private val Flyable = Set(Offboard, FlightMode.Takeoff.customMode, FlightMode.Hold.customMode)
 
-  private def modeNumbers(main: Int, sub: Int): Vector[Float] =
-    Vector(1f, main.toFloat, sub.toFloat, 0f, 0f, 0f, 0f)
+  private def modeNumbers(mode: FlightMode): Vector[Float] =
+    Vector(ModeFlag.Custom.toFloat, mode.main.toFloat, mode.sub.toFloat, 0f, 0f, 0f, 0f)
 
-  private def modeOf(numbers: Vector[Float]): Long = numberOf(numbers(1).toInt, numbers(2).toInt)
+  private def modeOf(numbers: Vector[Float]): Long =
+    FlightMode.customMode(numbers(1).toInt, numbers(2).toInt)
 
   private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

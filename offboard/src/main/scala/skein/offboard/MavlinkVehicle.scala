@@ -2,6 +2,8 @@ package skein.offboard
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
+import skein.mavlink.CommonDialect
+import skein.mavlink.CommonDialect.Command
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
@@ -28,14 +30,14 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def hover(): Future[Either[VehicleError, Boolean]] =
     done((control, token, now) => control.hover(token, now))
 
-  def arm(): Future[Either[VehicleError, Boolean]] = order(Control.Arm, 1)
+  def arm(): Future[Either[VehicleError, Boolean]] = order(Command.Arm, 1)
 
   /** Stops the motors at once, wherever it is. */
-  def kill(): Future[Either[VehicleError, Boolean]] = order(Control.Arm, 0, 21196)
+  def kill(): Future[Either[VehicleError, Boolean]] = order(Command.Arm, 0, CommonDialect.Force.toFloat)
 
   /** To the autopilot's own height; answers when it begins. */
   def takeoff(): Future[Either[VehicleError, Boolean]] =
-    order(Control.Takeoff, Vector.fill(7)(Float.NaN)*)
+    order(Command.Takeoff, Vector.fill(7)(Float.NaN)*)
 
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround

@@ -100,7 +100,8 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(denied.next.heard(CommandAck(176, 0), at(260)).next.mode, offboard)
 
   test("a refusal comes with the autopilot's own text"):
-    val asked  = known(hold, armed = false).order(3, Control.Arm, at(100), Vector(1, 0, 0, 0, 0, 0, 0))
+    val asked =
+      known(hold, armed = false).order(3, CommonDialect.Command.Arm, at(100), Vector(1, 0, 0, 0, 0, 0, 0))
     val denied = asked.next.heard(CommandAck(400, 1), at(130))
     assertEquals(denied.answers, Vector.empty)
     assertEquals(
@@ -118,7 +119,7 @@ class ControlSuite extends munit.FunSuite:
       assert(step.messages.isEmpty && step.answers.exists(_._2.left.exists(_.isCertain)), step.toString)
 
   test("a command without an answer is sent eight times, then given up"):
-    val begun          = known().order(3, Control.Arm, at(100), Vector.fill(7)(1f))
+    val begun          = known().order(3, CommonDialect.Command.Arm, at(100), Vector.fill(7)(1f))
     val (_, sent, got) =
       (1 to 110).foldLeft((begun.next, begun.messages.size, begun.answers)): (before, tick) =>
         val step = before._1.passed(at(100 + 10 * tick))

@@ -2,7 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.autopilot.*
-import skein.mavlink.Message
+import skein.mavlink.{CommonDialect, Message}
 import skein.units.*
 import skein.vehicle.Setpoint
 
@@ -43,7 +43,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
       one <- autopilots
       if peer.systems.contains(
         one.system
-      ) && (system == 0 || system == one.system) && component <= Numbers.Autopilot1
+      ) && (system == 0 || system == one.system) && component <= CommonDialect.Autopilot1
     do one.hear(frame.message, (system = frame.system, component = frame.component), peer)
 
   /** What is due for each peer, in datagrams. */

@@ -102,8 +102,14 @@ class ProtocolLaws extends munit.FunSuite:
       "\\u",
       "e9"
     )
+    var refused = 0
     for _ <- 0 until 60_000 do
       val bytes = random.nextBytes(random.nextInt(40))
-      Protocol.read(ByteString(bytes)): Unit
-      Protocol.read(String(bytes, "ISO-8859-1")): Unit
-      Protocol.read(Seq.fill(random.nextInt(12))(words(random.nextInt(words.size))).mkString): Unit
+      val came  = Seq(
+        Protocol.read(ByteString(bytes)),
+        Protocol.read(String(bytes, "ISO-8859-1")),
+        Protocol.read(Seq.fill(random.nextInt(12))(words(random.nextInt(words.size))).mkString)
+      ).flatMap(_.left.toOption)
+      for reason <- came do assert(reason.nonEmpty && reason.length < 500, reason)
+      refused += came.size
+    assert(refused > 100_000, refused)

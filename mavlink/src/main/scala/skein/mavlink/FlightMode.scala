@@ -1,4 +1,4 @@
-package skein.autopilot
+package skein.mavlink
 
 /** What an autopilot does by itself, with PX4's numbers of its main and sub modes (`px4_custom_mode.h`). */
 enum FlightMode(val main: Int, val sub: Int, val title: String):
@@ -10,9 +10,11 @@ enum FlightMode(val main: Int, val sub: Int, val title: String):
   case Offboard extends FlightMode(6, 0, "Offboard")
 
   /** As a heartbeat tells it. */
-  def customMode: Long = main.toLong << 16 | sub.toLong << 24
+  def customMode: Long = FlightMode.customMode(main, sub)
 
 object FlightMode:
+  def customMode(main: Int, sub: Int): Long = main.toLong << 16 | sub.toLong << 24
+
   def of(main: Int, sub: Int): Option[FlightMode] =
     values.find(mode => mode.main == main && (mode.sub == sub || main == Offboard.main))
 

@@ -16,7 +16,7 @@ import skein.units.*
 import upack.Msg
 
 /** The way into a running channel; from any thread. */
-private[rpc] trait LaneInput:
+private[rpc] trait ChannelInput:
   def submit(call: Call): Unit
 
   /** Ends a call that was submitted, unless it has ended. */
@@ -29,10 +29,10 @@ private[rpc] trait LaneInput:
   *
   * '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
   * '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its window.
-  * '''Completes when''' closed through its [[LaneInput]].
+  * '''Completes when''' closed through its [[ChannelInput]].
   * '''Cancels when''' never.
   */
-private[rpc] final class LaneStage(
+private[rpc] final class ChannelStage(
     channel: Channel,
     transport: Transport,
     address: Address,
@@ -42,15 +42,15 @@ private[rpc] final class LaneStage(
     counters: RpcCounters,
     holdings: Holdings,
     observe: RpcEvent => Unit
-) extends GraphStageWithMaterializedValue[ClosedShape, LaneInput]:
+) extends GraphStageWithMaterializedValue[ClosedShape, ChannelInput]:
 
   override val shape: ClosedShape = ClosedShape
 
-  override def createLogicAndMaterializedValue(inherited: Attributes): (GraphStageLogic, LaneInput) =
+  override def createLogicAndMaterializedValue(inherited: Attributes): (GraphStageLogic, ChannelInput) =
     val logic = Logic()
     (logic, logic)
 
-  private final class Logic extends TimerGraphStageLogic(shape) with LaneInput with ChannelEffects:
+  private final class Logic extends TimerGraphStageLogic(shape) with ChannelInput with ChannelEffects:
     private val random = Random(seed)
     private val state  = ChannelState(channel, address, settings, counters, () => random.nextDouble(), this)
     private val connections = Array.tabulate(settings.connections(channel))(Connection(_))
@@ -107,7 +107,7 @@ private[rpc] final class LaneStage(
     def reconnect(connection: Int, after: Span): Unit =
       scheduleOnce(connections(connection), after.toDuration)
 
-    def observe(event: RpcEvent): Unit = LaneStage.this.observe(event)
+    def observe(event: RpcEvent): Unit = ChannelStage.this.observe(event)
 
     // On the stage's thread
 
@@ -184,7 +184,7 @@ private[rpc] final class LaneStage(
       def flush(): Unit =
         for target <- attempt if toWrite.nonEmpty && target.accepts do
           val now = clock.now()
-          while toWrite.nonEmpty && writer.length < LaneStage.LargestWrite do
+          while toWrite.nonEmpty && writer.length < ChannelStage.LargestWrite do
             val call = toWrite.removeHead()
             if !call.ended then
               writer.request(call.id, call.method, call.params)
@@ -317,6 +317,6 @@ private[rpc] final class LaneStage(
 
   private case object Deadline
 
-private object LaneStage:
+private object ChannelStage:
   /** Bytes after which a write stops taking further calls along. */
   private val LargestWrite = 128 << 10

@@ -1,9 +1,12 @@
-package skein.autopilot
+package skein.mavlink
 
-/** Numbers of the common dialect (mavlink.io, `common.xml`) that more than one file needs. */
-object Numbers:
+/** Numbers of the common dialect (mavlink.io, `common.xml`). */
+object CommonDialect:
   /** The autopilot's own component. */
   val Autopilot1 = 1
+
+  /** The kind of autopilot in a heartbeat of what is none. */
+  val NoAutopilot = 8
 
   object Command:
     val Waypoint            = 16
@@ -20,7 +23,6 @@ object Numbers:
     val StartMission        = 300
     val Arm                 = 400
     val GetHome             = 410
-    val GetMessageInterval  = 510
     val SetMessageInterval  = 511
     val RequestMessage      = 512
     val RequestCapabilities = 520
@@ -31,6 +33,7 @@ object Numbers:
     val Denied      = 2
     val Unsupported = 3
     val Failed      = 4
+    val InProgress  = 5
 
   object Frame:
     val Global            = 0
@@ -72,4 +75,3 @@ object Numbers:
     val YawRate  = 2048
     val Position = X | Y | Z
     val Velocity = Vx | Vy | Vz
-    val Accel    = 64 | 128 | 256

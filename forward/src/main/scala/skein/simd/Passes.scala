@@ -1,0 +1,114 @@
+package skein.simd
+
+import scala.collection.mutable
+import skein.formula.{Node, Op, Trace}
+
+/** One loop over the worlds.
+  *
+  * @param computes
+  *   in this order
+  * @param loads
+  *   from scratch, by place
+  * @param stores
+  *   to scratch
+  * @param outputs
+  *   by the output's number
+  */
+private final case class Pass(
+    computes: Vector[Node],
+    loads: Map[Node, Int],
+    stores: Vector[(Node, Int)],
+    outputs: Vector[(Node, Int)]
+)
+
+/** Cuts a long expression into passes. */
+private object Passes:
+  // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every round.
+
+  /** Vector operations that one pass takes at most. */
+  private val Most = 50
+
+  /** Constants that one pass takes at most, of 32 registers. */
+  private val MostConstants = 20
+
+  def of(outputs: Vector[Node]): Vector[Pass] =
+    val order = Trace.needed(outputs)
+    val fused = order.iterator
+      .filter(_.op == Op.Add)
+      .flatMap(sum => Passes.factor(sum))
+      .toSet
+    val usedPlainly = order.iterator
+      .flatMap(node => node.args.filterNot(arg => Passes.factor(node).contains(arg)))
+      .toSet ++ outputs
+    val computed  = order.filterNot(node => node.op == Op.Mul && fused(node) && !usedPlainly(node))
+    val passOf    = mutable.HashMap.empty[Node, Int]
+    var number    = 0
+    var size      = 0
+    var constants = Set.empty[Any]
+    for node <- computed do
+      val more = constants ++ LaneCosts.constantsOf(node)
+      if size > 0 && (size + LaneCosts.of(node) > Most || more.size > MostConstants) then
+        number += 1
+        size = 0
+        constants = LaneCosts.constantsOf(node)
+      else constants = more
+      size += LaneCosts.of(node)
+      passOf(node) = number
+    def argsOf(node: Node): Vector[Node] =
+      node.args.flatMap(arg => if passOf.contains(arg) then Vector(arg) else arg.args)
+    val places             = mutable.LinkedHashMap.empty[Node, Int]
+    def isLeaf(node: Node) = node.op match
+      case Op.Const | Op.Input | Op.Param | Op.Always => true
+      case _                                          => false
+    val needs = Vector.tabulate(number + 1): pass =>
+      computed.filter(passOf(_) == pass).flatMap(argsOf).distinct.filter(arg =>
+        !isLeaf(arg) && passOf(arg) < pass
+      )
+    // Conditions are computed again where another pass needs them: a mask is not laid by.
+    def numbersOf(node: Node): Vector[Node] =
+      if node.op.isCondition then argsOf(node).flatMap(numbersOf) else Vector(node)
+    val numbers = needs.map(_.flatMap(numbersOf).distinct)
+    for node <- numbers.flatten if !isLeaf(node) do places.getOrElseUpdate(node, places.size): Unit
+    def conditionsOf(node: Node): Vector[Node] =
+      if node.op.isCondition then node.args.flatMap(conditionsOf) :+ node else Vector.empty
+    Vector.tabulate(number + 1): pass =>
+      val own    = computed.filter(passOf(_) == pass)
+      val again  = needs(pass).flatMap(conditionsOf).distinct
+      val loaded = numbers(pass).filter(node => !isLeaf(node) && passOf(node) < pass)
+      Pass(
+        again ++ own,
+        loaded.map(node => node -> places(node)).toMap,
+        places.toVector.filter((node, _) => passOf(node) == pass),
+        outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
+      )
+
+  /** The product that a sum is fused with. */
+  def factor(sum: Node): Option[Node] =
+    if sum.op == Op.Add then sum.args.find(_.op == Op.Mul) else None
+
+/** What an operation costs by lanes. */
+private object LaneCosts:
+  /** About so many vector operations. */
+  def of(node: Node): Int = node.op match
+    case Op.Sin | Op.Cos                   => 16
+    case Op.Atan2 | Op.Atan                => 26
+    case Op.Exp                            => 16
+    case Op.Tanh                           => 19
+    case Op.Asin | Op.Acos                 => 14
+    case Op.Hypot                          => 3
+    case Op.Remainder | Op.Floor | Op.Ceil => 4
+    case Op.Signum                         => 4
+    case _                                 => 1
+
+  /** What must stand in a register for it. */
+  def constantsOf(node: Node): Set[Any] =
+    def named(op: Op, count: Int) = Set.tabulate[Any](count)(i => (op, i))
+    val own                       = node.op match
+      case Op.Sin | Op.Cos              => named(Op.Sin, 15)
+      case Op.Atan2 | Op.Atan           => named(Op.Atan2, 11)
+      case Op.Exp | Op.Tanh             => named(Op.Exp, 12)
+      case Op.Asin | Op.Acos            => named(Op.Acos, 9)
+      case Op.Remainder                 => named(Op.Remainder, 3)
+      case Op.Floor | Op.Ceil | Op.Rint => named(Op.Remainder, 1)
+      case _                            => Set.empty
+    own ++ node.args.filter(_.isConst).map(_.value)
