@@ -50,13 +50,13 @@ private[skein] final class DuelObservation(count: Int) extends Grounds:
       sent(vehicle) = controllers(vehicle).sentHeading
       sentDecision(vehicle) = controllers(vehicle).sentDecision
 
-/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest sight, at
+/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest observation, at
   * least an interval after the last, whenever a command may be sent.
   *
   * @param intervalNs
   *   between two decisions, or between two commands if it `decidesFirst`
   * @param decidesFirst
-  *   decides at every sight; then what waits is the decision
+  *   decides at every observation; then what waits is the decision
   */
 private[skein] final class Controller(
     world: DuelWorld,
@@ -118,10 +118,10 @@ private[skein] final class Controller(
     made = 0; unused = 0; turned = 0
     goOn()
 
-  def offer(sight: DuelObservation): Unit =
+  def offer(observation: DuelObservation): Unit =
     if holds then unused += 1
     holds = true
-    held.copyFrom(sight)
+    held.copyFrom(observation)
     if decidesFirst then decide(held)
     goOn()
 
@@ -150,54 +150,65 @@ private[skein] final class Controller(
   /** And how fast it is to fly, m/s. */
   def decidedSpeed: Double = speed
 
-  def decide(sight: DuelObservation): Unit =
+  def decide(observation: DuelObservation): Unit =
     val now     = world.nowNs
     val elapsed = if lastDecidedAt == Controller.Never then 0.0 else (now - lastDecidedAt) * 1e-9
     val before  = decided
-    for forecast <- sight.forecast do ahead(sight, forecast)
+    for forecast <- observation.forecast do ahead(observation, forecast)
     policy match
-      case duel: Policy     => decided = heading(duel, sight, elapsed)
+      case duel: Policy     => decided = heading(duel, observation, elapsed)
       case team: TeamPolicy =>
-        val course = team.course(seen(sight, elapsed))
+        val course = team.course(seen(observation, elapsed))
         decided = course.headingRad
         speed = course.speedMps
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
     made += 1
-    world.decided(agent, elapsed, sight)
+    world.decided(agent, elapsed, observation)
 
-  private def heading(policy: Policy, sight: DuelObservation, elapsedS: Double): Double =
-    upon = sight
-    val other      = world.assignment.opponentOf(agent, distance)
-    val (dx, dy)   = (sight.x(other) - sight.x(agent), sight.y(other) - sight.y(agent))
-    val (dvx, dvy) = (sight.vx(other) - sight.vx(agent), sight.vy(other) - sight.vy(agent))
+  private def heading(policy: Policy, observation: DuelObservation, elapsedS: Double): Double =
+    upon = observation
+    val other    = world.assignment.opponentOf(agent, distance)
+    val (dx, dy) = (observation.x(other) - observation.x(agent), observation.y(other) - observation.y(agent))
+    val (dvx, dvy) =
+      (observation.vx(other) - observation.vx(agent), observation.vy(other) - observation.vy(agent))
     policy match
       case observing: ObservingPolicy[?] =>
-        def ageS(vehicle: Int) = (world.nowNs - sight.validAtNs(vehicle)) * 1e-9
+        def ageS(vehicle: Int) = (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
         val seen               =
-          PlanarObservation(dx, dy, dvx, dvy, decided, sight.sent(other), elapsedS, ageS(agent), ageS(other))
+          PlanarObservation(
+            dx,
+            dy,
+            dvx,
+            dvy,
+            decided,
+            observation.sent(other),
+            elapsedS,
+            ageS(agent),
+            ageS(other)
+          )
         val answer = ObservingPolicy.decide(observing, seen, memory)
         memory = answer.memory
         answer.headingRad
-      case _ => policy.heading(dx, dy, dvx, dvy, decided, sight.sent(other), elapsedS)
+      case _ => policy.heading(dx, dy, dvx, dvy, decided, observation.sent(other), elapsedS)
 
-  private def seen(sight: DuelObservation, elapsedS: Double): TeamObservation = TeamObservation(
+  private def seen(observation: DuelObservation, elapsedS: Double): TeamObservation = TeamObservation(
     agent,
-    IArray.from(sight.x),
-    IArray.from(sight.y),
-    IArray.from(sight.vx),
-    IArray.from(sight.vy),
+    IArray.from(observation.x),
+    IArray.from(observation.y),
+    IArray.from(observation.vx),
+    IArray.from(observation.vy),
     decided,
     elapsedS
   )
 
   /** Puts where the vehicles will be in the place of where they were read. */
-  private def ahead(sight: DuelObservation, forecast: Forecast): Unit =
+  private def ahead(observation: DuelObservation, forecast: Forecast): Unit =
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
     for vehicle <- 0 until world.count do
       val kinematics = estimates(vehicle).kinematics
-      sight.x(vehicle) = kinematics.positionNed.x; sight.y(vehicle) = kinematics.positionNed.y
-      sight.vx(vehicle) = kinematics.velocityNed.x; sight.vy(vehicle) = kinematics.velocityNed.y
+      observation.x(vehicle) = kinematics.positionNed.x; observation.y(vehicle) = kinematics.positionNed.y
+      observation.vx(vehicle) = kinematics.velocityNed.x; observation.vy(vehicle) = kinematics.velocityNed.y
 
   /** Notes that a decision was sent without any message. */
   def sentNow(): Unit =

@@ -27,7 +27,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
 /** [[LoopTiming.Paused]]. */
 private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val sight                  = DuelObservation(world.count)
+  private val observation            = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, Steering(), 0, decidesFirst = true, this))
 
@@ -35,10 +35,10 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld
 
   def tick(vehicle: Int, number: Int): Unit =
     for vehicle <- world.vehicles.indices do
-      sight.take(world, vehicle, world.readNow(vehicle, number))
-    sight.takeSent(controllers)
+      observation.take(world, vehicle, world.readNow(vehicle, number))
+    observation.takeSent(controllers)
     for agent <- world.vehicles.indices do
-      controllers(agent).decide(sight)
+      controllers(agent).decide(observation)
       controllers(agent).sentNow()
       world.commandNow(agent, controllers(agent).decidedHeading, controllers(agent).decidedSpeed)
     world.schedule((number + 1) * periodNs, DuelWorld.Tick, 0, number + 1)
@@ -49,7 +49,7 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, world: DuelWorld
 /** [[LoopTiming.Sequential]]. */
 private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
-  private val sight                  = DuelObservation(world.count)
+  private val observation            = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -60,12 +60,12 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: D
 
   def answered(vehicle: Int, question: Int): Unit =
     val step = world.stepOf(vehicle, question)
-    sight.take(world, vehicle, question)
+    observation.take(world, vehicle, question)
     if vehicle + 1 < world.count then
       val _ = world.ask(0, vehicle + 1, step)
     else
-      sight.takeSent(controllers)
-      for controller <- controllers do controller.offer(sight)
+      observation.takeSent(controllers)
+      for controller <- controllers do controller.offer(observation)
       goOn(step)
 
   def timedOut(vehicle: Int, question: Int): Unit = goOn(world.stepOf(vehicle, question))
@@ -76,7 +76,7 @@ private[skein] final class SequentialRun(timing: LoopTiming.Sequential, world: D
 private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWorld) extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
   private val most                   = world.count * timing.asking.window
-  private val sight                  = DuelObservation(world.count)
+  private val observation            = DuelObservation(world.count)
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
@@ -117,11 +117,11 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, world: DuelWor
       var read = vehicle
       var its  = question
       while read >= 0 do
-        sight.take(world, read, its)
+        observation.take(world, read, its)
         its = before(world.slot(read, its))
         read -= 1
-      sight.takeSent(controllers)
-      controllers(agent).offer(sight)
+      observation.takeSent(controllers)
+      controllers(agent).offer(observation)
       ended()
 
   def timedOut(vehicle: Int, question: Int): Unit = ended()
