@@ -29,6 +29,9 @@ object RecordedPlan:
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
 
+  /** Where it was decided, if not by the flight's own process. */
+  val Solver = "solver"
+
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
 
@@ -53,12 +56,13 @@ object RecordedPlan:
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ settings.deadline.toSeq.flatMap(deadline =>
-      Seq(
-        Parameter(DeadlineNs, deadline.toNanos.toString),
-        Parameter(Replay.Fallback, settings.fallback.label)
-      )
-    ) ++
+    ) ++ plan.solver.toSeq.map(choice => Parameter(Solver, choice.text)) ++
+      settings.deadlineOf(plan).toSeq.flatMap(deadline =>
+        Seq(
+          Parameter(DeadlineNs, deadline.toNanos.toString),
+          Parameter(Replay.Fallback, settings.fallback.label)
+        )
+      ) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
           Parameter(PolicyName, chosen.name),
@@ -90,7 +94,8 @@ object RecordedPlan:
       older    <- optional(Model, "a model's name or five numbers")(PredictionModel.recordedAsModel)
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
-      fallback <- optional(Replay.Fallback, "hold, repeat or a policy")(Fallback.parse(_).toOption)
+      fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
+      solver   <- optional(Solver, "where a solver is")(SolverChoice.parse(_).toOption)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
@@ -118,7 +123,7 @@ object RecordedPlan:
         fallback = fallback.getOrElse(settings.fallback),
         scene = Some(scene)
       ),
-      FlightPlan(flight.id, loop, link, flight.seed, policy)
+      FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
     )
 
   /** Versions' parameters belong to the last that was new before a decision. */
