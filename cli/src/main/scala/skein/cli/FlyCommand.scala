@@ -71,6 +71,12 @@ final class FlyCommand(using Scenarios)
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
+      _ <- if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
+      _ <- Either.cond(
+        settings.solver.isEmpty || learning.isEmpty,
+        (),
+        "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
+      )
       _     <- Either.cond(
         clock == ClockKind.Real || !options.view.view.value,
         (),
@@ -162,7 +168,8 @@ final class FlyCommand(using Scenarios)
       settings,
       simulator,
       tell = tell,
-      calledOff = requests.calledOff
+      calledOff = requests.calledOff,
+      solvers = SolverOptions.reached
     )
     try
       if simulator.isEmpty then
@@ -250,7 +257,7 @@ final class FlyCommand(using Scenarios)
       count: Int,
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
+    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(SolverOptions.twins(_, count))
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
       val seeds = twins.map(_.seed)

@@ -2,7 +2,7 @@ package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, News}
-import skein.measure.RecordedScenario
+import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
 import skein.record.{Event, EventKind, Parameter, Record, Recording}
 import skein.scenario.Scenarios
@@ -29,8 +29,6 @@ object RecordedPlan:
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
 
-  /** Where it was decided, if not by the flight's own process. */
-  val Solver = "solver"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -56,7 +54,7 @@ object RecordedPlan:
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ plan.solver.toSeq.map(choice => Parameter(Solver, choice.text)) ++
+    ) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
       settings.deadlineOf(plan).toSeq.flatMap(deadline =>
         Seq(
           Parameter(DeadlineNs, deadline.toNanos.toString),
@@ -95,7 +93,7 @@ object RecordedPlan:
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
-      solver   <- optional(Solver, "where a solver is")(SolverChoice.parse(_).toOption)
+      solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)

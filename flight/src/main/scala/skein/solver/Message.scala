@@ -59,12 +59,12 @@ object Briefing:
     agents(plan.fleet(settings))
   )
 
-  /** Who flies, by the scenarios and policies of this program.
+  /** What is flown, by the scenarios and policies of this program.
     *
     * @return
     *   or what of it is not known here
     */
-  def fleet(briefing: Briefing)(using Scenarios): Either[String, Fleet] =
+  def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
     val flight = Flight(
       "solver",
       briefing.loop,
@@ -79,7 +79,7 @@ object Briefing:
       Instant.Epoch
     )
     val parameters = briefing.parameters.map((name, value) => Parameter(name, value))
-    RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters))).map(_.fleet)
+    RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters)))
 
   /** A line for each vehicle, without what two processes write differently. */
   def agents(fleet: Fleet): Vector[String] = fleet.agents.map: agent =>

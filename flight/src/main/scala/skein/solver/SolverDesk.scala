@@ -37,6 +37,7 @@ final class SolverDesk(
 
   private val lock     = Object()
   private var sessions = Map.empty[Long, Session]
+  private var greeting = Set.empty[Long]
   private var uses     = 0L
   private var answered = 0L
   private var refused  = 0L
@@ -89,18 +90,27 @@ final class SolverDesk(
       no(
         s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
       )
-    else
-      Future(fleetOf(briefing))(using workers).onComplete {
-        case Success(Right(fleet)) =>
-          differing(briefing.agents, Briefing.agents(fleet)) match
-            case Some(reason) => no(reason)
-            case None         =>
-              admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
-              told(f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles")
-              answer(Message.Welcome(flight, id))
-        case Success(Left(reason)) => no(reason)
-        case Failure(error)        => no(s"it cannot be decided for: $error")
+    else if begins(flight) then
+      Future(fleetOf(briefing))(using workers).onComplete { result =>
+        lock.synchronized:
+          greeting -= flight
+        result match
+          case Success(Right(fleet)) =>
+            differing(briefing.agents, Briefing.agents(fleet)) match
+              case Some(reason) => no(reason)
+              case None         =>
+                admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
+                told(f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles")
+                answer(Message.Welcome(flight, id))
+          case Success(Left(reason)) => no(reason)
+          case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)
+
+  /** A flight says hello until it is answered; once is enough. */
+  private def begins(flight: Long): Boolean = lock.synchronized:
+    val isNew = !greeting(flight) && greeting.size < MostFlights
+    if isNew then greeting += flight
+    isNew
 
   private def differing(theirs: Vector[String], ours: Vector[String]): Option[String] =
     theirs.zipAll(ours, "nobody", "nobody").collectFirst:

@@ -65,7 +65,7 @@ class SolverFlightSimulation extends munit.FunSuite:
     for flown <- Seq(settings, settings.copy(policies = List(chosen)), settings.copy(scenario = Crossing())) do
       val plan     = flown.plans.last
       val briefing = Briefing.of(flown, plan)
-      val fleet    = Briefing.fleet(briefing).fold(fail(_), identity)
+      val fleet    = Briefing.plan(briefing).fold(fail(_), identity).fleet
       assertEquals(Briefing.agents(fleet), briefing.agents)
       assertEquals(fleet, plan.fleet(flown))
 
@@ -78,7 +78,7 @@ class SolverFlightSimulation extends munit.FunSuite:
         val clock              = Clock.ofNanos(VirtualTime.clock(system))
         val network            = MemoryNetwork(NetworkPlan(), 1, clock)
         val at                 = Address("solver", 7400)
-        val desk               = SolverDesk(1, "ours", Briefing.fleet(_), clock, system.dispatcher)
+        val desk               = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
         for
           _ <- SolverServer.start(at, network.host("solver"), desk)
           client = SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
@@ -125,7 +125,7 @@ class SolverFlightSimulation extends munit.FunSuite:
       val clock   = Clock.ofNanos(VirtualTime.clock(system))
       val network = MemoryNetwork(NetworkPlan(), 1, clock)
       val at      = Address("solver", 7400)
-      val desk    = SolverDesk(1, "ours", Briefing.fleet(_), clock, system.dispatcher)
+      val desk    = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
       for
         _ <- SolverServer.start(at, network.host("solver"), desk)
         _ <- Future.traverse(garbage): text =>
