@@ -1,16 +1,18 @@
 package skein.cli
 
+import java.nio.file.{Files, Path}
 import java.security.SecureRandom
 import java.time.LocalTime
 import java.time.temporal.ChronoUnit
 import java.util.concurrent.ConcurrentHashMap
-import mainargs.{ParserForClass, arg}
+import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
-import scala.concurrent.{Future, Promise}
+import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.{BuildId, Endpoint}
 import skein.flight.WarmUp
+import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
 import skein.link.{Address, TcpTransport, TransportError}
 import skein.loop.planning.BackgroundThread
 import skein.policy.Fleet
@@ -22,8 +24,12 @@ import skein.units.Clock
 
 /** Options of `./skein decide`. */
 final case class DecideOptions(
-    @arg(doc = "where flights ask, as they say with --solver: tcp://HOST:PORT of this machine")
+    @arg(doc =
+      "where flights ask, as they say with --solver: tcp://HOST:PORT of this machine, or kafka://HOST:PORT/PREFIX of a broker"
+    )
     at: String = "tcp://127.0.0.1:7400",
+    @arg(doc = "starts Kafka's own broker there, in this process, for a first try; what it holds is deleted at the end")
+    broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
     scenario: Option[String]
 )
@@ -40,12 +46,20 @@ final class DecideCommand(using scenarios: Scenarios)
       at <- SolverChoice.parse(options.at).left.map("--at: " + _)
       _  <- options.scenario.fold(Right(()))(name => scenarios.kind(name).left.map("--scenario: " + _).map(_ => ()))
       _  <- at match
+        case SolverChoice.Kafka(at, prefix) => served(options)(kafka(KafkaTopics(at, prefix), options.broker.value))
+        case _ if options.broker.value      =>
+          Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
         case SolverChoice.Tcp(address) => served(options)(tcp(address))
-        case other => Left(s"--at: expected tcp://HOST:PORT, such as tcp://127.0.0.1:7400, came ${other.text}")
+        case SolverChoice.Link(_)      =>
+          Left(
+            s"--at: expected tcp://HOST:PORT, such as tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
+          )
     yield ()
 
   /** Where it is asked, and how that ends. */
   private type Serving = SolverDesk => ActorSystem ?=> Either[String, () => Future[Done]]
+
+  private given ExecutionContext = ExecutionContext.global
 
   private def tcp(address: Address): Serving = desk =>
     if !Endpoint(address.host, address.port).isLoopback then
@@ -59,6 +73,32 @@ final class DecideCommand(using scenarios: Scenarios)
         Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
         Right(() => server.close())
       catch case error: TransportError => Left(error.getMessage)
+
+  private def kafka(topics: KafkaTopics, withBroker: Boolean): Serving = desk =>
+    import topics.broker as at
+    def started(folder: Path): Either[String, Option[KafkaBroker]] =
+      if !withBroker then Right(None)
+      else if !Endpoint(at.host, at.port).isLoopback || at.port == 0 then
+        Left(s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, came $at")
+      else
+        say(s"a Kafka broker starts at $at")
+        KafkaBroker.start(folder, at.port).map(Some(_)).left.map("--broker: " + _)
+    val folder = Files.createTempDirectory("skein-broker")
+    started(folder) match
+      case Left(reason) =>
+        KafkaBroker.delete(folder)
+        Left(reason)
+      case Right(broker) =>
+        val solver = KafkaSolver(topics, desk, reason => say(s"the broker at $at does not take answers: $reason"))
+        def close() = solver.close().map: _ =>
+          broker.foreach(_.close())
+          KafkaBroker.delete(folder)
+          Done
+        say(s"looks for the broker at $at")
+        solver.start().foreach(_ =>
+          Console.out.println(s"decides at kafka://$at/${topics.prefix}; Ctrl-C ends it")
+        )
+        Right(() => close())
 
   private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-decide")

@@ -3,6 +3,7 @@ package skein.cli
 import org.apache.pekko.actor.ActorSystem
 import skein.cluster.BuildId
 import skein.flight.{FlightResult, Solvers}
+import skein.kafka.{KafkaLink, KafkaTopics}
 import skein.link.TcpTransport
 import skein.settings.{FlightPlan, FlySettings, SolverChoice}
 import skein.solver.TcpLink
@@ -20,15 +21,16 @@ private[cli] object SolverOptions:
   /** In real time it is another process. */
   def real(settings: FlySettings): Either[String, Unit] = settings.solver match
     case Some(choice: SolverChoice.Link) =>
-      Left(s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT of ./skein decide")
+      Left(s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide")
     case _ => Right(())
 
   /** To every solver that a flight can name in real time. */
   def reached(using ActorSystem): Solvers = Solvers(
     BuildId.current,
     {
-      case SolverChoice.Tcp(at) => Right(TcpLink(TcpTransport(), at))
-      case other                => Left(s"expected tcp://HOST:PORT, came ${other.text}")
+      case SolverChoice.Tcp(at)               => Right(TcpLink(TcpTransport(), at))
+      case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)))
+      case SolverChoice.Link(_)               => Left("a link of a profile is for --clock virtual")
     }
   )
 
