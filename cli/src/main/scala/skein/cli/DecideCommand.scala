@@ -28,7 +28,9 @@ final case class DecideOptions(
       "where flights ask, as they say with --solver: tcp://HOST:PORT of this machine, or kafka://HOST:PORT/PREFIX of a broker"
     )
     at: String = "tcp://127.0.0.1:7400",
-    @arg(doc = "starts Kafka's own broker there, in this process, for a first try; what it holds is deleted at the end")
+    @arg(doc =
+      "starts Kafka's own broker there, in this process, for a first try; what it holds is deleted at the end"
+    )
     broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
     scenario: Option[String]
@@ -44,10 +46,13 @@ final class DecideCommand(using scenarios: Scenarios)
   protected def execute(options: DecideOptions): Either[String, Unit] =
     for
       at <- SolverChoice.parse(options.at).left.map("--at: " + _)
-      _  <- options.scenario.fold(Right(()))(name => scenarios.kind(name).left.map("--scenario: " + _).map(_ => ()))
-      _  <- at match
-        case SolverChoice.Kafka(at, prefix) => served(options)(kafka(KafkaTopics(at, prefix), options.broker.value))
-        case _ if options.broker.value      =>
+      _  <- options.scenario.fold(Right(()))(name =>
+        scenarios.kind(name).left.map("--scenario: " + _).map(_ => ())
+      )
+      _ <- at match
+        case SolverChoice.Kafka(at, prefix) =>
+          served(options)(kafka(KafkaTopics(at, prefix), options.broker.value))
+        case _ if options.broker.value =>
           Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
         case SolverChoice.Tcp(address) => served(options)(tcp(address))
         case SolverChoice.Link(_)      =>
@@ -89,7 +94,8 @@ final class DecideCommand(using scenarios: Scenarios)
         KafkaBroker.delete(folder)
         Left(reason)
       case Right(broker) =>
-        val solver = KafkaSolver(topics, desk, reason => say(s"the broker at $at does not take answers: $reason"))
+        val solver =
+          KafkaSolver(topics, desk, reason => say(s"the broker at $at does not take answers: $reason"))
         def close() = solver.close().map: _ =>
           broker.foreach(_.close())
           KafkaBroker.delete(folder)

@@ -3,6 +3,7 @@ package skein.cli
 import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
+import scala.util.Try
 import skein.loop.{Fallback, LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
@@ -79,7 +80,7 @@ final case class FlightOptions(
   /** Flags before file before defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
     for
-      file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
+      file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       told = FlightOptions.hovering(flags.withFallback(file))
       merged   <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))
       own      <- ofScenario(merged)
@@ -174,7 +175,9 @@ object FlightOptions:
 
   /** A vehicle whose solver is not heard of is told to hover, unless somebody says otherwise. */
   private def hovering(told: Config): Config =
-    if !told.hasPath("skein.fly.solver") || told.hasPath("skein.fly.fallback") then told
+    // Where it refers to what stands elsewhere, it cannot be asked yet.
+    def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
+    if !says("solver") || says("fallback") then told
     else told.withFallback(configured(Seq("fallback" -> Fallback.Hover.label)))
 
   private def resolved(config: Config): Either[String, Config] =

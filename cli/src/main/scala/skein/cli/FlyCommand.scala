@@ -71,13 +71,14 @@ final class FlyCommand(using Scenarios)
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
-      _ <- if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
+      _     <-
+        if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
       _ <- Either.cond(
         settings.solver.isEmpty || learning.isEmpty,
         (),
         "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
       )
-      _     <- Either.cond(
+      _ <- Either.cond(
         clock == ClockKind.Real || !options.view.view.value,
         (),
         "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"

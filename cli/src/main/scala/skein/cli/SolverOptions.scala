@@ -21,7 +21,9 @@ private[cli] object SolverOptions:
   /** In real time it is another process. */
   def real(settings: FlySettings): Either[String, Unit] = settings.solver match
     case Some(choice: SolverChoice.Link) =>
-      Left(s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide")
+      Left(
+        s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide"
+      )
     case _ => Right(())
 
   /** To every solver that a flight can name in real time. */
@@ -41,7 +43,8 @@ private[cli] object SolverOptions:
     flown.plan.twins(count).flatMap: plan =>
       plan.solver match
         case None    => Some(plan)
-        case Some(_) => measured(flown.solverTrips.map(_.toMillis)).map(link => plan.copy(solver = Some(link)))
+        case Some(_) =>
+          measured(flown.solverTrips.map(_.toMillis)).map(link => plan.copy(solver = Some(link)))
 
   private[cli] def measured(tripsMs: Vector[Double]): Option[SolverChoice] =
     val logs = tripsMs.filter(_ > 0).map(math.log).sorted

@@ -60,7 +60,9 @@ final case class FlightSummary(
     * paused.
     */
   def name: String =
-    flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short") +
+    flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") + cutShort.fold(
+      ""
+    )(_ => ", cut short") +
       paused.fold("")(_ => ", paused")
 
   /** What the recording calls its scenario, without what it tells of it. */
@@ -80,7 +82,10 @@ final case class FlightSummary(
     * paused stands beside it.
     */
   def published: Option[Published.Flight] =
-    if !scenario.exists(Published.isOf) || policy.isDefined || solver.isDefined || cutShort.isDefined || paused.isDefined then
+    if !scenario.exists(
+        Published.isOf
+      ) || policy.isDefined || solver.isDefined || cutShort.isDefined || paused.isDefined
+    then
       None
     else flight.loopKind.flatMap(Published.flight(_, flight.link))
 

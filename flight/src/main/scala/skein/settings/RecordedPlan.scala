@@ -29,7 +29,6 @@ object RecordedPlan:
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
 
-
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
 

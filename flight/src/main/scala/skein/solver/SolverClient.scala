@@ -36,7 +36,7 @@ final class SolverClient(
   // All below is guarded by the lock.
   private var exchange = Exchange.of(vehicles)
   private var waiting  = Map.empty[Int, Waiting]
-  private var standing = Standing.Greeting("no solver was heard of yet")
+  private var standing = Standing.Greeting(Silent)
 
   private val open  = link.open(received, told)
   private val timer =
@@ -149,7 +149,7 @@ final class SolverClient(
         )
 
   private def told(news: LinkNews): Unit = news match
-    case LinkNews.Up           => again("it was not heard of yet")
+    case LinkNews.Up           => again(Silent)
     case LinkNews.Down(reason) =>
       val lost = lock.synchronized:
         val lost = waiting.values.toVector
@@ -189,6 +189,8 @@ final class SolverClient(
 
 object SolverClient:
   private val GreetEvery = Span.ofMillis(500)
+
+  private val Silent = "nobody has answered; is ./skein decide started?"
 
   /** Nobody decides: why. */
   final case class NoSolver(reason: String) extends RuntimeException(reason, null, false, false):

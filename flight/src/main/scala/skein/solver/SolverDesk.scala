@@ -100,7 +100,9 @@ final class SolverDesk(
               case Some(reason) => no(reason)
               case None         =>
                 admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
-                told(f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles")
+                told(
+                  f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles"
+                )
                 answer(Message.Welcome(flight, id))
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")

@@ -36,7 +36,9 @@ class SolverFlightSimulation extends munit.FunSuite:
     )
     assertEquals(settings.plans.filter(_.id.startsWith("stream")).map(_.seed).distinct.size, 1)
 
-  test("a flight decided elsewhere is recorded with the ways there and back, replays, and flies again the same"):
+  test(
+    "a flight decided elsewhere is recorded with the ways there and back, replays, and flies again the same"
+  ):
     for plan <- settings.plans.filter(_.solver.isDefined) do
       val flown     = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
       val recording = flown.recorder.recording
@@ -62,7 +64,8 @@ class SolverFlightSimulation extends munit.FunSuite:
 
   test("a flight tells a solver all that it needs to decide for the same fleet"):
     val chosen = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
-    for flown <- Seq(settings, settings.copy(policies = List(chosen)), settings.copy(scenario = Crossing())) do
+    for flown <- Seq(settings, settings.copy(policies = List(chosen)), settings.copy(scenario = Crossing()))
+    do
       val plan     = flown.plans.last
       val briefing = Briefing.of(flown, plan)
       val fleet    = Briefing.plan(briefing).fold(fail(_), identity).fleet
@@ -78,10 +81,11 @@ class SolverFlightSimulation extends munit.FunSuite:
         val clock              = Clock.ofNanos(VirtualTime.clock(system))
         val network            = MemoryNetwork(NetworkPlan(), 1, clock)
         val at                 = Address("solver", 7400)
-        val desk               = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
+        val desk = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
         for
           _ <- SolverServer.start(at, network.host("solver"), desk)
-          client = SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
+          client =
+            SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
           answer <- client.ready(Span.ofSeconds(3)).transform(result => scala.util.Success(result))
           _      <- client.close()
         yield answer.toEither.left.map(_.getMessage)
@@ -118,8 +122,9 @@ class SolverFlightSimulation extends munit.FunSuite:
     )
 
   test("a stranger who speaks garbage at a solver's port loses the connection, and flights fly on"):
-    val garbage = Seq("GET / HTTP/1.1\r\n\r\n", "\u0000\u0000\u0000\u0004abcd", "\u007f\u007f\u007f\u007f", "\u0000")
-    val run     = VirtualTime.run(seed = 1): system =>
+    val garbage =
+      Seq("GET / HTTP/1.1\r\n\r\n", "\u0000\u0000\u0000\u0004abcd", "\u007f\u007f\u007f\u007f", "\u0000")
+    val run = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
       val clock   = Clock.ofNanos(VirtualTime.clock(system))

@@ -57,9 +57,9 @@ class SolverLiveSuite extends munit.FunSuite:
         _       <- second.close()
       yield landed.outcome
     assertEquals(Await.result(flown, 60.seconds), Outcome.Completed)
-    val recording = recorder.recording
+    val recording              = recorder.recording
     def times(kind: EventKind) = recording.events.filter(_.kind == kind).map(_.at)
-    val (lost, back)         = (times(EventKind.Disconnected).head, times(EventKind.Reconnected).head)
+    val (lost, back)           = (times(EventKind.Disconnected).head, times(EventKind.Reconnected).head)
     assert(recording.decisions.exists(made => made.decidedAt > lost && made.action.contains(Action.Hover)))
     for vehicle <- settings.fleet.agents do
       assert(recording.solved.exists(one => one.vehicle == vehicle.name && one.receivedAt < lost))

@@ -51,7 +51,9 @@ object KafkaBroker:
   /** Takes away what a broker that has ended held. */
   def delete(folder: Path): Unit =
     if Files.exists(folder) then
-      Using.resource(Files.walk(folder))(_.sorted(Comparator.reverseOrder).forEach(Files.deleteIfExists(_): Unit))
+      Using.resource(
+        Files.walk(folder)
+      )(_.sorted(Comparator.reverseOrder).forEach(Files.deleteIfExists(_): Unit))
 
   private val Host = "127.0.0.1"
 

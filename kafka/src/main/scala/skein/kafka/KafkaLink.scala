@@ -15,6 +15,7 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
 
   def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink =
     val isDown = AtomicReference(Option.empty[String])
+    val away   = s"no Kafka broker answers at ${topics.broker}"
     val pipe   = KafkaPipe(
       topics,
       from = topics.answers,
@@ -32,5 +33,5 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
     new OpenLink:
       def send(message: Array[Byte]): Either[String, Unit] =
         // What is said while it is down is how the broker is found to be back.
-        Either.cond(pipe.send(message), (), isDown.get.getOrElse(s"no broker at ${topics.broker} yet"))
+        Either.cond(pipe.ready.isCompleted && pipe.send(message), (), isDown.get.getOrElse(away))
       def close(): Future[Done] = pipe.close().map(_ => Done)

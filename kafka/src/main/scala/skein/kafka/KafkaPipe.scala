@@ -37,6 +37,9 @@ private[kafka] final class KafkaPipe(
 
   @volatile private var consumer = Option.empty[KafkaConsumer[Array[Byte], Array[Byte]]]
 
+  // Since a message was not written. A broker that is back may be a new one, without topics.
+  @volatile private var isDoubtful = false
+
   /** Completes when what is written from now on by others will be read; fails where there is no broker. */
   def ready: Future[Unit] = reading.future
 
@@ -85,6 +88,9 @@ private[kafka] final class KafkaPipe(
         var isPlaced = false
         while !closing.get do
           try
+            if isDoubtful && topics.made().isRight then
+              isDoubtful = false
+              isPlaced = false
             if !isPlaced then
               reader.seekToEnd(java.util.List.of(part))
               reader.position(part): Unit
@@ -93,10 +99,14 @@ private[kafka] final class KafkaPipe(
             val came = reader.poll(Duration.ofMillis(PollMs)).asScala.map(_.value).filter(_ != null).toVector
             if came.nonEmpty then received(came)
           catch
-            case _: WakeupException                           => ()
+            case _: WakeupException => ()
             // A broker that is away comes back; what is wrong with a broker that is there stays, and is said.
             case _: RetriableException => ()
       finally reader.close()
+
+  private def failed(error: Throwable): Unit =
+    isDoubtful = true
+    if !closing.get then lost(s"${error.getMessage}")
 
   private def write(): Unit =
     val settings = KafkaTopics.common(topics)
@@ -120,9 +130,9 @@ private[kafka] final class KafkaPipe(
               writer = Some(KafkaProducer(settings, ByteArraySerializer(), ByteArraySerializer()))
             writer.get.send(
               ProducerRecord(to, 0, null: Array[Byte], message),
-              (_, error) => if error != null && !closing.get then lost(error.getMessage)
+              (_, error) => if error != null then failed(error)
             ): Unit
-          catch case NonFatal(error) => if !closing.get then lost(s"${error.getMessage}")
+          catch case NonFatal(error) => failed(error)
     finally writer.foreach(_.close(Duration.ofMillis(600)))
 
 private[kafka] object KafkaPipe:

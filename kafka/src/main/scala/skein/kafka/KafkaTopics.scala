@@ -47,13 +47,13 @@ object KafkaTopics:
     val settings = Properties()
     for
       (key, value) <- Seq(
-        "bootstrap.servers"               -> topics.broker.toString,
-        "reconnect.backoff.ms"            -> "50",
-        "reconnect.backoff.max.ms"        -> "250",
-        "retry.backoff.ms"                -> "50",
-        "retry.backoff.max.ms"            -> "250",
+        "bootstrap.servers"                  -> topics.broker.toString,
+        "reconnect.backoff.ms"               -> "50",
+        "reconnect.backoff.max.ms"           -> "250",
+        "retry.backoff.ms"                   -> "50",
+        "retry.backoff.max.ms"               -> "250",
         "socket.connection.setup.timeout.ms" -> "1000",
-        "metadata.recovery.strategy"      -> "rebootstrap"
+        "metadata.recovery.strategy"         -> "rebootstrap"
       )
     do settings.put(key, value)
     settings

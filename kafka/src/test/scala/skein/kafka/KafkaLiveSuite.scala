@@ -42,7 +42,11 @@ class KafkaLiveSuite extends munit.FunSuite:
     * @param meanwhile
     *   done while it flies; then it is stopped
     */
-  private def flown(prefix: String, at: Address, repeats: Int = 1)(meanwhile: MemoryRecorder => Unit): Recording =
+  private def flown(
+      prefix: String,
+      at: Address,
+      repeats: Int = 1
+  )(meanwhile: MemoryRecorder => Unit): Recording =
     val topics   = KafkaTopics(at, prefix)
     val settings = FlySettings(
       List(LoopKind.Predictive),
@@ -85,7 +89,9 @@ class KafkaLiveSuite extends munit.FunSuite:
     while !isSo(recorder.recording) && deadline.hasTimeLeft() do Thread.sleep(50)
     assert(isSo(recorder.recording))
 
-  test("a broker that is killed and started again in a flight: vehicles hover meanwhile, fly on, and all is recorded"):
+  test(
+    "a broker that is killed and started again in a flight: vehicles hover meanwhile, fly on, and all is recorded"
+  ):
     val first     = started(0)
     val at        = first.address
     var since     = Instant.Epoch
@@ -100,7 +106,10 @@ class KafkaLiveSuite extends munit.FunSuite:
       val own = recording.decisions.filter(_.vehicle == vehicle)
       assertEquals(own.map(_.sequence), own.indices.map(_.toLong).toVector)
       assert(own.exists(_.action.contains(Action.Hover)), vehicle)
-      assert(recording.solved.exists(one => one.vehicle == vehicle && one.receivedAt > since), s"$vehicle does not fly on")
+      assert(
+        recording.solved.exists(one => one.vehicle == vehicle && one.receivedAt > since),
+        s"$vehicle does not fly on"
+      )
       // However long the broker is away, somebody decides.
       val gaps = own.zip(own.drop(1)).map((one, next) => next.decidedAt.since(one.decidedAt).toMillis)
       assert(gaps.max < 1000, s"$vehicle was not decided for over ${gaps.max} ms")
