@@ -11,7 +11,7 @@ trait MessageLink:
     * @param received
     *   told of every message, one at a time
     * @param news
-    *   told when the other side is reached, and when no longer
+    *   told when the other side is reached, and when no longer; by no thread that is still in here
     */
   def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink
 

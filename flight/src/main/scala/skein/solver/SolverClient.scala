@@ -38,7 +38,10 @@ final class SolverClient(
   private var waiting  = Map.empty[Int, Waiting]
   private var standing = Standing.Greeting(Silent)
 
-  private val open  = link.open(received, told)
+  // Other threads that are told of news meanwhile wait for it.
+  private lazy val open = link.open(received, told)
+  open: Unit
+
   private val timer =
     system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
 

@@ -8,7 +8,7 @@ import org.apache.pekko.stream.{BoundedSourceQueue, KillSwitches, QueueOfferResu
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Framing, Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
-import scala.util.{Failure, Success}
+import scala.util.{Failure, Success, Try}
 import skein.link.{Address, Transport}
 import skein.units.Span
 
@@ -45,6 +45,7 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
         news(LinkNews.Up)
       ended.onComplete: result =>
         val wasUp = queue.getAndSet(None).isDefined
+        completed(out)
         whyDown = result match
           case Failure(error) => error.getMessage
           case Success(_)     => s"the solver at $to closed the connection"
@@ -54,6 +55,10 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
           after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
             if isClosing then closed.trySuccess(Done): Unit else connect()
 
+    /** Another thread may have done so. */
+    private def completed(out: BoundedSourceQueue[ByteString]): Unit =
+      val _ = Try(if !out.isCompleted then out.complete())
+
     def send(message: Array[Byte]): Either[String, Unit] = queue.get match
       case None      => Left(whyDown)
       case Some(out) =>
@@ -61,16 +66,23 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
           case QueueOfferResult.Enqueued => Right(())
           case _                         => Left(s"$MostWaiting messages to $to wait already")
 
+    /** What was sent is on its way first, if the other side takes it soon. */
     def close(): Future[Done] =
       isClosing = true
-      switch.shutdown()
+      queue.getAndSet(None) match
+        case None      => switch.shutdown()
+        case Some(out) =>
+          completed(out)
+          val late = system.scheduler.scheduleOnce(CloseWithin.toDuration)(switch.shutdown())
+          closed.future.onComplete(_ => late.cancel())
       closed.future
 
 object TcpLink:
   /** Messages of one side that wait until they are sent. */
   private[solver] val MostWaiting = 256
 
-  private val TryEvery = Span.ofMillis(200)
+  private val TryEvery    = Span.ofMillis(200)
+  private val CloseWithin = Span.ofMillis(500)
 
   /** A message behind its length. */
   private[solver] val framed: BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
