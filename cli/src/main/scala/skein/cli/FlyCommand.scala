@@ -170,7 +170,7 @@ final class FlyCommand(using Scenarios)
       simulator,
       tell = tell,
       calledOff = requests.calledOff,
-      solvers = SolverOptions.reached
+      solvers = SolverOptions.reached(settings)
     )
     try
       if simulator.isEmpty then

@@ -26,9 +26,12 @@ private[cli] object SolverOptions:
       )
     case _ => Right(())
 
-  /** To every solver that a flight can name in real time. */
-  def reached(using ActorSystem): Solvers = Solvers(
-    BuildId.current,
+  /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask for it. */
+  def reached(settings: FlySettings)(using ActorSystem): Solvers =
+    if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current)
+
+  private def reachedBy(build: String)(using ActorSystem): Solvers = Solvers(
+    build,
     {
       case SolverChoice.Tcp(at)               => Right(TcpLink(TcpTransport(), at))
       case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)))
