@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks, cluster, autopilot, offboard, docs)
+    .aggregate(scene, blocks, cluster, autopilot, offboard, kafka, docs)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -195,10 +195,16 @@ lazy val learn = project
   .settings(artifact("learn", "SAC, DDPG and PPO for policies under a loop's timing"))
   .dependsOn(environment).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
+/** Solvers behind a Kafka broker, and such a broker for tests and for the first try. Its libraries are large. */
+lazy val kafka = project
+  .settings(artifact("kafka", "Solvers behind a Kafka broker"))
+  .dependsOn(flight % "compile->compile;test->test")
+  .settings(underAgent, libraryDependencies ++= (kafkaClients +: kafkaBroker) ++ munit)
+
 /** Commands and reports. */
 lazy val cli = project
   .settings(artifact("cli", "Commands and reports"))
-  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition)
+  .dependsOn(flight % "compile->compile;test->test", view, learn, cluster, recognition, kafka)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

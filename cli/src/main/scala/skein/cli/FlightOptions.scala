@@ -3,7 +3,8 @@ package skein.cli
 import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigValueFactory}
 import mainargs.{Flag, ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
-import skein.loop.{LoopKind, OpponentModel}
+import scala.util.Try
+import skein.loop.{Fallback, LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings, Wire}
@@ -61,9 +62,13 @@ final case class FlightOptions(
     @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
     deadline: Option[String],
     @arg(doc =
-      "where the deadline is missed: hold, repeat (the last decision), or a policy such as pure-pursuit"
+      "where the deadline is missed: hold, repeat (the last decision), hover, or a policy such as pure-pursuit; with --solver, hover unless told otherwise"
     )
     fallback: Option[String],
+    @arg(doc =
+      "flies each loop but paused and plan with its decisions made elsewhere, too: tcp://HOST:PORT of ./skein decide, kafka://HOST:PORT/PREFIX of one behind a broker, or link:PROFILE in virtual time, the profile being of the way there and back; a decision's deadline is then the period unless told otherwise"
+    )
+    solver: Option[String],
     @arg(doc =
       "speaks MAVLink to the vehicles, as to PX4, system 1 being the scenario's first; every loop but paused"
     )
@@ -75,8 +80,9 @@ final case class FlightOptions(
   /** Flags before file before defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
     for
-      file     <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      merged   <- FlightOptions.resolved(flags.withFallback(file).withFallback(ConfigFactory.load()))
+      file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
+      told = FlightOptions.hovering(flags.withFallback(file))
+      merged   <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))
       own      <- ofScenario(merged)
       settings <- FlySettings.read(own.withFallback(merged))
     yield
@@ -108,7 +114,8 @@ final case class FlightOptions(
       "predictor"       -> predictor,
       "moves-in-flight" -> movesInFlight,
       "deadline"        -> deadline,
-      "fallback"        -> fallback
+      "fallback"        -> fallback,
+      "solver"          -> solver
     ).collect { case (key, Some(value)) => key -> value })
 
   /** Flags for settings of the scenario that is flown. */
@@ -165,6 +172,13 @@ object FlightOptions:
     values.foldLeft(ConfigFactory.empty):
       case (config, (key, value)) =>
         config.withValue(s"skein.fly.$key", ConfigValueFactory.fromAnyRef(value, "the command line"))
+
+  /** A vehicle whose solver is not heard of is told to hover, unless somebody says otherwise. */
+  private def hovering(told: Config): Config =
+    // Where it refers to what stands elsewhere, it cannot be asked yet.
+    def says(key: String) = Try(told.hasPath(s"skein.fly.$key")).getOrElse(true)
+    if !says("solver") || says("fallback") then told
+    else told.withFallback(configured(Seq("fallback" -> Fallback.Hover.label)))
 
   private def resolved(config: Config): Either[String, Config] =
     try Right(config.resolve())

@@ -71,7 +71,14 @@ final class FlyCommand(using Scenarios)
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
-      _     <- Either.cond(
+      _     <-
+        if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
+      _ <- Either.cond(
+        settings.solver.isEmpty || learning.isEmpty,
+        (),
+        "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
+      )
+      _ <- Either.cond(
         clock == ClockKind.Real || !options.view.view.value,
         (),
         "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
@@ -162,7 +169,8 @@ final class FlyCommand(using Scenarios)
       settings,
       simulator,
       tell = tell,
-      calledOff = requests.calledOff
+      calledOff = requests.calledOff,
+      solvers = SolverOptions.reached(settings)
     )
     try
       if simulator.isEmpty then
@@ -250,7 +258,7 @@ final class FlyCommand(using Scenarios)
       count: Int,
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(_.plan.twins(count))
+    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(SolverOptions.twins(_, count))
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
       val seeds = twins.map(_.seed)

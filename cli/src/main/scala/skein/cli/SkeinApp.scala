@@ -32,6 +32,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
+    DecideCommand(),
     SpreadCommand(),
     SearchCommand(program),
     LearnCommand(),

@@ -28,6 +28,7 @@ final class SpreadCommand(using Scenarios)
   protected def execute(options: SpreadOptions): Either[String, Unit] =
     for
       settings <- options.flights.settings
+      _        <- SolverOptions.virtual(settings)
       _        <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
       out      <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       plans =

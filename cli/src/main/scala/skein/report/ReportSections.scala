@@ -23,6 +23,7 @@ object ReportSections:
           Some(SummaryTables.twins(set)),
           named(TwinFigure.name, figures)
         ),
+        Section(SolverTable.title, SolverTable.note, Some(SolverTable.of(set))),
         Section(PlanTable.title, s"${PlanTable.note(set)}.", Some(PlanTable.of(set))),
         Section("Seen", SummaryTables.seenNote, Some(SummaryTables.seen(set.flights))),
         Section("Observations per decision, ms", observationsNote, Some(SummaryTables.observations(set))),

@@ -99,3 +99,34 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     val file     = path.resolve("none.duckdb")
     assert(recorder.writeTo(file).isRight)
     assertRefused(ReplayCommand(), Seq(file.toString), "no vehicles")
+
+  test("a solver that cannot be is told before the flight, and what was expected"):
+    val virtual = Seq("--clock", "virtual")
+    for
+      (command, words, expected) <- Seq(
+        (FlyCommand(), Seq("--solver", "pekko://127.0.0.1:1"), "not Pekko's remoting"),
+        (
+          FlyCommand(),
+          Seq("--solver", "tcp://127.0.0.1"),
+          "expected tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link"
+        ),
+        (FlyCommand(), Seq("--solver", "kafka://127.0.0.1:9092/a b"), "expected a PREFIX of topics"),
+        (FlyCommand(), Seq("--solver", "link:vpn"), "--solver link:vpn is for --clock virtual"),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "tcp://127.0.0.1:7400"),
+          "in virtual time expected link:PROFILE"
+        ),
+        (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan"),
+          "came with paused and plan alone"
+        ),
+        (SpreadCommand(), Seq("--solver", "tcp://127.0.0.1:7400"), "in virtual time expected link:PROFILE"),
+        (DecideCommand(), Seq("--at", "tcp://10.0.0.1:7400"), "expected an address of this machine"),
+        (DecideCommand(), Seq("--at", "link:vpn"), "expected tcp://HOST:PORT"),
+        (DecideCommand(), Seq("--broker"), "--broker: expected with --at kafka://"),
+        (DecideCommand(), Seq("--scenario", "moon"), "--scenario: ")
+      )
+    do assertRefused(command, words, expected)

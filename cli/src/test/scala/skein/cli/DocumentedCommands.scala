@@ -188,7 +188,8 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case "search" if words.contains("--cluster") =>
           val listening = words.updated(words.indexOf("--cluster") + 1, "127.0.0.1:0")
           runUntilItListens(listening ++ forward ++ Seq("--out", folder.resolve("cluster").toString))
-        case "serve" => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+        case "decide" => runUntilItListens(words ++ Seq("--at", "tcp://127.0.0.1:0"))
+        case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words)
         case "link"                               =>
           // The ports of the guide may be taken here.
@@ -206,7 +207,12 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case _ => flown(words)
       val stopped = Set(0, 130, 143)
       assert(
-        if Set("serve", "link")(words.head) || words.contains("--view") || words.contains("--cluster") then
+        if Set(
+            "serve",
+            "link",
+            "decide"
+          )(words.head) || words.contains("--view") || words.contains("--cluster")
+        then
           stopped(status)
         else status == 0,
         s"exit $status:\n$told"

@@ -37,7 +37,19 @@ class OptionsAgreeSuite extends munit.FunSuite:
 
   test("every command prints tables as JSON too, but for those that print none"):
     val plain =
-      Set("serve", "link", "export", "import", "replay", "digest", "new", "completion", "worker", "cluster")
+      Set(
+        "serve",
+        "link",
+        "export",
+        "import",
+        "replay",
+        "digest",
+        "new",
+        "completion",
+        "worker",
+        "cluster",
+        "decide"
+      )
     for command <- Main.commands if !plain(command.name) do
       val json = command.options.find(_.flag == "--json")
       assert(json.exists(_.summary.contains("JSON on standard output")), command.name)

@@ -19,6 +19,7 @@ import skein.record.{Flight as FlightRow, *}
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
+import skein.solver.{Briefing, SolverClient}
 import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -33,7 +34,8 @@ final class FlightAssembly private[skein] (
     watchdog: SimulatorWatchdog,
     startedAt: Instant,
     clock: Clock,
-    shutDown: () => Future[Done]
+    shutDown: () => Future[Done],
+    solver: Option[SolverClient]
 )(using ExecutionContext):
 
   /** Ends it now; why is recorded. */
@@ -66,7 +68,7 @@ final class FlightAssembly private[skein] (
       ended     = notClosed.filter(_ => outcome == Outcome.Completed).getOrElse(outcome)
       _         = monitor.offer(FlightAssembly.ending(ended, clock.now()))
       written <- monitor.close()
-    yield FlightResult(plan, ended, written)
+    yield FlightResult(plan, ended, written, solver.fold(Vector.empty)(_.roundTrips))
 
 private object FlightAssembly:
   def ending(outcome: Outcome, at: Instant): Ending = outcome match
@@ -74,8 +76,17 @@ private object FlightAssembly:
     case Outcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
     case Outcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
 
-/** How a flight ended, and what is on record. */
-final case class FlightResult(plan: FlightPlan, outcome: Outcome, written: Either[RecordError, Written])
+/** How a flight ended, and what is on record.
+  *
+  * @param solverTrips
+  *   the latest round trips to the solver, if one decided
+  */
+final case class FlightResult(
+    plan: FlightPlan,
+    outcome: Outcome,
+    written: Either[RecordError, Written],
+    solverTrips: Vector[Span] = Vector.empty
+)
 
 /** Puts flights together.
   *
@@ -87,6 +98,8 @@ final case class FlightResult(plan: FlightPlan, outcome: Outcome, written: Eithe
   *   a line for a person, of what goes wrong in flight, as soon as it does
   * @param learnsOn
   *   what policies learn on that learn in flight; without it, each on a thread of its own that gives way to all others
+  * @param solvers
+  *   the links to solvers, for flights that are not decided for here
   * @param calledOff
   *   why a flight, by its name, goes no further while its vehicles are brought to their starts
   */
@@ -98,7 +111,8 @@ final class FlightAssembler(
     workers: PlanSettings => PlanWorkers = FlightAssembler.threads,
     tell: String => Unit = _ => (),
     learnsOn: Option[ExecutionContext] = None,
-    calledOff: String => Option[String] = _ => None
+    calledOff: String => Option[String] = _ => None,
+    solvers: Solvers = Solvers.none
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -137,6 +151,7 @@ final class FlightAssembler(
         server <- serve()
         _       = server.foreach(opened.closing(_)(_.close()))
         monitor = FlightMonitor(recorder)
+        solver  <- solverOf(plan, opened, monitor)
         reached <- settings.wire match
           case Wire.AirSim  => overAirSim(plan, server.fold(simulator.get)(_.address), opened, monitor)
           case Wire.Mavlink => overMavlink(plan, server, opened)
@@ -144,7 +159,7 @@ final class FlightAssembler(
           Future.failed(CannotFly(missing))
         )
       yield
-        val loopSettings = settings.loopSettings.copy(seed = plan.seed)
+        val loopSettings = settings.loopSettings(plan)
         val planners     =
           if plan.loop != LoopKind.Plan then PlanWorkers.none
           else
@@ -153,7 +168,7 @@ final class FlightAssembler(
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val team         = Team(flown, reached.crafts, clock, endCondition, loopSettings, planners)
+        val team         = Team(flown, reached.crafts, clock, endCondition, loopSettings, planners, solver)
         val startedAt    = clock.now()
         val watchdog     = SimulatorWatchdog(
           monitor,
@@ -189,11 +204,43 @@ final class FlightAssembler(
           watchdog,
           startedAt,
           clock,
-          () => opened.close()
+          () => opened.close(),
+          solver
         ))
     starting
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
-      .recover { case error: (TransportError | CannotFly) => Left(error.getMessage) }
+      .recover { case error: (TransportError | CannotFly | SolverClient.NoSolver) => Left(error.getMessage) }
+
+  /** Who decides in this process' place, when it has welcomed the flight. */
+  private def solverOf(
+      plan: FlightPlan,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Future[Option[SolverClient]] =
+    plan.solver match
+      case None         => Future.successful(None)
+      case Some(choice) =>
+        solvers.link(choice) match
+          case Left(reason) => Future.failed(CannotFly(s"--solver ${choice.text}: $reason"))
+          case Right(link)  =>
+            val agents = fleet.agents
+            val client = opened.closing(SolverClient(
+              link,
+              solvers.number(plan, clock),
+              solvers.build,
+              Briefing.of(settings, plan),
+              agents.size,
+              clock,
+              (kind, vehicle, detail) =>
+                monitor.offer(Event(clock.now(), kind, vehicle.map(agents(_).name), detail))
+                if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
+            ))(_.close())
+            client
+              .ready(solvers.patience)
+              .recoverWith:
+                case no: SolverClient.NoSolver =>
+                  Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
+              .map(_ => Some(client))
 
   /** Who flies, with a policy that may learn. */
   private def learning(
@@ -416,6 +463,9 @@ object FlightAssembler:
 
   private val noSteps =
     "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"
+
+  /** What of a solver's events a person is told at once. */
+  private val told = Set(EventKind.Disconnected, EventKind.Reconnected, EventKind.Refused)
 
   private val anyPort = Address("127.0.0.1", 0)
 

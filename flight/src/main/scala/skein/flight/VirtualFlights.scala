@@ -4,14 +4,15 @@ import java.io.{PrintWriter, StringWriter}
 import java.nio.file.Path
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
-import skein.link.{MemoryNetwork, NetworkPlan}
+import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{LoopKind, Outcome, PlanSettings}
 import skein.measure.RecordedTracks
 import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
-import skein.settings.{FlightPlan, FlySettings}
+import skein.settings.{FlightPlan, FlySettings, SolverChoice}
 import skein.signal.LatencyProfile
+import skein.solver.{SolverDesk, SolverServer, TcpLink}
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -69,18 +70,28 @@ object VirtualFlights:
         given ActorSystem = system
         import system.dispatcher
         val clock     = Clock.ofNanos(VirtualTime.clock(system))
-        val network   = MemoryNetwork(NetworkPlan(), plan.seed, clock)
+        val behind    = plan.solver.collect { case SolverChoice.Link(profile) => profile }
+        val links     = behind.map(profile => (Here, There) -> LinkProfile.symmetric(profile)).toMap
+        val network   = MemoryNetwork(NetworkPlan(links = links), plan.seed, clock)
         val assembler = FlightAssembler(
-          network.host("localhost"),
+          network.host(Here),
           clock,
           settings,
           simulator = None,
           workers,
-          learnsOn = Some(system.dispatcher)
+          learnsOn = Some(system.dispatcher),
+          solvers = Solvers(
+            Here,
+            {
+              case SolverChoice.Link(_) => Right(TcpLink(network.host(Here), SolverAt))
+              case _                    => Left("virtual time knows link:PROFILE alone")
+            }
+          )
         )
         val recorder = MemoryRecorder(assembler.heading(plan, clockKind = "virtual"))
-        assembler
-          .start(plan, recorder)
+        val serving  = if behind.isEmpty then Future.unit else serveSolver(settings, plan, network, clock)
+        serving
+          .flatMap(_ => assembler.start(plan, recorder))
           .flatMap:
             case Left(reason)    => Future.successful(Left(reason))
             case Right(assembly) =>
@@ -117,6 +128,16 @@ object VirtualFlights:
         .filter(_.vehicles.size == settings.fleet.agents.size)
         .toRight("its vehicles were not all seen")
     yield Result.of(settings.scenario, tracks)
+
+  private def serveSolver(settings: FlySettings, plan: FlightPlan, network: MemoryNetwork, clock: Clock)(using
+      system: ActorSystem
+  ): Future[SolverServer] =
+    val desk = SolverDesk(plan.seed, Here, _ => Right(plan.fleet(settings)), clock, system.dispatcher)
+    SolverServer.start(SolverAt, network.host(There), desk)
+
+  private val Here     = "localhost"
+  private val There    = "solver"
+  private val SolverAt = Address(There, 7400)
 
   private def workers(planning: PlanSettings): PlanWorkers =
     CountedPlanWorkers(planning.searches, planning.slices)

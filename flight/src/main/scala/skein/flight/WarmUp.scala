@@ -7,7 +7,7 @@ import skein.link.Transport
 import skein.loop.Outcome
 import skein.loop.planning.BackgroundThread
 import skein.record.MemoryRecorder
-import skein.settings.{FlySettings, OutsidePolicy, Wire}
+import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -42,7 +42,8 @@ object WarmUp:
     val short = settings.copy(
       duration = settings.duration.min(Flown),
       // For another process virtual time stands still: who is slow would take minutes.
-      policies = settings.policies.filterNot(OutsidePolicy.decides)
+      policies = settings.policies.filterNot(OutsidePolicy.decides),
+      solver = settings.solver.map(_ => SolverChoice.Link(LatencyProfile.direct))
     )
     val plans = short.plans
     val until = clock.now() + AtMost
@@ -75,6 +76,7 @@ object WarmUp:
     val alone = settings.copy(
       // Vehicles by MAVLink climb to their starts first, which would take a minute.
       wire = Wire.AirSim,
+      solver = None,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Agent, AgentPolicy, KeepHeading, PolicyFamily}
+import skein.policy.{Agent, AgentPolicy, HoldPosition, KeepHeading, PolicyFamily}
 import skein.scenario.Scenarios
 import skein.units.Span
 
@@ -18,27 +18,33 @@ enum Fallback:
   /** The last decision, once more. */
   case Repeat
 
+  /** The vehicle is told to stay where it is. */
+  case Hover
+
   /** A policy of the family, where it is meant for the vehicle's role; for others as [[Repeat]]. */
   case Decides(family: PolicyFamily)
 
   def label: String = this match
     case Hold            => "hold"
     case Repeat          => "repeat"
+    case Hover           => "hover"
     case Decides(family) => family.name
 
   /** Who decides for an agent; absent where nobody does. */
   def policy(agent: Agent): Option[AgentPolicy] = this match
     case Hold                                                 => None
+    case Hover                                                => Some(HoldPosition)
     case Decides(family) if family.roles.contains(agent.role) => Some(family.defaultPolicy)
     case _                                                    => Some(KeepHeading)
 
 object Fallback:
 
-  /** `hold`, `repeat` or a family's name. */
+  /** `hold`, `repeat`, `hover` or a family's name. */
   def parse(text: String)(using scenarios: Scenarios): Either[String, Fallback] = text match
     case "hold"   => Right(Hold)
     case "repeat" => Right(Repeat)
+    case "hover"  => Right(Hover)
     case name     =>
       scenarios.family(name).map(Decides(_)).left.map(reason =>
-        s"expected hold, repeat or a policy: $reason"
+        s"expected hold, repeat, hover or a policy: $reason"
       )

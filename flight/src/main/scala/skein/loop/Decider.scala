@@ -48,6 +48,11 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
           )
         (next.copy(held = held), decision.copy(action = Some(action)))
 
+  /** Decides once in the place of another policy, of which the memory is, and leaves that policy's own part as it was. */
+  def decideInstead(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
+    val (next, decision) = decide(memory.copy(held = policy.start), view, now)
+    (next.copy(held = memory.held), decision)
+
   def regardsTeam: Boolean = policy match
     case _: Policy => false
     case _         => true

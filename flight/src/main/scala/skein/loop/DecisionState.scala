@@ -9,12 +9,17 @@ private final class DecisionState(decider: Decider, memory: Memory):
   /** Whether decisions depend on more vehicles than this one and its opponent. */
   def regardsTeam: Boolean = decider.regardsTeam
 
-  def decide(view: TeamView, now: Instant): (DecisionState, Decision) = decideBy(decider, view, now)
+  def decide(view: TeamView, now: Instant): (DecisionState, Decision) =
+    val (next, decision) = decider.decide(memory, view, now)
+    (DecisionState(decider, next), decision)
 
   /** As another would in its place, this once. */
   def decideBy(one: Decider, view: TeamView, now: Instant): (DecisionState, Decision) =
-    val (next, decision) = one.decide(memory, view, now)
+    val (next, decision) = one.decideInstead(memory, view, now)
     (DecisionState(decider, next), decision)
+
+  /** With what the policy remembers as it was before the first decision. */
+  def begunAnew: DecisionState = DecisionState(decider, memory.copy(held = decider.start.held))
 
 /** What the decisions of vehicles that plan together are made by when they are made again. Immutable but for scratch
   * memory.

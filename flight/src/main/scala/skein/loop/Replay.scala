@@ -36,6 +36,9 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
   private val missed   = recording.events.collect {
     case Event(_, EventKind.DeadlineMissed, Some(vehicle), _, Some(decision)) => (vehicle, decision)
   }.toSet
+  private val begunAnew = recording.events.collect {
+    case Event(_, EventKind.SolverRestarted, Some(vehicle), _, Some(decision)) => (vehicle, decision)
+  }.toSet
   private val fallback = recording.heading.parameters
     .find(_.name == Replay.Fallback)
     .flatMap(parameter => skein.loop.Fallback.parse(parameter.value).toOption)
@@ -92,7 +95,8 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
       self <- vehicle(recorded, "vehicle", recorded.vehicle)
       view <- view(recorded, self, states.single(self).regardsTeam)
     yield
-      val state            = states.single(self)
+      val before = states.single(self)
+      val state  = if begunAnew((recorded.vehicle, recorded.sequence)) then before.begunAnew else before
       val (next, decision) =
         if missed((recorded.vehicle, recorded.sequence)) then
           state.decideBy(instead(self), view, recorded.decidedAt)

@@ -18,16 +18,22 @@ import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint}
 
-/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them. */
+/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them.
+  *
+  * @param solver
+  *   decides in the policies' place; the settings then have a deadline
+  */
 final class Team(
     val fleet: Fleet,
     crafts: Vector[VehiclePort],
     clock: Clock,
     recorder: Recorder,
     val settings: LoopSettings,
-    workers: PlanWorkers = PlanWorkers.none
+    workers: PlanWorkers = PlanWorkers.none,
+    solver: Option[Solver] = None
 )(using ExecutionContext):
   require(crafts.size == fleet.agents.size, "one craft per agent")
+  require(solver.isEmpty || settings.deadline.isDefined, "who is asked elsewhere needs a deadline")
   for missing <- Team.missingSensor(fleet, crafts) do throw IllegalArgumentException(missing)
 
   val vehicles: Range  = crafts.indices
@@ -216,7 +222,7 @@ final class Team(
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
       .collect { case request if request.deciders(vehicle) => request }
-      .via(predicted(Vector(vehicle), Span.Zero, meter("predict", vehicle)))
+      .via(predicted(Vector(vehicle), solver.fold(Span.Zero)(_.delay), meter("predict", vehicle)))
       .addAttributes(named("predict", vehicle))
 
   /** Carries requests forward to when the commands of some vehicles will act, and records how earlier predictions turned
@@ -230,7 +236,7 @@ final class Team(
 
   private def predicted(
       deciders: Vector[Int],
-      lead: Span,
+      lead: => Span,
       meter: StageMeter
   ): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
@@ -257,10 +263,38 @@ final class Team(
       Flow
         .fromMaterializer: (materializer, _) =>
           given system: ActorSystem = materializer.system
-          val policies              = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
-          decideWithin(vehicle, deadline.within, deadline.otherwise.policy(fleet.agents(vehicle))):
-            case (memory, (view, now)) => Future(decideAt(vehicle, memory, view, now))(using policies)
+          val instead               = deadline.otherwise.policy(fleet.agents(vehicle))
+          solver match
+            case Some(solver) => decideElsewhere(vehicle, deadline.within, instead, solver)
+            case None         =>
+              val policies = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
+              decideWithin(vehicle, deadline.within, instead):
+                case (memory, (view, now)) => Future(decideAt(vehicle, memory, view, now))(using policies)
         .mapMaterializedValue(_ => NotUsed)
+
+  private def decideElsewhere(
+      vehicle: Int,
+      deadline: Span,
+      instead: Option[AgentPolicy],
+      solver: Solver
+  )(using
+      ActorSystem
+  ): Flow[DecisionRequest, Decision, NotUsed] =
+    inTime[Solved](vehicle, deadline, instead, asksAgain = true)((memory, view, now) =>
+      val remembered = memory.held match
+        case used: Solver.Remembered => Some(used)
+        case _                       => None
+      solver
+        .ask(vehicle, memory, remembered, view, now, now + deadline)
+        .map: solved =>
+          val (next, decision) =
+            deciders(vehicle).decided(memory, view, solved.decidedAt, solved.headingRad, solved.speed)
+          (
+            next.copy(held = Solver.Remembered(solved.solver, solved.question)),
+            decision.copy(action = solved.action),
+            solved
+          )
+    )(log.solved)
 
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
@@ -300,21 +334,37 @@ final class Team(
   )(
       policy: (Memory, (TeamView, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
+    inTime[Unit](vehicle, deadline, instead, asksAgain = false)((memory, view, now) =>
+      policy(memory, (view, now)).map((next, decision) => (next, decision, ()))
+    )((_, _) => ())
+
+  /** @param asksAgain
+    *   see [[Decide.within]]
+    * @param onDecided
+    *   told of each decision that came in time, with what came with it
+    */
+  private def inTime[A](vehicle: Int, deadline: Span, instead: Option[AgentPolicy], asksAgain: Boolean)(
+      policy: (Memory, TeamView, Instant) => Future[(Memory, Decision, A)]
+  )(onDecided: (Decision, A) => Unit)(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
     type Seen = (TeamView, Instant)
-    val otherwise = instead.fold(OnOverrun.Hold()): fallback =>
+    type Made = (Decision, Option[A])
+    val otherwise = instead.fold(OnOverrun.Hold[Memory]()): fallback =>
       val decider = Decider(fleet, vehicle, fallback)
-      OnOverrun.Ask((memory: Memory, seen: Seen) =>
-        decider.decide(memory, seen._1, seen._2)
-      )
+      OnOverrun.Ask[Memory, Seen, Made]: (memory, seen) =>
+        val (next, decision) = decider.decideInstead(memory, seen._1, seen._2)
+        (next, (decision, None))
     requests(vehicle)
-      .via(Decide.within(deadline, otherwise, start(vehicle))((memory, seen: Seen) =>
-        policy(memory, seen)
+      .via(Decide.within[Memory, Seen, Made](deadline, otherwise, start(vehicle), asksAgain)((memory, seen) =>
+        policy(memory, seen._1, seen._2).map((next, decision, came) => (next, (decision, Some(came))))
       ))
       .map:
-        case DeadlineResult.Decided(decision)     => Some(decision)
+        case DeadlineResult.Decided((decision, came)) =>
+          came.foreach(onDecided(decision, _))
+          Some(decision)
         case DeadlineResult.Missed(miss, instead) =>
-          log.missed(vehicle, miss, instead.map(_.sequence))
-          instead
+          val made = instead.map(_._1)
+          log.missed(vehicle, miss, made.map(_.sequence))
+          made
       .collect { case Some(decision) => decision }
       .via(decided(vehicle))
 

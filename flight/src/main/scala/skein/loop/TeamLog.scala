@@ -5,7 +5,16 @@ import skein.flow.{Overrun, Steered, Verified}
 import skein.loop.planning.PlanStage
 import skein.policy.Fleet
 import skein.port.VehicleError
-import skein.record.{Acknowledgement, Event, EventKind, Planned, Prediction, Recorder}
+import skein.record.{
+  Acknowledgement,
+  Event,
+  EventKind,
+  Planned,
+  Prediction,
+  Recorder,
+  SolverClock,
+  Solved as SolvedRow
+}
 import skein.units.*
 
 /** Tells a recorder what happens to a team in flight. */
@@ -24,6 +33,29 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
     recorder.offer(
       Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)
+    )
+
+  /** A decision came from elsewhere in time. */
+  def solved(decision: Decision, by: Solved): Unit =
+    val vehicle = name(decision.vehicle)
+    if by.begunAnew then
+      recorder.offer(Event(
+        clock.now(),
+        EventKind.SolverRestarted,
+        Some(vehicle),
+        s"decision ${decision.sequence} by a policy that remembers nothing",
+        Some(decision.sequence)
+      ))
+    recorder.offer(
+      SolvedRow(
+        vehicle,
+        decision.sequence,
+        by.question,
+        by.askedAt,
+        by.receivedAt,
+        by.thinking,
+        by.clock.map(known => SolverClock(known.offset, known.uncertainty))
+      )
     )
 
   /** Records why a call failed.

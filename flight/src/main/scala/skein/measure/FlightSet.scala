@@ -58,7 +58,8 @@ object FlightSet:
         place(linkOrder, summary.flight.link),
         summary.flight.link,
         summary.flight.loopKind.fold(LoopKind.values.length)(_.ordinal),
-        summary.policy.isDefined
+        summary.policy.isDefined,
+        summary.solver.isDefined
       )
     val twins = Twin.among(ordered)
     new FlightSet(ordered.diff(twins.flatMap(_.virtual)), twins)

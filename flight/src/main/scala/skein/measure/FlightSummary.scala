@@ -30,6 +30,10 @@ import skein.units.*
   *   for how long its vehicles were told to hover: that lies within all times and distances of the flight
   * @param seeing
   *   of each eye that saw anything
+  * @param solver
+  *   absent where the flight's own process decided
+  * @param commandAgesMs
+  *   of commands that carry out a decision: from when the vehicle's own physics was sampled to the command's sending
   */
 final case class FlightSummary(
     flight: Flight,
@@ -48,11 +52,17 @@ final case class FlightSummary(
     planning: Option[PlanningSummary] = None,
     predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None,
     paused: Option[Span] = None,
-    seeing: Vector[SeeingSummary] = Vector.empty
+    seeing: Vector[SeeingSummary] = Vector.empty,
+    solver: Option[SolverSummary] = None,
+    commandAgesMs: Option[Distribution] = None
 ):
-  /** The loop, the policy where it is not the paper's, and whether the flight was cut short or paused. */
+  /** The loop, the policy where it is not the paper's, whether a solver decided, and whether the flight was cut short or
+    * paused.
+    */
   def name: String =
-    flight.loop + policy.fold("")(policy => s", $policy") + cutShort.fold("")(_ => ", cut short") +
+    flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") + cutShort.fold(
+      ""
+    )(_ => ", cut short") +
       paused.fold("")(_ => ", paused")
 
   /** What the recording calls its scenario, without what it tells of it. */
@@ -72,7 +82,10 @@ final case class FlightSummary(
     * paused stands beside it.
     */
   def published: Option[Published.Flight] =
-    if !scenario.exists(Published.isOf) || policy.isDefined || cutShort.isDefined || paused.isDefined then
+    if !scenario.exists(
+        Published.isOf
+      ) || policy.isDefined || solver.isDefined || cutShort.isDefined || paused.isDefined
+    then
       None
     else flight.loopKind.flatMap(Published.flight(_, flight.link))
 
@@ -119,8 +132,20 @@ object FlightSummary:
       PlanningSummary.of(recording),
       PredictionErrors.of(recording, scenario.forall(isOfDuels)),
       paused(recording),
-      scenario.toVector.flatMap(_.eyes).flatMap(SeeingSummary.of(recording, _, tracks))
+      scenario.toVector.flatMap(_.eyes).flatMap(SeeingSummary.of(recording, _, tracks)),
+      SolverSummary.of(recording),
+      commandAgesMs(recording)
     )
+
+  private def commandAgesMs(recording: Recording): Option[Distribution] =
+    val decided = recording.decisions.map(made => (made.vehicle, made.sequence) -> made).toMap
+    Distribution.of:
+      for
+        command  <- recording.commands
+        sequence <- command.decision
+        decision <- decided.get((command.vehicle, sequence))
+        age      <- decision.trueAge
+      yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
 

@@ -32,6 +32,9 @@ import skein.vehicle.ReducedModel
   *   what stands in the built-in simulator's world; without one, what the scenario says
   * @param wire
   *   what the vehicles are spoken to by
+  * @param solver
+  *   by whom the flights are flown too, beside those that decide in this process; a decision then has a deadline, the
+  *   period where none is set
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -47,7 +50,8 @@ final case class FlySettings(
     policies: List[PolicyFile] = Nil,
     planning: PlanSettings = PlanSettings(),
     scene: Option[NamedScene] = None,
-    wire: Wire = Wire.AirSim
+    wire: Wire = Wire.AirSim,
+    solver: Option[SolverChoice] = None
 ):
 
   /** What stands in the world. */
@@ -65,6 +69,15 @@ final case class FlySettings(
 
   /** Who flies. */
   def fleet: Fleet = scenario.fleet
+
+  /** How a flight's loop is run. */
+  def loopSettings(plan: FlightPlan): LoopSettings =
+    val all = loopSettings.copy(seed = plan.seed)
+    if plan.solver.isEmpty then all else all.copy(deadline = Some(Deadline(deadlineOf(plan).get, fallback)))
+
+  /** By when a flight's decisions must be there, if they must. */
+  def deadlineOf(plan: FlightPlan): Option[Span] =
+    if plan.solver.isEmpty then deadline else deadline.orElse(Some(period))
 
   /** How the loops are run. */
   def loopSettings: LoopSettings =
@@ -87,7 +100,14 @@ final case class FlySettings(
       val same = policies.take(index).count(_.name == policy.name)
       policy.name + (if same == 0 then "" else s"-${same + 1}")
     val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
-    papers ++ chosen.flatMap(plansWith)
+    withSolver(papers ++ chosen.flatMap(plansWith))
+
+  /** Flights that differ in where is decided alone have the same seed. */
+  private def withSolver(plans: Vector[FlightPlan]): Vector[FlightPlan] =
+    plans ++ solver.toVector.flatMap: choice =>
+      plans
+        .filter(plan => FlySettings.decidedElsewhere(plan.loop))
+        .map(plan => plan.copy(id = s"${plan.id}-solver", solver = Some(choice)))
 
   /** The same flights with a policy in the place of the scenario's. */
   def plansWith(policy: ChosenPolicy): Vector[FlightPlan] =
@@ -132,13 +152,16 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
   *
   * @param policy
   *   without one, the scenario's fly
+  * @param solver
+  *   who decides; without one, this process
   */
 final case class FlightPlan(
     id: String,
     loop: LoopKind,
     link: LatencyProfile,
     seed: Long,
-    policy: Option[ChosenPolicy] = None
+    policy: Option[ChosenPolicy] = None,
+    solver: Option[SolverChoice] = None
 ):
   /** Who flies, in the scenario of the settings. */
   def fleet(settings: FlySettings): Fleet =
@@ -203,6 +226,12 @@ object FlySettings:
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
+      Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
+        "solver: expected with a loop whose decisions can be made elsewhere, came with paused and plan alone"
+      ),
+      Option.when(settings.solver.isDefined && settings.policies.exists(OutsidePolicy.decides))(
+        "solver: expected with policies that both processes have, came with one behind a socket"
+      ),
       Option.when(settings.deadline.exists(_ <= Span.Zero))(
         s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
@@ -212,6 +241,9 @@ object FlySettings:
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
+
+  /** `paused` waits with its simulator stopped; what `plan` decides is searched by threads of this process. */
+  def decidedElsewhere(loop: LoopKind): Boolean = loop != LoopKind.Paused && loop != LoopKind.Plan
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
@@ -239,6 +271,8 @@ object FlySettings:
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
+
+  private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse)
 
   private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 

@@ -2,7 +2,7 @@ package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
 import skein.loop.learning.{Learning, LessonsAgain, News}
-import skein.measure.RecordedScenario
+import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
 import skein.record.{Event, EventKind, Parameter, Record, Recording}
 import skein.scenario.Scenarios
@@ -53,12 +53,13 @@ object RecordedPlan:
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ settings.deadline.toSeq.flatMap(deadline =>
-      Seq(
-        Parameter(DeadlineNs, deadline.toNanos.toString),
-        Parameter(Replay.Fallback, settings.fallback.label)
-      )
-    ) ++
+    ) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
+      settings.deadlineOf(plan).toSeq.flatMap(deadline =>
+        Seq(
+          Parameter(DeadlineNs, deadline.toNanos.toString),
+          Parameter(Replay.Fallback, settings.fallback.label)
+        )
+      ) ++
       plan.policy.toSeq.flatMap: chosen =>
         Seq(
           Parameter(PolicyName, chosen.name),
@@ -90,7 +91,8 @@ object RecordedPlan:
       older    <- optional(Model, "a model's name or five numbers")(PredictionModel.recordedAsModel)
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
-      fallback <- optional(Replay.Fallback, "hold, repeat or a policy")(Fallback.parse(_).toOption)
+      fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
+      solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
@@ -118,7 +120,7 @@ object RecordedPlan:
         fallback = fallback.getOrElse(settings.fallback),
         scene = Some(scene)
       ),
-      FlightPlan(flight.id, loop, link, flight.seed, policy)
+      FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
     )
 
   /** Versions' parameters belong to the last that was new before a decision. */

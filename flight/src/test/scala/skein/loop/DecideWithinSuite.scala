@@ -125,4 +125,4 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(pursuit.label, "pure-pursuit")
     assertEquals(pursuit.policy(scenario.agents(0)), Some(KeepHeading))
     assertNotEquals(pursuit.policy(scenario.agents(pursuer)), Some(KeepHeading))
-    assert(Fallback.parse("panic").left.exists(_.startsWith("expected hold, repeat or a policy")))
+    assert(Fallback.parse("panic").left.exists(_.startsWith("expected hold, repeat, hover or a policy")))

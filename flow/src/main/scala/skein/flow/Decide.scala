@@ -27,14 +27,17 @@ object Decide:
     * '''Emits when''' the policy decides, or its deadline is over. '''Backpressures when''' a decision is under way, or
     * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted. '''Cancels
     * when''' downstream cancels.
+    *
+    * @param asksAgain
+    *   asks a policy that is late anew at every observation, for one that leaves an older question for a newer one
     */
-  def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M)(
+  def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M, asksAgain: Boolean = false)(
       policy: (M, O) => Future[(M, D)]
   )(using system: ActorSystem): Flow[O, DeadlineResult[D], NotUsed] =
     import system.dispatcher
 
     def answer(working: Future[Any], ask: => Future[(M, D)]): (Future[Any], Future[Either[Overrun, (M, D)]]) =
-      if !working.isCompleted then (working, Future.successful(Left(Overrun.Busy)))
+      if !asksAgain && !working.isCompleted then (working, Future.successful(Left(Overrun.Busy)))
       else
         val asked   = Try(ask).fold(Future.failed, identity)
         val decided = asked.transform:

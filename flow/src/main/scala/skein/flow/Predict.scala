@@ -17,11 +17,11 @@ object Predict:
     * @param verified
     *   vehicles whose estimates are held against readings
     * @param lead
-    *   how much later than the element's coming its command will be sent, or begin to act
+    *   how much later than the element's coming its command will be sent, or begin to act; asked for at each element
     * @param onVerified
     *   told of every prediction whose moment was read, with its error
     */
-  def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: Span = Span.Zero)(
+  def whenActing[A](clock: Clock, verified: Int => Boolean = _ => true, lead: => Span = Span.Zero)(
       onVerified: Verified => Unit
   ): Flow[(A, Forecast), (A, Vector[Estimate]), NotUsed] =
     Flow[(A, Forecast)]

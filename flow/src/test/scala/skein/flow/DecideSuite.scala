@@ -15,6 +15,9 @@ class DecideSuite extends munit.FunSuite:
     * many decisions came before, after its delay; a negative one makes it throw.
     */
   private def decided(otherwise: OnOverrun[Int, Int, Int], delaysMs: Int*): Seq[(Long, DeadlineResult[Int])] =
+    decidedBy(otherwise, asksAgain = false, delaysMs)
+
+  private def decidedBy(otherwise: OnOverrun[Int, Int, Int], asksAgain: Boolean, delaysMs: Seq[Int]) =
     VirtualTime.run(seed = 1): system =>
       given ActorSystem                                  = system
       val clock                                          = Clock.ofNanos(VirtualTime.clock(system))
@@ -27,7 +30,7 @@ class DecideSuite extends munit.FunSuite:
         .zipWithIndex
         .map(_._2.toInt)
         .take(delaysMs.size)
-        .via(Decide.within(Span.ofMillis(40), otherwise, start = 0)(policy))
+        .via(Decide.within(Span.ofMillis(40), otherwise, start = 0, asksAgain)(policy))
         .map(timely => (clock.now().since(start).toNanos / 1_000_000, timely))
         .runWith(Sink.seq)
     .value
@@ -46,6 +49,18 @@ class DecideSuite extends munit.FunSuite:
         200L -> Missed(Overrun.Busy, None),
         300L -> Missed(Overrun.Busy, None),
         410L -> Decided(41)
+      )
+    )
+
+  test("a late policy that leaves an older question for a newer one is asked anew"):
+    assertEquals(
+      decidedBy(OnOverrun.Hold(), asksAgain = true, Seq(10, 250, 10, 10, 10)),
+      Seq(
+        10L  -> Decided(0),
+        140L -> Missed(Overrun.Late, None),
+        210L -> Decided(21),
+        310L -> Decided(32),
+        410L -> Decided(43)
       )
     )
 

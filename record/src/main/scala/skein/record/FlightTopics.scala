@@ -67,6 +67,7 @@ object FlightTopics:
     case reading: Reading        => Some(reading.state.receivedAt)
     case measured: Measurement   => Some(measured.receivedAt)
     case decision: Decision      => Some(decision.decidedAt)
+    case solved: Solved          => Some(solved.receivedAt)
     case command: Command        => Some(command.sentAt)
     case answer: Acknowledgement => Some(answer.endedAt)
     case latency: Latency        => Some(latency.sentAt + latency.roundTrip)
@@ -81,6 +82,7 @@ object FlightTopics:
     case decision: Decision      => decision.vehicle
     case sighting: Sighting      => s"${sighting.decider} ${sighting.vehicle}"
     case planned: Planned        => planned.vehicle
+    case solved: Solved          => solved.vehicle
     case prediction: Prediction  => s"${prediction.decider} ${prediction.vehicle}"
     case command: Command        => command.vehicle
     case answer: Acknowledgement => answer.vehicle

@@ -197,6 +197,44 @@ final case class Planned(
     breaches: Long
 ) extends Record
 
+/** A decision that was made in another process, and the times of its ways there and back.
+  *
+  * @param decision
+  *   the sequence of the decision of `vehicle`; the decision says when it was made, by what was known of the solver's
+  *   clock
+  * @param question
+  *   counts the questions for `vehicle`; those that are missing here were not answered in time
+  * @param askedAt
+  *   when the question left
+  * @param receivedAt
+  *   when the answer came
+  * @param thinking
+  *   from the question's coming to the solver to the answer's leaving, by the solver's clock
+  * @param clock
+  *   absent before the first answer of a solver
+  */
+final case class Solved(
+    vehicle: String,
+    decision: Long,
+    question: Long,
+    askedAt: Instant,
+    receivedAt: Instant,
+    thinking: Span,
+    clock: Option[SolverClock]
+) extends Record:
+
+  /** From the question's leaving to the answer's coming. */
+  def roundTrip: Span = receivedAt.since(askedAt)
+
+/** How the solver's clock stood to the controller's, as was known when a decision was asked for.
+  *
+  * @param offset
+  *   the controller's clock minus the solver's
+  * @param uncertainty
+  *   the truth lies within ± this
+  */
+final case class SolverClock(offset: Span, uncertainty: Span)
+
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
@@ -302,7 +340,7 @@ final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends
   *   absent where it concerns all
   * @param decision
   *   where a deadline was missed, the sequence of the decision that the fallback made instead; absent where it made none.
-  *   Where something was learned, the sequence of the first decision after it
+  *   Where something was learned, or a solver began anew, the sequence of the first decision after it
   */
 final case class Event(
     at: Instant,
@@ -348,6 +386,12 @@ enum EventKind:
 
   /** A policy did not decide in time. */
   case DeadlineMissed
+
+  /** A solver in another process was started again, or another one answers: what policies remember begins anew. */
+  case SolverRestarted
+
+  /** An answer came more than once; it counts once. */
+  case Repeated
 
   /** A plan could not keep within a hard limit. */
   case LimitBroken

@@ -22,6 +22,7 @@ object RecordingReader:
             Table.measurement.read(connection),
             Table.sensing.read(connection),
             Table.planned.read(connection),
+            Table.solved.read(connection),
             Table.prediction.read(connection),
             Table.command.read(connection),
             Table.acknowledgement.read(connection),

@@ -35,7 +35,9 @@ object RecordingSchema:
     case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
       "The measurements that a decision was made from: one row for each sensor that its policy reads."
-    case "plan"            => "How a plan was found: candidates, slices of each search, cost, broken limits."
+    case "plan"   => "How a plan was found: candidates, slices of each search, cost, broken limits."
+    case "solved" =>
+      "Decisions that were made in another process: when the question left and the answer came, and how long the solver took. Questions that are missing were not answered in time."
     case "prediction"      => "Predictions that a later reading could be compared with, and their errors."
     case "command"         => "One row for each command as it was sent."
     case "acknowledgement" => "How each command ended."

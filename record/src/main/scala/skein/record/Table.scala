@@ -198,6 +198,22 @@ private[record] object Table:
     since = 3
   )
 
+  val solved: Table[Solved] = Table(
+    "solved",
+    product[Solved]:
+      (
+        text("vehicle"),
+        long("decision"),
+        long("question"),
+        instantNs("askedAt"),
+        instantNs("receivedAt"),
+        spanMs("thinking"),
+        optional(product[SolverClock]((spanNs("solverClockOffset"), spanMs("solverClockUncertainty"))))
+      )
+    ,
+    since = 6
+  )
+
   val prediction: Table[Prediction] = Table(
     "prediction",
     product[Prediction]:
@@ -270,6 +286,7 @@ private[record] object Table:
       measurement,
       sensing,
       planned,
+      solved,
       prediction,
       command,
       acknowledgement,
@@ -295,6 +312,7 @@ private[record] object Table:
     case _: Measurement     => measurement
     case _: Sensing         => sensing
     case _: Planned         => planned
+    case _: Solved          => solved
     case _: Prediction      => prediction
     case _: Command         => command
     case _: Acknowledgement => acknowledgement

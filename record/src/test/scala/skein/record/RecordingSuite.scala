@@ -50,7 +50,8 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       val file = folder.resolve("flight.duckdb")
       record(file, Samples.oneOfEach*)
       for
-        (table, came) <- Seq("sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
+        (table, came) <-
+          Seq("solved" -> 6, "sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
         _ = execute(file, s"DROP TABLE $table")
         format <- Seq(came, came - 1)
       do

@@ -105,6 +105,16 @@ object Samples:
     Sensing("Pursuer", 2, "gps", 3),
     Planned("Pursuer", 1, 40_960, Vector(40, 39), Some(12.25), Span.ofMillis(60.5), 0),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
+    Solved(
+      "Pursuer",
+      1,
+      4,
+      at(41_000_000),
+      at(52_000_000),
+      Span.ofMillis(1.5),
+      Some(SolverClock(Span.ofNanos(-1_000_000_007), Span.ofMillis(4.75)))
+    ),
+    Solved("Evader", 0, 0, at(41_000_000), at(52_000_000), Span.Zero, None),
     Prediction(
       "Pursuer",
       "Evader",

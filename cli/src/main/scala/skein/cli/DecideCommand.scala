@@ -1,0 +1,168 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import java.security.SecureRandom
+import java.time.LocalTime
+import java.time.temporal.ChronoUnit
+import java.util.concurrent.ConcurrentHashMap
+import mainargs.{Flag, ParserForClass, arg}
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import skein.cluster.{BuildId, Endpoint}
+import skein.flight.WarmUp
+import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
+import skein.link.{Address, TcpTransport, TransportError}
+import skein.loop.planning.BackgroundThread
+import skein.policy.Fleet
+import skein.scenario.Scenarios
+import skein.settings.{RecordedPlan, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.solver.{Briefing, SolverDesk, SolverServer}
+import skein.units.Clock
+
+/** Options of `./skein decide`. */
+final case class DecideOptions(
+    @arg(doc =
+      "where flights ask, as they say with --solver: tcp://HOST:PORT of this machine, or kafka://HOST:PORT/PREFIX of a broker"
+    )
+    at: String = "tcp://127.0.0.1:7400",
+    @arg(doc =
+      "starts Kafka's own broker there, in this process, for a first try; what it holds is deleted at the end"
+    )
+    broker: Flag,
+    @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
+    scenario: Option[String]
+)
+
+final class DecideCommand(using scenarios: Scenarios)
+    extends OptionsCommand[DecideOptions](
+      "decide",
+      "decides for flights of other processes: ./skein fly --solver",
+      ParserForClass[DecideOptions]
+    ):
+
+  protected def execute(options: DecideOptions): Either[String, Unit] =
+    for
+      at <- SolverChoice.parse(options.at).left.map("--at: " + _)
+      _  <- options.scenario.fold(Right(()))(name =>
+        scenarios.kind(name).left.map("--scenario: " + _).map(_ => ())
+      )
+      _ <- at match
+        case SolverChoice.Kafka(at, prefix) =>
+          served(options)(kafka(KafkaTopics(at, prefix), options.broker.value))
+        case _ if options.broker.value =>
+          Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
+        case SolverChoice.Tcp(address) => served(options)(tcp(address))
+        case SolverChoice.Link(_)      =>
+          Left(
+            s"--at: expected tcp://HOST:PORT, such as tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
+          )
+    yield ()
+
+  /** Where it is asked, and how that ends. */
+  private type Serving = SolverDesk => ActorSystem ?=> Either[String, () => Future[Done]]
+
+  private given ExecutionContext = ExecutionContext.global
+
+  private def tcp(address: Address): Serving = desk =>
+    if !Endpoint(address.host, address.port).isLoopback then
+      Left(
+        s"--at: expected an address of this machine, such as tcp://127.0.0.1:7400, since whoever reaches it may ask, came $address; " +
+          "flights of other machines come through a tunnel, such as ssh -L 7400:127.0.0.1:7400"
+      )
+    else
+      try
+        val server = Edge.await(SolverServer.start(address, TcpTransport(), desk))
+        Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
+        Right(() => server.close())
+      catch case error: TransportError => Left(error.getMessage)
+
+  private def kafka(topics: KafkaTopics, withBroker: Boolean): Serving = desk =>
+    import topics.broker as at
+    def started(folder: Path): Either[String, Option[KafkaBroker]] =
+      if !withBroker then Right(None)
+      else if !Endpoint(at.host, at.port).isLoopback || at.port == 0 then
+        Left(s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, came $at")
+      else
+        say(s"a Kafka broker starts at $at")
+        KafkaBroker.start(folder, at.port).map(Some(_)).left.map("--broker: " + _)
+    val folder = Files.createTempDirectory("skein-broker")
+    started(folder) match
+      case Left(reason) =>
+        KafkaBroker.delete(folder)
+        Left(reason)
+      case Right(broker) =>
+        val solver =
+          KafkaSolver(topics, desk, reason => say(s"the broker at $at does not take answers: $reason"))
+        def close() = solver.close().map: _ =>
+          broker.foreach(_.close())
+          KafkaBroker.delete(folder)
+          Done
+        say(s"looks for the broker at $at")
+        solver.start().foreach(_ =>
+          Console.out.println(s"decides at kafka://$at/${topics.prefix}; Ctrl-C ends it")
+        )
+        Right(() => close())
+
+  private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
+    given system: ActorSystem = ActorSystem("skein-decide")
+    try
+      val warm = ConcurrentHashMap[String, Boolean]()
+      val desk = SolverDesk(
+        SecureRandom().nextLong(),
+        BuildId.current,
+        briefing => fleetOf(briefing, options.scenario, warm),
+        Clock.system,
+        system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId),
+        told = say
+      )
+      serving(desk).map: close =>
+        val ended = Promise[Unit]()
+        Edge.untilInterrupted(() => ended.trySuccess(()): Unit)(Edge.await(ended.future))
+        Edge.await(close()): Unit
+        val stats = desk.stats
+        say(
+          s"answered ${stats.answered} questions; refused ${stats.refused} flights; ${stats.garbled} messages were none"
+        )
+    finally Edge.await(system.terminate()): Unit
+
+  private def fleetOf(
+      briefing: Briefing,
+      only: Option[String],
+      warm: ConcurrentHashMap[String, Boolean]
+  ): Either[String, Fleet] =
+    for
+      plan <- Briefing.plan(briefing)
+      name = plan.settings.scenario.name
+      _ <- Either.cond(
+        only.forall(_ == name),
+        (),
+        s"this solver decides for ${only.getOrElse("")} alone, the flight flies $name"
+      )
+    yield
+      // Whoever comes meanwhile waits for it, too.
+      val _ = warm.computeIfAbsent(
+        s"$name ${briefing.loop}",
+        _ =>
+          warmUp(plan)
+          true
+      )
+      plan.fleet
+
+  /** So that the first decisions do not wait for the compiler. */
+  private def warmUp(plan: RecordedPlan): Unit =
+    val alike = plan.settings.copy(
+      links = List(LatencyProfile.direct),
+      policies = plan.plan.policy.map(_.file).toList,
+      solver = Some(SolverChoice.Link(LatencyProfile.direct))
+    )
+    WarmUp.fly(alike, WarmUp.Flights, Clock.system) match
+      case Left(reason)   => say(s"not warmed up: $reason")
+      case Right(flights) =>
+        say(s"warmed up by $flights virtual flights")
+        BackgroundThread.compilersGiveWay(): Unit
+
+  private def say(line: String): Unit =
+    Console.out.println(s"${LocalTime.now().truncatedTo(ChronoUnit.SECONDS)} $line")

@@ -1,0 +1,60 @@
+package skein.cli
+
+import org.apache.pekko.actor.ActorSystem
+import skein.cluster.BuildId
+import skein.flight.{FlightResult, Solvers}
+import skein.kafka.{KafkaLink, KafkaTopics}
+import skein.link.TcpTransport
+import skein.settings.{FlightPlan, FlySettings, SolverChoice}
+import skein.solver.TcpLink
+import skein.units.Decimals.fixed
+
+/** What `--solver` means to the commands that fly. */
+private[cli] object SolverOptions:
+
+  /** In virtual time a solver is behind a link, or there is none. */
+  def virtual(settings: FlySettings): Either[String, Unit] = settings.solver match
+    case None | Some(SolverChoice.Link(_)) => Right(())
+    case Some(other)                       =>
+      Left(s"--solver ${other.text}: in virtual time expected link:PROFILE, such as link:lognormal:4ms,0.5")
+
+  /** In real time it is another process. */
+  def real(settings: FlySettings): Either[String, Unit] = settings.solver match
+    case Some(choice: SolverChoice.Link) =>
+      Left(
+        s"--solver ${choice.text} is for --clock virtual; expected tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide"
+      )
+    case _ => Right(())
+
+  /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask for it. */
+  def reached(settings: FlySettings)(using ActorSystem): Solvers =
+    if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current)
+
+  private def reachedBy(build: String)(using ActorSystem): Solvers = Solvers(
+    build,
+    {
+      case SolverChoice.Tcp(at)               => Right(TcpLink(TcpTransport(), at))
+      case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)))
+      case SolverChoice.Link(_)               => Left("a link of a profile is for --clock virtual")
+    }
+  )
+
+  /** A flight's plans in virtual time, with its solver behind a link that is as the way to it was: its median, and its
+    * spread by a lognormal distribution.
+    */
+  def twins(flown: FlightResult, count: Int): Vector[FlightPlan] =
+    flown.plan.twins(count).flatMap: plan =>
+      plan.solver match
+        case None    => Some(plan)
+        case Some(_) =>
+          measured(flown.solverTrips.map(_.toMillis)).map(link => plan.copy(solver = Some(link)))
+
+  private[cli] def measured(tripsMs: Vector[Double]): Option[SolverChoice] =
+    val logs = tripsMs.filter(_ > 0).map(math.log).sorted
+    Option.when(logs.nonEmpty):
+      val mean   = logs.sum / logs.size
+      val spread = math.sqrt(logs.map(log => (log - mean) * (log - mean)).sum / logs.size).min(3)
+      SolverChoice
+        .parse(s"link:lognormal:${math.exp(logs(logs.size / 2)).fixed(3)}ms,${spread.fixed(3)}")
+        .toOption
+    .flatten

@@ -1,0 +1,53 @@
+package skein.report
+
+import skein.measure.{Distribution, FlightSet, FlightSummary, Numbers}
+
+/** What decisions in another process cost, beside the same loop that decides in its own. */
+object SolverTable:
+
+  val title = "Decided elsewhere"
+
+  /** A row for each flight with a solver. */
+  def of(set: FlightSet): TextTable =
+    TextTable(
+      Vector("<loop", "<link", "<solver", "answers") ++
+        Vector("added ms p50", "p99", "thinking", "age at command p50", "p99", "here", "p99") ++
+        Vector("missed", "late", "twice", "left", "lost", "result", "here", "difference"),
+      for
+        summary <- set.flights
+        solver  <- summary.solver.toVector
+      yield
+        val here = beside(set, summary)
+        Vector(summary.flight.loop, summary.flight.link, solver.at, solver.answers.toString) ++
+          spread(solver.roundTripsMs) ++
+          Vector(solver.thinkingMs.fold("")(ms => Numbers.brief(ms.median))) ++
+          spread(summary.commandAgesMs) ++ spread(here.flatMap(_.commandAgesMs)) ++
+          Vector(solver.missed, solver.late, solver.repeated, solver.left, solver.lost).map(_.toString) ++
+          Vector(
+            summary.headline.fold("")(Numbers.fixed(_, 2)),
+            here.flatMap(_.headline).fold("")(Numbers.fixed(_, 2)),
+            difference(summary, here)
+          )
+    )
+
+  private def spread(ms: Option[Distribution]): Vector[String] =
+    ms.fold(Vector("", ""))(all => Vector(Numbers.fixed(all.median, 1), Numbers.fixed(all.p99, 1)))
+
+  /** The same loop over the same link by the same policy, decided in the flight's own process. */
+  private def beside(set: FlightSet, flight: FlightSummary): Option[FlightSummary] =
+    set.flights.find: other =>
+      other.solver.isEmpty && other.flight.loop == flight.flight.loop && other.flight.link == flight.flight.link &&
+        other.policy == flight.policy && other.scenario == flight.scenario
+
+  private def difference(flight: FlightSummary, here: Option[FlightSummary]): String =
+    flight.headline
+      .zip(here.flatMap(_.headline))
+      .filter(_._2 != 0)
+      .fold("")((there, own) => s"${Numbers.signed((there / own - 1) * 100)} %")
+
+  val note: String =
+    "Beside the same loop that decides in its own process (here). Added: ms from question to answer, of answers that were used, of which " +
+      "the solver was thinking for so long. Age at command: from when the vehicle's own physics was sampled to the sending of the command " +
+      "that was decided upon it, with all ways. Missed: decisions that the fallback had to make; late: answers that came after their " +
+      "deadline and were not used; twice: messages that came more than once and count once; left: questions that the solver left for " +
+      "newer ones; lost: connections. The result is the scenario's first measure, such as the distance of the last 10 s."

@@ -1,0 +1,38 @@
+package skein.report
+
+import skein.flight.VirtualFlights
+import skein.loop.{Fallback, LoopKind}
+import skein.measure.{FlightSet, FlightSummary}
+import skein.scenario.Scenarios
+import skein.settings.{FlySettings, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+class SolverTableSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
+  private def summaries(solver: String): Vector[FlightSummary] =
+    val settings = FlySettings(
+      List(LoopKind.Predictive),
+      List(LatencyProfile.direct),
+      Span.ofSeconds(12),
+      Span.ofMillis(100),
+      seed = 1,
+      fallback = Fallback.Hover,
+      solver = SolverChoice.parse(solver).toOption
+    )
+    settings.plans.map(plan =>
+      FlightSummary.of(VirtualFlights.fly(settings, plan).fold(fail(_), identity).recorder.recording)
+    )
+
+  test("a flight decided elsewhere stands beside the same loop that decides itself, with what the hop adds"):
+    val set   = FlightSet(summaries("link:constant:20ms"))
+    val table = SolverTable.of(set)
+    assertEquals(table.rows.size, 1)
+    val row                          = table.rows.head
+    def cell(column: String): String = row(table.header.indexWhere(_.stripPrefix("<") == column))
+    assertEquals((cell("loop"), cell("solver")), ("predictive", "link:constant:20ms"))
+    assertEquals((cell("added ms p50"), cell("thinking"), cell("missed")), ("20.0", "0", "0"))
+    assertEqualsDouble(cell("age at command p50").toDouble - cell("here").toDouble, 20, 5)
+    assert(cell("difference").endsWith(" %"), row)
+    assertEquals(set.flights.map(_.name), Vector("predictive", "predictive, solver"))

@@ -1,0 +1,69 @@
+package skein.measure
+
+import skein.record.{EventKind, Recording, Solved}
+
+/** What it came to that a flight's decisions were made in another process.
+  *
+  * @param at
+  *   where the solver was
+  * @param roundTripsMs
+  *   from question to answer, of answers that were used: what the way there and back adds to the age of what is decided
+  *   upon; absent where none was used
+  * @param thinkingMs
+  *   of these, what the solver took
+  * @param missed
+  *   decisions that had to be made without an answer
+  * @param late
+  *   answers that came too late
+  * @param repeated
+  *   messages that came more than once
+  * @param left
+  *   questions that the solver left for newer ones
+  * @param lost
+  *   how often the connection was lost
+  * @param restarted
+  *   decisions for which the solver remembered nothing of those before
+  */
+final case class SolverSummary(
+    at: String,
+    answers: Int,
+    roundTripsMs: Option[Distribution],
+    thinkingMs: Option[Distribution],
+    missed: Int,
+    late: Int,
+    repeated: Int,
+    left: Int,
+    lost: Int,
+    restarted: Int
+)
+
+object SolverSummary:
+
+  /** Absent where the flight's own process decided. */
+  def of(recording: Recording): Option[SolverSummary] =
+    for at <- recording.heading.parameters.find(_.name == Parameter).map(_.value)
+    yield
+      val solved                            = recording.solved
+      def ms(of: Solved => Double)          = Distribution.of(solved.map(of))
+      def count(kind: EventKind)            = recording.events.count(_.kind == kind)
+      def said(kind: EventKind, in: String) =
+        recording.events.filter(event => event.kind == kind && event.detail.contains(in))
+      SolverSummary(
+        at,
+        solved.size,
+        ms(_.roundTrip.toMillis),
+        ms(_.thinking.toMillis),
+        count(EventKind.DeadlineMissed),
+        said(EventKind.LateReply, OfSolver).size,
+        count(EventKind.Repeated),
+        said(EventKind.Dropped, Left).flatMap(_.detail.takeWhile(_.isDigit).toIntOption).sum,
+        said(EventKind.Disconnected, OfSolver).size,
+        count(EventKind.SolverRestarted)
+      )
+
+  /** Under which a recording says where the solver was. */
+  val Parameter = "solver"
+
+  // Words of events, which loops note of other things, too.
+  private val OfSolver = "solver"
+  private val Left     = "left at the solver"

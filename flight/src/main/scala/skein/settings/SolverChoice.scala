@@ -1,0 +1,47 @@
+package skein.settings
+
+import skein.link.Address
+import skein.signal.LatencyProfile
+
+/** Where decisions are made that are not made in this process. */
+enum SolverChoice:
+  /** A solver that listens. */
+  case Tcp(at: Address)
+
+  /** A solver behind a Kafka broker, over two topics whose names begin with `prefix`. */
+  case Kafka(broker: Address, prefix: String)
+
+  /** A solver behind a link of this profile: for flights in virtual time. */
+  case Link(profile: LatencyProfile)
+
+  def text: String = this match
+    case Tcp(at)               => s"tcp://$at"
+    case Kafka(broker, prefix) => s"kafka://$broker/$prefix"
+    case Link(profile)         => s"link:${profile.name}"
+
+object SolverChoice:
+  private val Expected = "tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE"
+
+  def parse(text: String): Either[String, SolverChoice] = text match
+    case s"tcp://$at"               => address(at, text).map(Tcp(_))
+    case s"kafka://$broker/$prefix" =>
+      for
+        at   <- address(broker, text)
+        name <- Either.cond(
+          prefix.matches("[A-Za-z0-9._-]{1,100}"),
+          prefix,
+          s"expected a PREFIX of topics of letters, digits, '.', '_' and '-', came '$prefix'"
+        )
+      yield Kafka(at, name)
+    case s"link:$profile" => LatencyProfile.parse(profile, TextFile.read).map(Link(_)).left.map(_.message)
+    case s"pekko://$_"    =>
+      Left(
+        s"expected $Expected, came '$text': solvers speak a protocol of their own over TCP, not Pekko's remoting"
+      )
+    case _ => Left(s"expected $Expected, came '$text'")
+
+  private def address(text: String, whole: String): Either[String, Address] =
+    text.split(':') match
+      case Array(host, port) if host.nonEmpty && port.toIntOption.exists(p => p >= 0 && p <= 65535) =>
+        Right(Address(host, port.toInt))
+      case _ => Left(s"expected $Expected, came '$whole'")

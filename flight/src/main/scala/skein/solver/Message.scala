@@ -1,0 +1,158 @@
+package skein.solver
+
+import skein.loop.{Memory, TeamView}
+import skein.policy.{Action, Fleet}
+import skein.record.{ClockKind, Flight, Parameter, Recording, RecordingHeader}
+import skein.scenario.Scenarios
+import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are the
+  * solver's. A flight is named by a number that no other flight at the same solver has, and so is each start of a solver.
+  */
+enum Message:
+  /** A flight would like to be decided for. */
+  case Hello(flight: Long, build: String, briefing: Briefing)
+
+  /** The flight is decided for from now on. */
+  case Welcome(flight: Long, solver: Long)
+
+  /** It is not. */
+  case Refused(flight: Long, reason: String)
+
+  /** A question came of a flight that this solver has not welcomed: it is to say hello. */
+  case Unknown(flight: Long)
+
+  case Ask(question: Question)
+
+  case Tell(answer: Answer)
+
+  /** The flight has ended. */
+  case Goodbye(flight: Long)
+
+/** What a solver is to know of a flight: what its recording begins with, as far as it concerns decisions.
+  *
+  * @param parameters
+  *   as a recording has them
+  * @param agents
+  *   who flies by which policy, a line each: two programs that mean the same write the same
+  */
+final case class Briefing(
+    scenario: String,
+    loop: String,
+    seed: Long,
+    period: Span,
+    duration: Span,
+    parameters: Vector[(String, String)],
+    agents: Vector[String]
+)
+
+object Briefing:
+  def of(settings: FlySettings, plan: FlightPlan): Briefing = Briefing(
+    settings.scenario.title,
+    plan.loop.label,
+    plan.seed,
+    settings.period,
+    settings.duration,
+    RecordedPlan.parameters(settings, plan).toVector.map(one => (one.name, one.value)),
+    agents(plan.fleet(settings))
+  )
+
+  /** What is flown, by the scenarios and policies of this program.
+    *
+    * @return
+    *   or what of it is not known here
+    */
+  def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
+    val flight = Flight(
+      "solver",
+      briefing.loop,
+      LatencyProfile.none.name,
+      briefing.seed,
+      briefing.period,
+      briefing.duration,
+      ClockKind.Real.label,
+      "",
+      briefing.scenario,
+      "",
+      Instant.Epoch
+    )
+    val parameters = briefing.parameters.map((name, value) => Parameter(name, value))
+    RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters)))
+
+  /** A line for each vehicle, without what two processes write differently. */
+  def agents(fleet: Fleet): Vector[String] = fleet.agents.map: agent =>
+    val start  = agent.startPositionNed
+    val policy = s"${agent.policy}".replaceAll("@[0-9a-f]+", "")
+    val shown  =
+      if policy.length <= MostShown then policy else s"${policy.take(MostShown)}… ${policy.hashCode}"
+    s"${agent.name}, ${agent.role}, from ${start.x} ${start.y} ${start.z} at ${agent.speed.value} m/s by $shown"
+
+  private val MostShown = 400
+
+/** What is to be decided.
+  *
+  * @param number
+  *   counts the questions for this vehicle; a later one leaves all earlier ones
+  * @param solverClock
+  *   of which start of a solver the clock is known, and the controller's clock minus that
+  * @param remembered
+  *   the answer that was used last, by the solver's start and the question; absent before the first
+  * @param memory
+  *   of the vehicle's decisions; what the policy itself remembers is with the solver
+  * @param view
+  *   without its forecast, and of sensors with those of this vehicle alone
+  */
+final case class Question(
+    flight: Long,
+    vehicle: Int,
+    number: Long,
+    askedAt: Instant,
+    solverClock: Option[(solver: Long, offset: Span)],
+    remembered: Option[(solver: Long, question: Long)],
+    memory: Memory,
+    view: TeamView
+)
+
+/** @param solver
+  *   this start of it
+  * @param takenAt
+  *   when the question came, on the solver's clock
+  * @param answeredAt
+  *   when the answer left, on the solver's clock
+  * @param overtaken
+  *   questions of this flight so far that were left for a newer one
+  * @param repeated
+  *   questions of this flight so far that came more than once
+  * @param result
+  *   the decision, or why there is none
+  */
+final case class Answer(
+    flight: Long,
+    vehicle: Int,
+    number: Long,
+    solver: Long,
+    takenAt: Instant,
+    answeredAt: Instant,
+    overtaken: Long,
+    repeated: Long,
+    result: Either[String, Choice]
+)
+
+/** @param decidedAt
+  *   what the policy took for now
+  * @param begunAnew
+  *   whether what the policy remembered was not there
+  * @param speed
+  *   absent where the vehicle commands its own
+  * @param action
+  *   absent where heading and speed say it
+  */
+final case class Choice(
+    decidedAt: Instant,
+    begunAnew: Boolean,
+    headingRad: Double,
+    speed: Option[MetresPerSecond],
+    action: Option[Action]
+)

@@ -1,0 +1,211 @@
+package skein.solver
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{Future, Promise}
+import skein.loop.{Memory, Solved, Solver, TeamView}
+import skein.record.EventKind
+import skein.solver.Exchange.{Counts, Verdict}
+import skein.units.*
+
+/** A flight's side: asks a solver elsewhere over a link, and says hello again whenever that is lost or starts again.
+  *
+  * @param flight
+  *   a number that no other flight has
+  * @param vehicles
+  *   how many fly
+  * @param note
+  *   told of what is to be recorded: what was late, repeated, left or lost, with the vehicle if it concerns one
+  */
+final class SolverClient(
+    link: MessageLink,
+    flight: Long,
+    build: String,
+    briefing: Briefing,
+    vehicles: Int,
+    clock: Clock,
+    note: (EventKind, Option[Int], String) => Unit
+)(using system: ActorSystem) extends Solver:
+  import SolverClient.*
+  import system.dispatcher
+
+  private val hello   = MessageCodec.bytes(Message.Hello(flight, build, briefing))
+  private val lock    = Object()
+  private val started = Promise[Unit]()
+
+  // All below is guarded by the lock.
+  private var exchange = Exchange.of(vehicles)
+  private var waiting  = Map.empty[Int, Waiting]
+  private var standing = Standing.Greeting(Silent)
+
+  // Other threads that are told of news meanwhile wait for it.
+  private lazy val open = link.open(received, told)
+  open: Unit
+
+  private val timer =
+    system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
+
+  /** Completes when a solver has welcomed the flight; fails with [[SolverClient.NoSolver]] where one refuses, or none
+    * answers within the patience.
+    */
+  def ready(patience: Span): Future[Unit] =
+    val late = system.scheduler.scheduleOnce(patience.toDuration):
+      val why = lock.synchronized(standing) match
+        case Standing.Greeting(why) => why
+        case other                  => other.toString
+      started.tryFailure(NoSolver(s"no solver within ${patience.toSeconds.round} s: $why")): Unit
+    started.future.andThen(_ => late.cancel())
+
+  def delay: Span = lock.synchronized(exchange.delay)
+
+  /** So far. */
+  def counts: Counts = lock.synchronized(exchange.counts)
+
+  /** The latest. */
+  def roundTrips: Vector[Span] = lock.synchronized(exchange.trips)
+
+  def ask(
+      vehicle: Int,
+      memory: Memory,
+      remembered: Option[Solver.Remembered],
+      view: TeamView,
+      askedAt: Instant,
+      until: Instant
+  ): Future[Solved] = lock.synchronized:
+    standing match
+      case Standing.Greeting(why) => Future.failed(NoSolver(why))
+      case Standing.Refused(why)  => Future.failed(NoSolver(why))
+      case Standing.Welcome       =>
+        val (next, number) = exchange.asked(vehicle, askedAt, until)
+        val used           = remembered.map(last => (solver = last.solver, question = last.question))
+        val question       = Question(flight, vehicle, number, askedAt, next.solverClock, used, memory, view)
+        open.send(MessageCodec.bytes(Message.Ask(question))) match
+          case Left(why) => Future.failed(NoSolver(why))
+          case Right(()) =>
+            val answer = Promise[Solved]()
+            val known = exchange.clocks.map(known => (offset = known.offset, uncertainty = known.uncertainty))
+            exchange = next
+            waiting = waiting.updated(vehicle, Waiting(number, known, answer))
+            answer.future
+
+  /** Says goodbye. */
+  def close(): Future[Done] =
+    timer.cancel()
+    val _ = open.send(MessageCodec.bytes(Message.Goodbye(flight)))
+    open.close()
+
+  private def received(bytes: Array[Byte]): Unit = MessageCodec.message(bytes) match
+    case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
+    case Right(message) =>
+      message match
+        case Message.Welcome(`flight`, _)                    => welcomed()
+        case Message.Refused(`flight`, reason)               => refused(reason)
+        case Message.Unknown(`flight`)                       => again("it does not know this flight")
+        case Message.Tell(answer) if answer.flight == flight => heard(answer)
+        // On a link that several flights share.
+        case _ => ()
+
+  private def heard(answer: Answer): Unit =
+    val now                   = clock.now()
+    val (verdict, more, asks) = lock.synchronized:
+      val (heard, verdict) = exchange.heard(answer, now)
+      val (next, more)     = heard.news(answer)
+      exchange = next
+      val asks = waiting.get(answer.vehicle).filter(_ => verdict.isInstanceOf[Verdict.Counts])
+      if asks.isDefined then waiting = waiting.removed(answer.vehicle)
+      (verdict, more, asks)
+    def said(kind: EventKind, text: String) = note(kind, Some(answer.vehicle), text)
+    verdict match
+      case Verdict.Counts(askedAt) => asks.foreach(waits => answered(waits, answer, askedAt, now))
+      case Verdict.Late(after)     =>
+        said(
+          EventKind.LateReply,
+          s"answer ${answer.number} of the solver came after ${after.toMillis.round} ms; it was not used"
+        )
+      case Verdict.Repeated =>
+        said(EventKind.Repeated, s"answer ${answer.number} of the solver came once more")
+      case Verdict.Foreign =>
+        note(EventKind.Refused, None, s"the solver answered question ${answer.number}, which nobody asked")
+    if more.overtaken > 0 then
+      note(EventKind.Dropped, None, s"${more.overtaken} questions were left at the solver for newer ones")
+    if more.repeated > 0 then
+      note(EventKind.Repeated, None, s"${more.repeated} questions came to the solver more than once")
+
+  private def answered(waits: Waiting, answer: Answer, askedAt: Instant, now: Instant): Unit =
+    val _ = answer.result match
+      case Left(reason)  => waits.answer.tryFailure(NoSolver(reason))
+      case Right(choice) =>
+        waits.answer.trySuccess(
+          Solved(
+            answer.solver,
+            answer.number,
+            askedAt,
+            choice.decidedAt,
+            now,
+            answer.answeredAt.since(answer.takenAt),
+            waits.clock,
+            choice.begunAnew,
+            choice.headingRad,
+            choice.speed,
+            choice.action
+          )
+        )
+
+  private def told(news: LinkNews): Unit = news match
+    case LinkNews.Up           => again(Silent)
+    case LinkNews.Down(reason) =>
+      val lost = lock.synchronized:
+        val lost = waiting.values.toVector
+        val was  = standing
+        waiting = Map.empty
+        standing = Standing.Greeting(reason)
+        Option.when(was == Standing.Welcome)(lost)
+      lost.foreach: lost =>
+        note(EventKind.Disconnected, None, s"the solver is lost: $reason")
+        lost.foreach(_.answer.tryFailure(NoSolver(reason)))
+
+  private def again(why: String): Unit =
+    lock.synchronized:
+      standing = Standing.Greeting(why)
+    greet()
+
+  private def greet(): Unit =
+    val why = lock.synchronized(standing) match
+      case Standing.Greeting(_) => open.send(hello).left.toOption
+      case _                    => None
+    for reason <- why do
+      lock.synchronized:
+        if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(reason)
+
+  private def welcomed(): Unit =
+    val isNew = lock.synchronized:
+      val was = standing
+      standing = Standing.Welcome
+      was != Standing.Welcome
+    if isNew && !started.trySuccess(()) then note(EventKind.Reconnected, None, "a solver is there again")
+
+  private def refused(reason: String): Unit =
+    val why = s"the solver refuses: $reason"
+    lock.synchronized:
+      standing = Standing.Refused(why)
+    if !started.tryFailure(NoSolver(why)) then note(EventKind.Refused, None, why)
+
+object SolverClient:
+  private val GreetEvery = Span.ofMillis(500)
+
+  private val Silent = "nobody has answered; is ./skein decide started?"
+
+  /** Nobody decides: why. */
+  final case class NoSolver(reason: String) extends RuntimeException(reason, null, false, false):
+    override def toString: String = reason
+
+  private final case class Waiting(
+      number: Long,
+      clock: Option[(offset: Span, uncertainty: Span)],
+      answer: Promise[Solved]
+  )
+
+  private enum Standing:
+    case Greeting(why: String)
+    case Welcome
+    case Refused(why: String)

@@ -1,0 +1,220 @@
+package skein.solver
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success}
+import scala.util.control.NonFatal
+import skein.loop.Decider
+import skein.policy.Fleet
+import skein.units.*
+
+/** A solver: decides for every flight that it welcomes, whatever link its questions come over.
+  *
+  * @param id
+  *   names this start of it: another number each time
+  * @param build
+  *   of this program, which a flight's must be, too
+  * @param fleetOf
+  *   who flies by what is told of a flight, or why it is not decided for; may take its time
+  * @param clock
+  *   its own, whatever the controllers' are
+  * @param workers
+  *   what is decided on
+  * @param takes
+  *   by how much an answer is held up, for trials
+  */
+final class SolverDesk(
+    id: Long,
+    build: String,
+    fleetOf: Briefing => Either[String, Fleet],
+    clock: Clock,
+    workers: ExecutionContext,
+    takes: Question => Span = _ => Span.Zero,
+    told: String => Unit = _ => ()
+)(using system: ActorSystem):
+  import SolverDesk.*
+
+  private val lock     = Object()
+  private var sessions = Map.empty[Long, Session]
+  private var greeting = Set.empty[Long]
+  private var uses     = 0L
+  private var answered = 0L
+  private var refused  = 0L
+  private var garbled  = 0L
+
+  /** What it has done so far. */
+  def stats: Stats = lock.synchronized(Stats(sessions.size, answered, refused, garbled))
+
+  /** Messages have come, in this order; nothing of them is decided before all are looked at.
+    *
+    * @param reply
+    *   sends to whom they came from; never waits
+    * @return
+    *   or what was no message
+    */
+  def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Unit] =
+    val (mistakes, known) = messages.map(MessageCodec.message).partitionMap(identity)
+    val asked             = known.flatMap:
+      case Message.Hello(flight, theirs, briefing) =>
+        greeted(flight, theirs, briefing, reply)
+        None
+      case Message.Ask(question)   => offered(question, reply)
+      case Message.Goodbye(flight) =>
+        lock.synchronized:
+          if sessions.contains(flight) then told(f"flight $flight%x has ended")
+          sessions = sessions.removed(flight)
+        None
+      case _ => None
+    for (flight, vehicle) <- asked.distinct do next(flight, vehicle)
+    mistakes.headOption match
+      case None          => Right(())
+      case Some(mistake) =>
+        lock.synchronized:
+          garbled += mistakes.size
+        Left(mistake)
+
+  private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Unit =
+    val known                    = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
+    def answer(message: Message) = reply(MessageCodec.bytes(message))
+    def no(reason: String)       =
+      lock.synchronized:
+        refused += 1
+      told(s"refused a flight: $reason")
+      answer(Message.Refused(flight, reason.take(MostReason)))
+    if known then
+      lock.synchronized:
+        sessions = sessions.updatedWith(flight)(_.map(_.copy(reply = reply)))
+      answer(Message.Welcome(flight, id))
+    else if theirs != build then
+      no(
+        s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
+      )
+    else if begins(flight) then
+      Future(fleetOf(briefing))(using workers).onComplete { result =>
+        lock.synchronized:
+          greeting -= flight
+        result match
+          case Success(Right(fleet)) =>
+            differing(briefing.agents, Briefing.agents(fleet)) match
+              case Some(reason) => no(reason)
+              case None         =>
+                admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
+                told(
+                  f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles"
+                )
+                answer(Message.Welcome(flight, id))
+          case Success(Left(reason)) => no(reason)
+          case Failure(error)        => no(s"it cannot be decided for: $error")
+      }(using workers)
+
+  /** A flight says hello until it is answered; once is enough. */
+  private def begins(flight: Long): Boolean = lock.synchronized:
+    val isNew = !greeting(flight) && greeting.size < MostFlights
+    if isNew then greeting += flight
+    isNew
+
+  private def differing(theirs: Vector[String], ours: Vector[String]): Option[String] =
+    theirs.zipAll(ours, "nobody", "nobody").collectFirst:
+      case (there, here) if there != here =>
+        s"the scenario is another here: the flight has $there, this solver $here"
+
+  private def admitted(flight: Long, session: Session): Unit = lock.synchronized:
+    uses += 1
+    // Whoever did not say goodbye makes room in the end.
+    val kept =
+      if sessions.size < MostFlights then sessions else sessions.removed(sessions.minBy(_._2.usedAt)._1)
+    sessions = kept.updated(flight, session.copy(usedAt = uses))
+
+  /** @return where there may be something to decide now */
+  private def offered(question: Question, reply: Array[Byte] => Unit): Option[(Long, Int)] =
+    lock.synchronized:
+      sessions.get(question.flight) match
+        case None =>
+          reply(MessageCodec.bytes(Message.Unknown(question.flight)))
+          None
+        case Some(session) if question.view.readings.size != session.fleet.agents.size =>
+          garbled += 1
+          None
+        case Some(session) =>
+          uses += 1
+          sessions = sessions.updated(
+            question.flight,
+            session.copy(desk = session.desk.offered(question, clock.now()), reply = reply, usedAt = uses)
+          )
+          Some((question.flight, question.vehicle))
+
+  private def next(flight: Long, vehicle: Int): Unit =
+    val work = lock.synchronized:
+      sessions.get(flight).flatMap: session =>
+        val (desk, waiting) = session.desk.taken(vehicle)
+        sessions = sessions.updated(flight, session.copy(desk = desk))
+        waiting.map((session, _))
+    for (session, waiting) <- work do
+      Future(decided(session, waiting.question))(using workers)
+        .flatMap(made => held(waiting.question, made))(using workers)
+        .foreach(made => done(waiting, made))(using workers)
+
+  private def held[A](question: Question, made: A): Future[A] =
+    val span = takes(question)
+    if span == Span.Zero then Future.successful(made)
+    else after(span.toDuration, system.scheduler)(Future.successful(made))(using workers)
+
+  private def decided(session: Session, question: Question): Either[String, (Choice, Any)] =
+    try
+      val decider = Decider(session.fleet, question.vehicle)
+      val memory  = session.desk.memory(question, id)
+      val begins  = memory.isEmpty && question.remembered.isDefined
+      // By the controller's clock, as far as that is known to be.
+      val now = question.solverClock
+        .filter(_.solver == id)
+        .fold(question.askedAt)(known => question.askedAt.max(clock.now() + known.offset))
+      if !question.view.isComplete then Left("not every vehicle was seen")
+      else
+        val held             = memory.getOrElse(decider.start.held)
+        val (next, decision) = decider.decide(question.memory.copy(held = held), question.view, now)
+        Right((Choice(now, begins, decision.heading.value, decision.speed, decision.action), next.held))
+    catch case NonFatal(error) => Left(Option(error.getMessage).getOrElse(error.toString))
+
+  private def done(waiting: Desk.Waiting, made: Either[String, (Choice, Any)]): Unit =
+    import waiting.question
+    val answer = lock.synchronized:
+      answered += 1
+      sessions.get(question.flight).map: session =>
+        val desk = session.desk.done(question, made.toOption.map(_._2))
+        sessions = sessions.updated(question.flight, session.copy(desk = desk))
+        val told = Answer(
+          question.flight,
+          question.vehicle,
+          question.number,
+          id,
+          waiting.takenAt,
+          clock.now(),
+          desk.overtaken,
+          desk.repeated,
+          made.map(_._1).left.map(_.take(MostReason))
+        )
+        (session.reply, told)
+    for (reply, answer) <- answer do reply(MessageCodec.bytes(Message.Tell(answer)))
+    next(question.flight, question.vehicle)
+
+object SolverDesk:
+  /** Decided for at once; of more, the one longest silent is forgotten. */
+  val MostFlights = 64
+
+  private val MostReason = 4096
+
+  /** @param flights
+    *   that are decided for
+    * @param garbled
+    *   what came and was no message, or no question of its flight
+    */
+  final case class Stats(flights: Int, answered: Long, refused: Long, garbled: Long)
+
+  private final case class Session(
+      briefing: Briefing,
+      fleet: Fleet,
+      desk: Desk,
+      reply: Array[Byte] => Unit,
+      usedAt: Long
+  )

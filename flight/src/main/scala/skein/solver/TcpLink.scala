@@ -1,0 +1,92 @@
+package skein.solver
+
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.{Done, NotUsed}
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.{BoundedSourceQueue, KillSwitches, QueueOfferResult}
+import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Framing, Keep, Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{Future, Promise}
+import scala.util.{Failure, Success, Try}
+import skein.link.{Address, Transport}
+import skein.units.Span
+
+/** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same over sockets
+  * and in virtual time.
+  */
+final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem) extends MessageLink:
+  import TcpLink.*
+  import system.dispatcher
+
+  def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink =
+    val link = Link(received, news)
+    link.connect()
+    link
+
+  private final class Link(received: Array[Byte] => Unit, news: LinkNews => Unit) extends OpenLink:
+    private val switch = KillSwitches.shared("solver-link")
+    private val queue  = AtomicReference(Option.empty[BoundedSourceQueue[ByteString]])
+    private val closed = Promise[Done]()
+
+    @volatile private var isClosing = false
+    @volatile private var whyDown   = s"no connection to $to yet"
+
+    def connect(): Unit =
+      val ((out, connected), ended) = Source
+        .queue[ByteString](MostWaiting)
+        .via(switch.flow)
+        .viaMat(framed.joinMat(transport.connect(to))(Keep.right))(Keep.both)
+        .via(switch.flow)
+        .toMat(Sink.foreach(message => received(message.toArrayUnsafe())))(Keep.both)
+        .run()
+      connected.foreach: _ =>
+        queue.set(Some(out))
+        news(LinkNews.Up)
+      ended.onComplete: result =>
+        val wasUp = queue.getAndSet(None).isDefined
+        completed(out)
+        whyDown = result match
+          case Failure(error) => error.getMessage
+          case Success(_)     => s"the solver at $to closed the connection"
+        if isClosing then closed.trySuccess(Done): Unit
+        else
+          if wasUp then news(LinkNews.Down(whyDown))
+          after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
+            if isClosing then closed.trySuccess(Done): Unit else connect()
+
+    /** Another thread may have done so. */
+    private def completed(out: BoundedSourceQueue[ByteString]): Unit =
+      val _ = Try(if !out.isCompleted then out.complete())
+
+    def send(message: Array[Byte]): Either[String, Unit] = queue.get match
+      case None      => Left(whyDown)
+      case Some(out) =>
+        out.offer(ByteString.fromArrayUnsafe(message)) match
+          case QueueOfferResult.Enqueued => Right(())
+          case _                         => Left(s"$MostWaiting messages to $to wait already")
+
+    /** What was sent is on its way first, if the other side takes it soon. */
+    def close(): Future[Done] =
+      isClosing = true
+      queue.getAndSet(None) match
+        case None      => switch.shutdown()
+        case Some(out) =>
+          completed(out)
+          val late = system.scheduler.scheduleOnce(CloseWithin.toDuration)(switch.shutdown())
+          closed.future.onComplete(_ => late.cancel())
+      closed.future
+
+object TcpLink:
+  /** Messages of one side that wait until they are sent. */
+  private[solver] val MostWaiting = 256
+
+  private val TryEvery    = Span.ofMillis(200)
+  private val CloseWithin = Span.ofMillis(500)
+
+  /** A message behind its length. */
+  private[solver] val framed: BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
+    BidiFlow.fromFlows(
+      Flow[ByteString].via(Framing.simpleFramingProtocolEncoder(MessageCodec.MostBytes)),
+      Framing.simpleFramingProtocolDecoder(MessageCodec.MostBytes)
+    )

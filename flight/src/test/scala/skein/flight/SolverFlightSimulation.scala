@@ -1,0 +1,155 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.{Address, MemoryNetwork, NetworkPlan}
+import skein.loop.{Fallback, LoopKind, Outcome, Replay}
+import skein.policy.{PolicyFamily, Role}
+import skein.record.EventKind
+import skein.scenario.{Crossing, Scenarios}
+import skein.settings.{FlySettings, PolicyFile, RecordedPlan, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.solver.*
+import skein.units.*
+import skein.vtime.VirtualTime
+
+/** Flights whose solver stands behind the emulated network: wire, connection and all. */
+class SolverFlightSimulation extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
+
+  private val settings = FlySettings(
+    List(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive),
+    List(LatencyProfile.vpn),
+    duration = Span.ofSeconds(4),
+    period = Span.ofMillis(100),
+    seed = 7,
+    fallback = Fallback.Hover,
+    solver = SolverChoice.parse("link:lognormal:8ms,0.5").toOption
+  )
+
+  test("every loop that can is flown twice, with the same seed: decided here, and elsewhere"):
+    assertEquals(
+      settings.plans.map(_.id),
+      Vector("paused-none", "stream-vpn", "predictive-vpn", "stream-vpn-solver", "predictive-vpn-solver")
+    )
+    assertEquals(settings.plans.filter(_.id.startsWith("stream")).map(_.seed).distinct.size, 1)
+
+  test(
+    "a flight decided elsewhere is recorded with the ways there and back, replays, and flies again the same"
+  ):
+    for plan <- settings.plans.filter(_.solver.isDefined) do
+      val flown     = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
+      val recording = flown.recorder.recording
+      assertEquals(flown.landed.outcome, Outcome.Completed)
+      assert(recording.solved.size > 50, recording.solved.size)
+      assertEquals(recording.solved.size, recording.decisions.size)
+      assert(flown.landed.solverTrips.nonEmpty)
+      val again = RecordedPlan.of(recording).fold(fail(_), identity)
+      assertEquals(again.plan, plan)
+      assertEquals(Replay(again.fleet, recording).firstDifference, None)
+      val digest = VirtualFlights.fly(again.settings, again.plan).map(_.recorder.digest)
+      assertEquals(digest, Right(flown.recorder.digest))
+
+  test("without a deadline of its own, a decision made elsewhere has the period for one"):
+    val slow  = settings.copy(solver = SolverChoice.parse("link:constant:300ms").toOption)
+    val flown = VirtualFlights.fly(slow, slow.plans.last).fold(fail(_), identity).recorder.recording
+    assertEquals(flown.solved, Vector.empty)
+    assert(flown.events.count(_.kind == EventKind.DeadlineMissed) > 50)
+    assert(flown.events.count(_.kind == EventKind.LateReply) > 50)
+    val timely = slow.copy(deadline = Some(Span.ofMillis(400)))
+    val used   = VirtualFlights.fly(timely, timely.plans.last).fold(fail(_), identity).recorder.recording
+    assert(used.solved.size > 10, used.solved.size)
+
+  test("a flight tells a solver all that it needs to decide for the same fleet"):
+    val chosen = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
+    for flown <- Seq(settings, settings.copy(policies = List(chosen)), settings.copy(scenario = Crossing()))
+    do
+      val plan     = flown.plans.last
+      val briefing = Briefing.of(flown, plan)
+      val fleet    = Briefing.plan(briefing).fold(fail(_), identity).fleet
+      assertEquals(Briefing.agents(fleet), briefing.agents)
+      assertEquals(fleet, plan.fleet(flown))
+
+  /** What a flight is told by a desk of this build for a briefing. */
+  private def welcomed(briefing: Briefing, build: String = "ours"): Either[String, Unit] =
+    VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val network            = MemoryNetwork(NetworkPlan(), 1, clock)
+        val at                 = Address("solver", 7400)
+        val desk = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
+        for
+          _ <- SolverServer.start(at, network.host("solver"), desk)
+          client =
+            SolverClient(TcpLink(network.host("here"), at), 5, build, briefing, 2, clock, (_, _, _) => ())
+          answer <- client.ready(Span.ofSeconds(3)).transform(result => scala.util.Success(result))
+          _      <- client.close()
+        yield answer.toEither.left.map(_.getMessage)
+      .value
+
+  test("a solver of another build, scenario or policy refuses, and says what differs"):
+    val briefing = Briefing.of(settings, settings.plans.last)
+    assertEquals(welcomed(briefing), Right(()))
+    assertEquals(
+      welcomed(briefing, build = "theirs"),
+      Left(
+        "the solver refuses: this solver is build ours, the flight's program is build theirs; start both from the same program"
+      )
+    )
+    val unknown = welcomed(briefing.copy(scenario = "moon landing"))
+    assert(unknown.left.exists(_.startsWith("the solver refuses: ")), unknown)
+    val other = welcomed(briefing.copy(agents = briefing.agents.map(_.replace("PaperPursuer", "Ambush"))))
+    assert(other.left.exists(_.contains("the scenario is another here: the flight has Pursuer")), other)
+
+  test("where no solver is, a flight waits for as long as it is told to, and says where it looked"):
+    val run = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock   = Clock.ofNanos(VirtualTime.clock(system))
+      val network = MemoryNetwork(NetworkPlan(), 1, clock)
+      network.host("solver"): Unit
+      val link     = TcpLink(network.host("here"), Address("solver", 7400))
+      val briefing = Briefing.of(settings, settings.plans.last)
+      val client   = SolverClient(link, 5, "ours", briefing, 2, clock, (_, _, _) => ())
+      client.ready(Span.ofSeconds(3)).failed.flatMap(error => client.close().map(_ => error.getMessage))
+    assertEquals(
+      run.value,
+      "no solver within 3 s: nobody listens at solver:7400; is the program there started?"
+    )
+
+  test("a stranger who speaks garbage at a solver's port loses the connection, and flights fly on"):
+    val garbage =
+      Seq("GET / HTTP/1.1\r\n\r\n", "\u0000\u0000\u0000\u0004abcd", "\u007f\u007f\u007f\u007f", "\u0000")
+    val run = VirtualTime.run(seed = 1): system =>
+      given ActorSystem = system
+      import system.dispatcher
+      val clock   = Clock.ofNanos(VirtualTime.clock(system))
+      val network = MemoryNetwork(NetworkPlan(), 1, clock)
+      val at      = Address("solver", 7400)
+      val desk    = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
+      for
+        _ <- SolverServer.start(at, network.host("solver"), desk)
+        _ <- Future.traverse(garbage): text =>
+          Source
+            .single(ByteString(text, "ISO-8859-1"))
+            .via(network.host("stranger").connect(at))
+            .runWith(Sink.ignore)
+            .recover(_ => org.apache.pekko.Done)
+        client = SolverClient(
+          TcpLink(network.host("here"), at),
+          5,
+          "ours",
+          Briefing.of(settings, settings.plans.last),
+          2,
+          clock,
+          (_, _, _) => ()
+        )
+        _ <- client.ready(Span.ofSeconds(3))
+        _ <- client.close()
+      yield desk.stats
+    assertEquals(run.value.garbled, 1L)
+    assertEquals(run.value.refused, 0L)

@@ -1,0 +1,179 @@
+package skein.solver
+
+import org.scalacheck.Prop.forAll
+import org.scalacheck.{Arbitrary, Gen}
+import skein.forecast.Estimate
+import skein.loop.{Memory, Move, Reading, SensorReading, TeamView}
+import skein.policy.{Action, Yaw}
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.units.*
+
+class MessageCodecLaws extends munit.ScalaCheckSuite:
+  private val number  = Gen.oneOf(Gen.double, Gen.oneOf(-0.0, 1e300, Double.MinPositiveValue, -12.5))
+  private val instant = Gen.choose(-1e18.toLong, 4e18.toLong).map(Instant.ofNanos)
+  private val span    = Gen.choose(-1e12.toLong, 1e12.toLong).map(Span.ofNanos)
+  private val text    = Gen.oneOf(Gen.alphaNumStr, Gen.const("höhe, 高さ\n"))
+  private val vector  = Gen.zip(number, number, number).map(Vector3.apply)
+
+  private val kinematics =
+    for
+      position <- vector
+      velocity <- vector
+      w        <- number
+      axis     <- vector
+      rate     <- vector
+    yield Kinematics(position, velocity, Quaternion(w, axis.x, axis.y, axis.z), rate)
+
+  private def stamped[A](value: Gen[A]) = Gen.zip(value, instant, instant, instant).map(Stamped(_, _, _, _))
+
+  private val yaw = Gen.oneOf(
+    Gen.const(Yaw.Still),
+    number.map(heading => Yaw.Towards(Radians(heading))),
+    number.map(Yaw.Turning(_)),
+    Gen.const(Yaw.Forward)
+  )
+
+  private val action: Gen[Action] = Gen.oneOf(
+    Gen.zip(vector, yaw).map(Action.Velocity(_, _)),
+    Gen.zip(number, number, number, yaw).map((north, east, down, yaw) =>
+      Action.VelocityAt(north, east, Metres(down), yaw)
+    ),
+    Gen.zip(vector, number, yaw).map((to, speed, yaw) => Action.Position(to, MetresPerSecond(speed), yaw)),
+    yaw.map(Action.Turn(_)),
+    Gen.zip(number, number, number, number).map((roll, pitch, yaw, thrust) =>
+      Action.Attitude(Radians(roll), Radians(pitch), Radians(yaw), thrust)
+    ),
+    Gen.const(Action.Hover),
+    Gen.const(Action.Land)
+  )
+
+  private val speed = Gen.option(number.map(MetresPerSecond(_)))
+
+  private def move(vehicle: Int) =
+    Gen.zip(Gen.long, number, instant, speed, Gen.option(action)).map(
+      (decision, heading, at, speed, action) =>
+        Move(vehicle, decision, heading, at, speed, action)
+    )
+
+  /** Of which middle and half width are whole. */
+  private val alignment = Gen.zip(span, Gen.choose(0L, 1_000_000L)).map: (offset, half) =>
+    val width = Span.ofNanos(half)
+    ClockAlignment.of(Stamped(
+      (),
+      Instant.Epoch,
+      Instant.Epoch + (offset - width),
+      Instant.Epoch + (offset + width)
+    ))
+
+  private def view(vehicles: Int, self: Int) =
+    for
+      readings <- Gen.sequence[Vector[Option[Reading]], Option[Reading]](
+        (0 until vehicles).map(vehicle =>
+          Gen.option(Gen.zip(Gen.long, stamped(kinematics)).map(Reading(vehicle, _, _)))
+        )
+      )
+      moves <- Gen.sequence[Vector[Option[Move]], Option[Move]](
+        (0 until vehicles).map(vehicle => Gen.option(move(vehicle)))
+      )
+      alignment <- Gen.option(alignment)
+      sensed    <- Gen.option(Gen.zip(Gen.long, stamped(Gen.listOfN(3, number).map(_.toVector))))
+      estimates <- Gen.option(
+        Gen.listOfN(vehicles, Gen.zip(kinematics, instant, instant).map(Estimate(_, _, _))).map(_.toVector)
+      )
+    yield
+      val said = sensed.map((number, values) =>
+        "gps" -> SensorReading(self, "gps", number, Vector("a", "b", "c"), values)
+      )
+      val empty = TeamView.empty(vehicles)
+      TeamView(readings, moves, alignment, empty.sensed.updated(self, said.toMap), None, estimates)
+
+  private val pair = Gen.zip(Gen.long, Gen.long)
+
+  private val question =
+    for
+      vehicles  <- Gen.choose(1, 5)
+      vehicle   <- Gen.choose(0, vehicles - 1)
+      known     <- Gen.option(Gen.zip(Gen.long, span))
+      used      <- Gen.option(pair)
+      heading   <- number
+      decidedAt <- Gen.option(instant)
+      made      <- Gen.long
+      seen      <- view(vehicles, vehicle)
+      at        <- instant
+      flight    <- Gen.long
+    yield Question(
+      flight,
+      vehicle,
+      made / 2,
+      at,
+      known.map((solver, offset) => (solver = solver, offset = offset)),
+      used.map((solver, question) => (solver = solver, question = question)),
+      Memory(heading, decidedAt, made),
+      seen
+    )
+
+  private val choice =
+    Gen.zip(instant, Gen.oneOf(true, false), number, speed, Gen.option(action)).map(Choice(_, _, _, _, _))
+
+  private val answer =
+    for
+      (flight, number)  <- pair
+      (solver, left)    <- pair
+      vehicle           <- Gen.choose(0, 1023)
+      (taken, answered) <- Gen.zip(instant, instant)
+      result            <- Gen.either(text, choice)
+    yield Answer(flight, vehicle, number, solver, taken, answered, left, left / 3, result)
+
+  private val briefing =
+    Gen.zip(text, text, Gen.long, span, span, Gen.listOf(Gen.zip(text, text)), Gen.listOf(text)).map:
+      (scenario, loop, seed, period, duration, parameters, agents) =>
+        Briefing(scenario, loop, seed, period, duration, parameters.toVector, agents.toVector)
+
+  private val message: Gen[Message] = Gen.oneOf(
+    Gen.zip(Gen.long, text, briefing).map(Message.Hello(_, _, _)),
+    pair.map(Message.Welcome(_, _)),
+    Gen.zip(Gen.long, text).map(Message.Refused(_, _)),
+    Gen.long.map(Message.Unknown(_)),
+    question.map(Message.Ask(_)),
+    answer.map(Message.Tell(_)),
+    Gen.long.map(Message.Goodbye(_))
+  )
+
+  property("a message reads back as it was written, to the last bit"):
+    forAll(message): message =>
+      val bytes = MessageCodec.bytes(message)
+      val read  = MessageCodec.message(bytes).fold(fail(_), identity)
+      assertEquals(read, message)
+      assertEquals(MessageCodec.bytes(read).toVector, bytes.toVector)
+
+  property("a message that is cut off, or goes on, is refused"):
+    forAll(message, Gen.double): (message, share) =>
+      val bytes = MessageCodec.bytes(message)
+      assert(MessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
+      assert(MessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
+
+  property("whatever comes is read or refused, and no length that it states is believed"):
+    forAll(message, Gen.listOf(Gen.zip(Gen.double, Arbitrary.arbitrary[Byte]))): (message, changes) =>
+      val bytes = MessageCodec.bytes(message)
+      for (share, value) <- changes do bytes((bytes.length * share).toInt.min(bytes.length - 1)) = value
+      val _ = MessageCodec.message(bytes)
+
+  property("garbage is refused"):
+    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => MessageCodec.message(bytes).isLeft || bytes.length > 9)
+
+  test("a mistake says what was expected and what came"):
+    val welcome = MessageCodec.bytes(Message.Welcome(1, 2))
+    assertEquals(
+      MessageCodec.message(welcome.updated(0, 9.toByte)),
+      Left("expected messages of version 1 of the solver's protocol, came version 9")
+    )
+    assertEquals(
+      MessageCodec.message(welcome.updated(1, 42.toByte)),
+      Left("expected a kind of message from 1 to 7, came 42")
+    )
+    assertEquals(
+      MessageCodec.message(new Array[Byte](MessageCodec.MostBytes + 1)),
+      Left(s"expected ${MessageCodec.MostBytes} bytes at most, came ${MessageCodec.MostBytes + 1}")
+    )
+    val claims = MessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
+    assert(MessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

@@ -1,0 +1,181 @@
+package skein.solver
+
+import skein.loop.*
+import skein.policy.*
+import skein.record.EventKind
+import skein.scenario.PaperDuel
+import skein.signal.{LatencyProfile, SplitMix64}
+import skein.solver.SolverTrial.To
+import skein.units.*
+
+/** Whole flights whose decisions are made by a solver elsewhere, in virtual time: where it is slow, dies, is started again,
+  * answers twice, or answers in another order.
+  */
+class SolverSimulation extends munit.FunSuite:
+  private val fleet = PaperDuel().fleet
+
+  /** What must hold of every such flight. */
+  private def checked(
+      trial: SolverTrial,
+      fleet: Fleet = fleet,
+      parameters: Seq[(String, String)] = Nil
+  ): SolverTrial =
+    val recording = trial.recording
+    assertEquals(trial.outcome, Outcome.Completed)
+    val heading = recording.heading.copy(parameters =
+      recording.heading.parameters ++ (("fallback" -> "hover") +: parameters).map(skein.record.Parameter(
+        _,
+        _
+      ))
+    )
+    assertEquals(Replay(fleet, recording.copy(heading = heading)).firstDifference, None)
+    for (vehicle, solved) <- recording.solved.groupBy(_.vehicle) do
+      val numbers = solved.map(_.question)
+      assertEquals(numbers, numbers.sorted.distinct, s"$vehicle used answers out of order")
+      for one <- solved do assert(one.roundTrip < SolverTrial.within, s"$one came too late")
+    // Every decision has one maker.
+    val made = recording.solved.map(one => (one.vehicle, one.decision)).toSet
+    assertEquals(made intersect trial.byFallback, Set.empty)
+    assertEquals(
+      made union trial.byFallback,
+      recording.decisions.map(decision => (decision.vehicle, decision.sequence)).toSet
+    )
+    // Every answer has one fate; the last may come when the flight has ended.
+    val unused = trial.counts.used - recording.solved.size
+    assert(unused >= 0 && unused <= fleet.agents.size, trial.counts)
+    assertEquals(trial.counts.late, trial.events(EventKind.LateReply).size.toLong)
+    trial
+
+  test(
+    "decisions are made elsewhere, at the solver's time on the controller's clock, and replay from the recording"
+  ):
+    val trial = checked(SolverTrial.fly()())
+    assert(trial.recording.decisions.size > 100)
+    assertEquals(trial.events(EventKind.DeadlineMissed), Vector.empty)
+    val bySequence = trial.recording.solved.map(one => (one.vehicle, one.decision) -> one).toMap
+    for decision <- trial.recording.decisions.drop(20) do
+      val one = bySequence((decision.vehicle, decision.sequence))
+      assertEqualsDouble(decision.decidedAt.since(one.askedAt).toMillis, 5, 0.01)
+      assertEqualsDouble(one.clock.get.offset.toSeconds, 7, 1e-5)
+      assertEqualsDouble(one.roundTrip.toMillis, 10, 1e-9)
+
+  test("a prediction is made for when a command acts that was decided elsewhere"):
+    def ahead(hopMs: Double) =
+      val trial = SolverTrial.fly(fate = (_, _) => Seq(Span.ofMillis(hopMs)))()
+      val made  = trial.recording.decisions.drop(20)
+      val late  = trial.recording.predictions.map(_.error.value).sorted
+      assert(late(late.size * 9 / 10) < 0.02, s"predictions are off by ${late(late.size * 9 / 10)} m")
+      made.map(decision =>
+        decision.predicted.get.actsAt.since(decision.own.state.validAt).toMillis
+      ).sum / made.size
+    assertEqualsDouble(ahead(20) - ahead(5), 30, 3)
+
+  test("where the solver is slow, answers that come too late are not used, and vehicles hover"):
+    val slow  = 40L
+    val trial = checked(SolverTrial.fly(
+      takes = question => if question.number >= slow then Span.ofMillis(130) else Span.Zero
+    )())
+    val after = trial.recording.decisions.filter(_.sequence > slow)
+    assert(after.nonEmpty && after.forall(_.action.contains(Action.Hover)))
+    assert(trial.counts.late > 5, trial.counts)
+    // The newest wins: those that waited meanwhile were left.
+    assert(trial.counts.overtaken > 0 || trial.questions.size > 60, trial.counts)
+
+  test("a solver that dies and is started again: vehicles hover meanwhile, and fly on"):
+    val trial = checked(SolverTrial.fly(): hand =>
+      hand.at(2)(hand.kill())
+      hand.at(4)(hand.start(2)))
+    val hovering = trial.recording.decisions.filter(_.action.contains(Action.Hover))
+    for vehicle <- fleet.agents.map(_.name) do
+      val own = hovering.filter(_.vehicle == vehicle).map(_.decidedAt.toSeconds)
+      assert(own.size >= 15, s"$vehicle hovered ${own.size} times")
+      assert(trial.recording.decisions.filter(_.vehicle == vehicle).last.action.isEmpty, vehicle)
+    assertEquals(
+      trial.events(EventKind.SolverRestarted).flatMap(_.vehicle).toSet,
+      fleet.agents.map(_.name).toSet
+    )
+
+  test("a link that is lost fails at once, and is told when it is lost and when it is back"):
+    val trial = checked(SolverTrial.fly(): hand =>
+      hand.at(2)(hand.breakLink("cut"))
+      hand.at(3)(hand.mendLink()))
+    assertEquals(trial.events(EventKind.Disconnected).map(_.detail), Vector("the solver is lost: cut"))
+    assertEquals(trial.events(EventKind.Reconnected).size, 1)
+    assert(trial.events(EventKind.DeadlineMissed).exists(_.detail.contains("Failed(cut)")))
+    assertEquals(trial.events(EventKind.SolverRestarted), Vector.empty)
+
+  test("answers and questions that come twice count once"):
+    val trial = checked(SolverTrial.fly(fate = (_, _) => Seq(Span.ofMillis(5), Span.ofMillis(9)))())
+    assertEquals(trial.events(EventKind.DeadlineMissed), Vector.empty)
+    assert(trial.counts.repeated > 50, trial.counts)
+    assert(trial.counts.repeatedThere > 50, trial.counts)
+    assertEquals(trial.questions.distinct, trial.questions)
+
+  test("messages lost, repeated and reordered at random: nothing overtakes, and what was decided replays"):
+    for seed <- 1L to 20L do
+      val random                       = SplitMix64(seed)
+      val fate: (To, Int) => Seq[Span] = (_, number) =>
+        val share = random.nextDouble()
+        val one   = Span.ofMillis(1 + 20 * random.nextDouble())
+        if number < 6 then Seq(one)
+        else if share < 0.1 then Nil
+        else if share < 0.2 then Seq(one, one + Span.ofMillis(200 * random.nextDouble()))
+        else if share < 0.3 then Seq(Span.ofMillis(90 + 300 * random.nextDouble()))
+        else Seq(one)
+      val trial = checked(SolverTrial.fly(seed = seed, seconds = 4, fate = fate): hand =>
+        hand.at(2)(hand.start(2)))
+      for (_, asked) <- trial.questions.groupBy(one => (one.solver, one.vehicle)) do
+        val numbers = asked.map(_.number)
+        assertEquals(
+          numbers,
+          numbers.sorted,
+          s"seed $seed: the solver decided an older question after a newer one"
+        )
+      assert(trial.recording.solved.size > 30, s"seed $seed: ${trial.counts}")
+
+  test(
+    "a policy with a memory goes on from the answer that was used, and begins anew with a new start of its solver"
+  ):
+    val counting = SolverSimulation.Counting
+    val team     =
+      Fleet(fleet.agents.map(agent =>
+        if agent.role == Role.Pursuer then agent.copy(policy = counting) else agent
+      ))
+    val trial = checked(
+      SolverTrial.fly(
+        fleet = team,
+        takes = question => if question.number % 10 == 9 then Span.ofMillis(150) else Span.Zero
+      )(hand => hand.at(3)(hand.start(2))),
+      team
+    )
+    assert(trial.counts.late >= 5, trial.counts)
+    assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
+    // Without the word of the new start, the replay's memory is another.
+    val silent = trial.recording.copy(
+      events = trial.recording.events.filter(_.kind != EventKind.SolverRestarted),
+      heading = trial.recording.heading.copy(parameters =
+        trial.recording.heading.parameters :+ skein.record.Parameter("fallback", "hover")
+      )
+    )
+    assertEquals(Replay(team, silent).firstDifference.map(_.column), Some("headingRad"))
+
+  test("equal seeds give equal recordings"):
+    assertEquals(SolverTrial.fly(seed = 3)().recording, SolverTrial.fly(seed = 3)().recording)
+
+  test("over vpn, predictive with its solver behind a link of its own flies within 2 % of the paused truth"):
+    val seeds = 1L to 3L
+    for (name, median) <- Seq("a broker's" -> 4.0, "a slower" -> 30.0) do
+      val flown = seeds.map: seed =>
+        val random                       = SplitMix64(seed)
+        val fate: (To, Int) => Seq[Span] = (_, _) =>
+          Seq(Span.ofMillis(median / 2 * (0.5 + random.nextExponential(0.7))))
+        checked(SolverTrial.fly(seed = seed, seconds = 60, link = LatencyProfile.vpn, fate = fate)())
+      val off = flown.map(_.distanceM).sum / seeds.size / VirtualDuel.truth.distanceM - 1
+      assert(math.abs(off) < 0.02, s"over $name hop: ${off * 100} %")
+
+object SolverSimulation:
+  /** Turns by how often it has decided, so that its memory is seen in what it does. */
+  object Counting extends ObservingPolicy[Int]:
+    def initial: Int                                               = 0
+    def decide(seen: PlanarObservation, memory: Int): Decided[Int] =
+      Decided(seen.ownHeadingRad + 0.001 * memory, memory + 1)

@@ -1,0 +1,37 @@
+package skein.kafka
+
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.Done
+import scala.concurrent.{ExecutionContext, Future}
+import skein.solver.{LinkNews, MessageLink, OpenLink}
+
+/** A flight's link to a solver behind a Kafka broker. All flights of a prefix share the topics; each takes what is its own.
+  *
+  * A broker keeps messages and gives some twice, and a client of it does not know whether anybody reads: so this link is
+  * up from the first message that it could place, and down only where one could not be written within half a second.
+  */
+final class KafkaLink(topics: KafkaTopics) extends MessageLink:
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink =
+    val isDown = AtomicReference(Option.empty[String])
+    val away   = s"no Kafka broker answers at ${topics.broker}"
+    val pipe   = KafkaPipe(
+      topics,
+      from = topics.answers,
+      to = topics.questions,
+      came =>
+        if isDown.getAndSet(None).isDefined then news(LinkNews.Up)
+        came.foreach(received)
+      ,
+      reason =>
+        val why = s"the broker at ${topics.broker} does not take messages: $reason"
+        if isDown.getAndSet(Some(why)).isEmpty then news(LinkNews.Down(why))
+    )
+    pipe.start()
+    pipe.ready.foreach(_ => news(LinkNews.Up))
+    new OpenLink:
+      def send(message: Array[Byte]): Either[String, Unit] =
+        // What is said while it is down is how the broker is found to be back.
+        Either.cond(pipe.ready.isCompleted && pipe.send(message), (), isDown.get.getOrElse(away))
+      def close(): Future[Done] = pipe.close().map(_ => Done)

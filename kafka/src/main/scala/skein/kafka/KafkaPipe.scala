@@ -1,0 +1,141 @@
+package skein.kafka
+
+import java.time.Duration
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
+import java.util.concurrent.{ArrayBlockingQueue, TimeUnit}
+import org.apache.kafka.clients.consumer.KafkaConsumer
+import org.apache.kafka.clients.producer.{KafkaProducer, ProducerRecord}
+import org.apache.kafka.common.TopicPartition
+import org.apache.kafka.common.errors.{RetriableException, WakeupException}
+import org.apache.kafka.common.serialization.{ByteArrayDeserializer, ByteArraySerializer}
+import scala.concurrent.{Future, Promise}
+import scala.jdk.CollectionConverters.*
+import scala.util.control.NonFatal
+
+/** One side of two topics: messages written to one, read from the other, each on a thread of its own, since Kafka's clients
+  * may block. What is read are messages from the moment of opening on.
+  *
+  * @param received
+  *   told of what came at once, in its order
+  * @param lost
+  *   told why a message was not written in time
+  */
+private[kafka] final class KafkaPipe(
+    topics: KafkaTopics,
+    from: String,
+    to: String,
+    received: Seq[Array[Byte]] => Unit,
+    lost: String => Unit
+):
+  import KafkaPipe.*
+
+  private val closing  = AtomicBoolean(false)
+  private val reading  = Promise[Unit]()
+  private val closed   = Promise[Unit]()
+  private val leftOver = AtomicLong(2)
+  private val outgoing = ArrayBlockingQueue[Array[Byte]](MostWaiting)
+
+  @volatile private var consumer = Option.empty[KafkaConsumer[Array[Byte], Array[Byte]]]
+
+  // Since a message was not written. A broker that is back may be a new one, without topics.
+  @volatile private var isDoubtful = false
+
+  /** Completes when what is written from now on by others will be read; fails where there is no broker. */
+  def ready: Future[Unit] = reading.future
+
+  def start(): Unit =
+    thread("reads", read())
+    thread("writes", write())
+
+  /** Whether it was taken; it is not where too much waits already. */
+  def send(message: Array[Byte]): Boolean = outgoing.offer(message)
+
+  def close(): Future[Unit] =
+    if closing.compareAndSet(false, true) then consumer.foreach(_.wakeup())
+    closed.future
+
+  private def thread(does: String, body: => Unit): Unit =
+    val runs: Runnable = () =>
+      try body
+      catch
+        case NonFatal(error) =>
+          val _ = reading.tryFailure(error)
+          if !closing.get then lost(s"$does no more: $error")
+      finally if leftOver.decrementAndGet() == 0 then closed.trySuccess(()): Unit
+    val started = Thread(runs, s"skein-kafka-$does-$from")
+    started.setDaemon(true)
+    started.start()
+
+  private def read(): Unit =
+    val made =
+      Iterator.continually(topics.made()).map: answer =>
+        if answer.isLeft && !closing.get then Thread.sleep(TryEveryMs)
+        answer
+      .find(answer => answer.isRight || closing.get)
+    if made.exists(_.isRight) then
+      val settings = KafkaTopics.common(topics)
+      settings.put("fetch.max.wait.ms", "100")
+      settings.put("fetch.min.bytes", "1")
+      settings.put("auto.offset.reset", "latest")
+      settings.put("enable.auto.commit", "false")
+      settings.put("check.crcs", "true")
+      settings.put("default.api.timeout.ms", "2000")
+      val reader = KafkaConsumer(settings, ByteArrayDeserializer(), ByteArrayDeserializer())
+      consumer = Some(reader)
+      try
+        val part = TopicPartition(from, 0)
+        reader.assign(java.util.List.of(part))
+        var isPlaced = false
+        while !closing.get do
+          try
+            if isDoubtful && topics.made().isRight then
+              isDoubtful = false
+              isPlaced = false
+            if !isPlaced then
+              reader.seekToEnd(java.util.List.of(part))
+              reader.position(part): Unit
+              isPlaced = true
+              val _ = reading.trySuccess(())
+            val came = reader.poll(Duration.ofMillis(PollMs)).asScala.map(_.value).filter(_ != null).toVector
+            if came.nonEmpty then received(came)
+          catch
+            case _: WakeupException => ()
+            // A broker that is away comes back; what is wrong with a broker that is there stays, and is said.
+            case _: RetriableException => ()
+      finally reader.close()
+
+  private def failed(error: Throwable): Unit =
+    isDoubtful = true
+    if !closing.get then lost(s"${error.getMessage}")
+
+  private def write(): Unit =
+    val settings = KafkaTopics.common(topics)
+    settings.put("acks", "1")
+    settings.put("linger.ms", "0")
+    settings.put("compression.type", "none")
+    settings.put("enable.idempotence", "false")
+    settings.put("max.in.flight.requests.per.connection", "1")
+    // Who is asked late answers late: an old question is not worth more than this.
+    settings.put("request.timeout.ms", "400")
+    settings.put("delivery.timeout.ms", "500")
+    settings.put("max.block.ms", "500")
+    settings.put("max.request.size", "1000000")
+    var writer = Option.empty[KafkaProducer[Array[Byte], Array[Byte]]]
+    try
+      while !closing.get || !outgoing.isEmpty do
+        val message = outgoing.poll(PollMs, TimeUnit.MILLISECONDS)
+        if message != null then
+          try
+            if writer.isEmpty then
+              writer = Some(KafkaProducer(settings, ByteArraySerializer(), ByteArraySerializer()))
+            writer.get.send(
+              ProducerRecord(to, 0, null: Array[Byte], message),
+              (_, error) => if error != null then failed(error)
+            ): Unit
+          catch case NonFatal(error) => failed(error)
+    finally writer.foreach(_.close(Duration.ofMillis(600)))
+
+private[kafka] object KafkaPipe:
+  private val MostWaiting = 256
+  private val PollMs      = 200L
+  private val TryEveryMs  = 300L

@@ -1,0 +1,59 @@
+package skein.kafka
+
+import java.util.Properties
+import java.util.concurrent.{ExecutionException, TimeUnit}
+import org.apache.kafka.clients.admin.{Admin, NewTopic}
+import org.apache.kafka.common.errors.TopicExistsException
+import scala.jdk.CollectionConverters.*
+import scala.util.Using
+import scala.util.control.NonFatal
+import skein.link.Address
+
+/** The two topics that flights and a solver speak over, one partition each, so that messages keep their order.
+  *
+  * @param prefix
+  *   of their names
+  */
+final case class KafkaTopics(broker: Address, prefix: String):
+  def questions: String = s"$prefix.questions"
+  def answers: String   = s"$prefix.answers"
+
+  /** Makes what is not there. Blocks for some seconds at most.
+    *
+    * @return
+    *   or why the broker cannot be used
+    */
+  private[kafka] def made(): Either[String, Unit] =
+    val settings = KafkaTopics.common(this)
+    settings.put("default.api.timeout.ms", "5000")
+    settings.put("request.timeout.ms", "2000")
+    try
+      Using.resource(Admin.create(settings)): admin =>
+        for name <- Seq(questions, answers) do
+          val short = Map("retention.ms" -> "600000", "segment.bytes" -> "16777216").asJava
+          val topic = NewTopic(name, 1, 1.toShort).configs(short)
+          try admin.createTopics(java.util.List.of(topic)).all.get(5, TimeUnit.SECONDS): Unit
+          catch case exists: ExecutionException if exists.getCause.isInstanceOf[TopicExistsException] => ()
+      Right(())
+    catch
+      case NonFatal(error) =>
+        val why = Option(error.getCause).getOrElse(error)
+        Left(s"no Kafka broker at $broker: ${Option(why.getMessage).getOrElse(why.toString)}")
+
+object KafkaTopics:
+
+  /** For every client: it comes back soon when a broker does. */
+  private[kafka] def common(topics: KafkaTopics): Properties =
+    val settings = Properties()
+    for
+      (key, value) <- Seq(
+        "bootstrap.servers"                  -> topics.broker.toString,
+        "reconnect.backoff.ms"               -> "50",
+        "reconnect.backoff.max.ms"           -> "250",
+        "retry.backoff.ms"                   -> "50",
+        "retry.backoff.max.ms"               -> "250",
+        "socket.connection.setup.timeout.ms" -> "1000",
+        "metadata.recovery.strategy"         -> "rebootstrap"
+      )
+    do settings.put(key, value)
+    settings
