@@ -28,6 +28,7 @@ object RecordedPlan:
 
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
+  private val Images        = "images"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -53,6 +54,8 @@ object RecordedPlan:
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
+    ) ++ Option.when(settings.images.nonEmpty)(
+      Parameter(Images, settings.images.map(_.text).mkString(" "))
     ) ++ settings.deadline.toSeq.flatMap(deadline =>
       Seq(
         Parameter(DeadlineNs, deadline.toNanos.toString),
@@ -91,6 +94,9 @@ object RecordedPlan:
       moves    <- optional(MovesInFlight, "a number from 1")(_.toIntOption.filter(_ > 0))
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat or a policy")(Fallback.parse(_).toOption)
+      images   <- optional(Images, "sources of images, with a space between two"): text =>
+        val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
+        Option.when(wrong.isEmpty)(sources)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
@@ -116,7 +122,8 @@ object RecordedPlan:
         movesInFlight = moves.getOrElse(settings.movesInFlight),
         deadline = within.map(Span.ofNanos),
         fallback = fallback.getOrElse(settings.fallback),
-        scene = Some(scene)
+        scene = Some(scene),
+        images = images.getOrElse(Nil)
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy)
     )
