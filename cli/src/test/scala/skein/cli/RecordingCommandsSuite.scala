@@ -196,7 +196,7 @@ class RecordingCommandsSuite extends munit.FunSuite:
     val scouts = (1 to 5).map(number => s"Scout$number").toVector
     val sights = scouts.map(Sight(_, "lidar", isLidar = true)) ++
       Seq("Pursuer", "Evader").map(Sight.camera(_, "front_center", "Scene"))
-    val known  = schemas.keySet ++ (FlightTopics.all(scouts) ++ sights.flatMap(FlightTopics.of(_))).map(_.name)
+    val known = schemas.keySet ++ (FlightTopics.all(scouts) ++ sights.flatMap(FlightTopics.of(_))).map(_.name)
     val images = panels.values.flatMap(_.obj.get("imageMode")).toVector
     val shown  = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str ++
       images.flatMap(mode => Seq(mode("imageTopic").str, mode("calibrationTopic").str))

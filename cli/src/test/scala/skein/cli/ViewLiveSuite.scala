@@ -52,8 +52,8 @@ class ViewLiveSuite extends munit.FunSuite:
   folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
     out =>
       val packages = needed(JavaScriptTools.packages)
-      val flying = Flying.start(out, Flown*)
-      val saids  = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
+      val flying   = Flying.start(out, Flown*)
+      val saids    = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
         protocol -> Future(
           JavaScriptTools.run(
             240,
@@ -146,8 +146,9 @@ class ViewLiveSuite extends munit.FunSuite:
         )
       )
       for colour <- seen("told")("colours").arr do assertEquals(colour(3).num, 255.0)
-      val images = RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
-        case picture: Picture => picture
+      val images =
+        RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
+          case picture: Picture => picture
       assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
       assert(images.sizeIs > 20, s"${images.size} images")
       assertEquals(seen("told")("decided"), seen("told")("still"))
@@ -220,7 +221,13 @@ object ViewLiveSuite:
 
   private val SeenTopics =
     Seq("reading", "decision", "command", "prediction", "acknowledgement", "graph").map("/skein/" + _) ++
-      Seq("/tf", "/tf_static", "/vehicles/Evader/pose", "/vehicles/Pursuer/trail", "/vehicles/Pursuer/body") ++
+      Seq(
+        "/tf",
+        "/tf_static",
+        "/vehicles/Evader/pose",
+        "/vehicles/Pursuer/trail",
+        "/vehicles/Pursuer/body"
+      ) ++
       Seq("/scene", "/vehicles/Pursuer/front_center/image", "/vehicles/Evader/front_center/calibration")
 
   /** What waits for other processes, each on a thread of its own. */

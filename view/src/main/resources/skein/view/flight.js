@@ -1,6 +1,6 @@
 // What is known of one flight: from rows, in their order. Times are seconds since its first row.
 
-const trailS = 20, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
+const trailS = 20, trailEveryS = 0.1, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
 
 const colours = ["#d1495b", "#1f6fb2", "#2a9d5c", "#b8860b", "#7b4fa3", "#0f8b8d", "#c1666b", "#4d648d"];
 
@@ -36,6 +36,8 @@ export class Flight {
         vehicle.at = at;
         vehicle.north = row.positionNorthM; vehicle.east = row.positionEastM; vehicle.down = row.positionDownM;
         vehicle.velocityNorth = row.velocityNorthMps; vehicle.velocityEast = row.velocityEastMps;
+        // The last point moves until the next is due.
+        if (vehicle.trail.length > 1 && at - vehicle.trail.at(-2)[0] < trailEveryS) vehicle.trail.pop();
         vehicle.trail.push([at, vehicle.north, vehicle.east]);
         while (vehicle.trail.length && vehicle.trail[0][0] < at - trailS) vehicle.trail.shift();
         this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);

@@ -146,8 +146,8 @@ export class FlightMap {
     pen.strokeStyle = vehicle.colour;
     pen.lineWidth = 2;
     // In pieces, each as faint as it is old.
-    for (let from = 0; from < trail.length - 1; from += 10) {
-      const piece = trail.slice(from, from + 11);
+    for (let from = 0; from < trail.length - 1; from += 20) {
+      const piece = trail.slice(from, from + 21);
       pen.globalAlpha = Math.max(0.08, 0.7 - (now - piece[0][0]) / 28);
       pen.beginPath();
       piece.forEach(([, north, east], at) => at ? pen.lineTo(x(east), y(north)) : pen.moveTo(x(east), y(north)));

@@ -96,7 +96,7 @@ export class Cameras {
       picture.close();
       camera.shown++;
       const { came } = camera, rate = came.length > 1 ? (came.length - 1) / (came.at(-1) - came[0]) : 0;
-      camera.words.textContent = `${camera.name}: ${Number((logNs - nanoseconds(time)) / 1000000n)} ms from exposure to arrival${rate > 0 ? `, ${rate.toFixed(0)}/s shown` : ""}`;
+      camera.words.textContent = `${camera.name}: ${Number((logNs - nanoseconds(time)) / 1000000n)} ms from exposure to arrival${rate > 0 ? `, ${rate.toFixed(0)}/s` : ""}`;
     }
     camera.busy = false;
   }

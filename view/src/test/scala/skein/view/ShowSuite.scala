@@ -105,7 +105,8 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(channels.find(_("topic").str == "/scene").get("encoding").str, "json")
 
   test("a jump over many images of a recording shows the newest before it, and no other"):
-    val filmed = heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.picture(step * 3)))
+    val filmed =
+      heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.picture(step * 3)))
     val show   = RecordedShow.of(filmed.zipWithIndex.map((row, at) => (at.toLong, row)).toVector)
     val viewer = watching(show, "/skein/image")
     came(show, viewer): Unit

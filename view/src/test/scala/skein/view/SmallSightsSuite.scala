@@ -43,5 +43,6 @@ class SmallSightsSuite extends munit.FunSuite:
 object SmallSightsSuite:
   /** Of a `foxglove.CompressedImage`, whatever else is in it: from the JPEG's first bytes on. */
   def jpeg(message: Array[Byte]): BufferedImage =
-    val from = message.indices.find(at => (message(at) & 0xff) == 0xff && (message(at + 1) & 0xff) == 0xd8).get
+    val from =
+      message.indices.find(at => (message(at) & 0xff) == 0xff && (message(at + 1) & 0xff) == 0xd8).get
     ImageIO.read(ByteArrayInputStream(message.drop(from)))
