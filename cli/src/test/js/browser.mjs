@@ -11,7 +11,7 @@ const { chromium } = require("playwright-core");
 const { steps, token, plain } = JSON.parse(text);
 const browser = await chromium.launch({
   executablePath,
-  args: ["--headless", "--no-sandbox", "--disable-dev-shm-usage", 
+  args: ["--headless", "--no-sandbox", "--disable-dev-shm-usage",
     ...(plain ? ["--disable-gpu"] : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]),
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
 });

@@ -166,7 +166,8 @@ class ViewLiveSuite extends munit.FunSuite:
   /** What the page shows at a time is what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =
     val shows = Shows()
-    shows.add(RecordedShow.of(RecordingReader.records(file).fold(error => fail(error.message), identity)))
+    val rows  = RecordingReader.records(file).fold(error => fail(error.message), identity)
+    shows.add(RecordedShow.of(rows))
     val server = Edge.await(ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0))
     try
       val shown =
@@ -190,7 +191,8 @@ class ViewLiveSuite extends munit.FunSuite:
         step("sleep", 500),
         step("ask", "at1", shown)
       )
-      val start = recorded.readings.map(_.state.receivedAt).min
+      // The first may be an image.
+      val start = rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).next()
       for (asked, seconds) <- Seq("at3" -> 3, "at1" -> 1); vehicle <- seen("told")(asked).arr.drop(1) do
         val until  = start + skein.units.Span.ofSeconds(seconds)
         val newest =
