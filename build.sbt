@@ -168,8 +168,8 @@ lazy val cluster = project
 /** Recordings. */
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
-  .dependsOn(core, mcap % "compile->compile;test->test")
-  .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere) ++ pekkoStream ++ munit)
+  .dependsOn(core, scene, mcap % "compile->compile;test->test")
+  .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere, zstd) ++ pekkoStream ++ munit)
 
 /** What a browser and Foxglove see of a flight, over WebSockets. */
 lazy val view = project

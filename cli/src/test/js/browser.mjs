@@ -1,6 +1,6 @@
 // A browser that looks at the page: says what it showed.
 // node browser.mjs FOLDER-OF-PACKAGES CHROMIUM URL STEPS, where STEPS is JSON:
-//   {"token": …, "steps": [["wait", expression], ["ask", name, expression], ["click", selector], ["sleep", ms],
+//   {"token": …, "plain": whether without an imitated graphics card, "steps": [["wait", expression], ["ask", name, expression], ["click", selector], ["sleep", ms],
 //                          ["seek", seconds], ["picture", file]]}
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
@@ -8,10 +8,11 @@ import { join, resolve } from "node:path";
 const [folder, executablePath, url, text] = process.argv.slice(2);
 const require = createRequire(join(resolve(folder), "node_modules", "none.js"));
 const { chromium } = require("playwright-core");
-const { steps, token } = JSON.parse(text);
+const { steps, token, plain } = JSON.parse(text);
 const browser = await chromium.launch({
   executablePath,
-  args: ["--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+  args: ["--headless", "--no-sandbox", "--disable-dev-shm-usage",
+    ...(plain ? ["--disable-gpu"] : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]),
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
 });
 const page = await browser.newPage({ viewport: { width: 1440, height: 1000 } });

@@ -9,6 +9,8 @@ const require = createRequire(join(resolve(folder), "node_modules", "none.js"));
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const WebSocket = require("ws");
 const Ajv = require("ajv");
+const { createFileRegistry, fromBinary } = require("@bufbuild/protobuf");
+const { FileDescriptorSetSchema } = require("@bufbuild/protobuf/wkt");
 
 // A flight is listed when it has started.
 const listed = new URL(url.replace(/^ws/, "http")), flight = listed.pathname.split("/").pop();
@@ -28,8 +30,10 @@ client.on("status", event => statuses.push(event.message));
 client.on("error", event => wrong.push(String(event)));
 client.on("advertise", channels => {
   for (const channel of channels) {
-    const valid = schemas.compile(JSON.parse(channel.schema));
-    const topic = { name: channel.topic, schema: channel.schemaName, messages: 0, valid };
+    const topic = { name: channel.topic, schema: channel.schemaName, messages: 0 };
+    if (channel.encoding === "protobuf") 
+      topic.type = createFileRegistry(fromBinary(FileDescriptorSetSchema, Buffer.from(channel.schema, "base64"))).getMessage(channel.schemaName);
+    else topic.valid = schemas.compile(JSON.parse(channel.schema));
     topics.set(channel.topic, topic);
     bySubscription.set(client.subscribe(channel.id), topic);
   }
@@ -37,6 +41,13 @@ client.on("advertise", channels => {
 client.on("message", ({ subscriptionId, timestamp, data }) => {
   const topic = bySubscription.get(subscriptionId);
   topic.messages++;
+  if (topic.type) {
+    const message = fromBinary(topic.type, new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
+    if (!message.data?.length) wrong.push(`${topic.name}: no data`);
+    // JPEG's first bytes.
+    if (message.format === "jpeg" && (message.data[0] !== 0xff || message.data[1] !== 0xd8)) wrong.push(`${topic.name}: no JPEG`);
+    return;
+  }
   const message = JSON.parse(new TextDecoder().decode(data));
   if (!topic.valid(message)) wrong.push(`${topic.name}: ${schemas.errorsText(topic.valid.errors)}`);
   if (topic.name === "/skein/reading") readings.push([message.vehicle, message.sequence, message.positionNorthM, String(timestamp)]);

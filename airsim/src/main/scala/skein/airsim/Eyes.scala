@@ -41,6 +41,13 @@ final class Eyes private[airsim] (client: AirSimClient, vehicle: String, originN
   def scan(lidar: String = ""): Future[Either[RpcError, Stamped[Scan]]] =
     ask("getLidarData", Seq(Str(lidar), Str(vehicle)))(Images.readScan(_, originNed))
 
+  /** A camera's horizontal field of view. */
+  def fov(camera: String): Future[Either[RpcError, Radians]] =
+    ask("simGetCameraInfo", Seq(Str(camera), Str(vehicle), Bool(false)))(in =>
+      Right((Images.readFov(in), Instant.Epoch))
+    )
+      .map(_.map(_.value))
+
   private def ask[A](method: String, params: Seq[Msg])(
       read: MessageReader => Either[String, (A, Instant)]
   ): Future[Either[RpcError, Stamped[A]]] =

@@ -185,6 +185,13 @@ private[airsim] object Images:
       Left(s"expected ${points.length / 3} segmentation ids, came ${segmentation.length}")
     else Right((Scan(points, segmentation, position + originNed, orientation), at))
 
+  /** Of the answer to `simGetCameraInfo`. */
+  def readFov(in: MessageReader): Radians =
+    var degrees = 0.0
+    in.fields:
+      case "fov" => degrees = in.double()
+    Radians(StrictMath.toRadians(degrees))
+
   private def vector(in: MessageReader): Vector3 =
     var (x, y, z) = (0.0, 0.0, 0.0)
     in.fields:

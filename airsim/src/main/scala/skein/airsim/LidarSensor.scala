@@ -7,8 +7,12 @@ import skein.signal.Stamped
 
 /** A lidar as policies read it: see [[Equipment.Lidar]]. Its points have to come in its own frame (`"DataFrame":
   * "SensorLocalFrame"`). Scans come on connections of their own.
+  *
+  * @param seen
+  *   is shown each scan; must not wait for anything
   */
-final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar) extends Sensor:
+final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar, seen: Stamped[Scan] => Unit = _ => ())
+    extends Sensor:
   val columns: Vector[String] = Vector("northM", "eastM", "downM") ++
     Vector.tabulate(Equipment.Sectors): sector =>
       val from = (sector * 360 / Equipment.Sectors).toString
@@ -16,8 +20,11 @@ final class LidarSensor(eyes: Eyes, lidar: Equipment.Lidar) extends Sensor:
 
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = eyes
     .scan(lidar.name)
-    .map(_.left.map(VehicleErrors.errorOf).map(_.map(scan =>
-      val at = scan.positionNed
-      IArray(at.x, at.y, at.z) ++
-        IArray.unsafeFromArray(scan.nearest(Equipment.Sectors, Equipment.BandM, lidar.rangeM))
-    )))(using ExecutionContext.parasitic)
+    .map(_.left.map(VehicleErrors.errorOf).map: frame =>
+      seen(frame)
+      frame.map: scan =>
+        val at = scan.positionNed
+        IArray(at.x, at.y, at.z) ++
+          IArray.unsafeFromArray(scan.nearest(Equipment.Sectors, Equipment.BandM, lidar.rangeM)))(using
+      ExecutionContext.parasitic
+    )

@@ -58,5 +58,5 @@ object ExportCommand
         (),
         s"--mcap: expected another file than the recording, came $text"
       )
-      _ <- McapRecording.write(file, Path.of(text)).left.map(_.message)
+      _ <- McapRecording.write(file, Path.of(text), RecordOptions.sceneOf).left.map(_.message)
     yield Console.out.println(s"recording in $text")

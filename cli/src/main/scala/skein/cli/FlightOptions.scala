@@ -73,6 +73,10 @@ final case class FlightOptions(
       "speaks MAVLink to the vehicles, as to PX4, system 1 being the scenario's first; every loop but paused"
     )
     mavlink: Flag,
+    @arg(doc =
+      "records what cameras and lidars see: seen, for those that policies look through, or CAMERA@HZ, for example front_center@10, for images of that camera of every vehicle; may be given several times"
+    )
+    images: Seq[String],
     @arg(doc = "a HOCON file with settings of skein.fly")
     config: Option[String]
 ):
@@ -115,7 +119,8 @@ final case class FlightOptions(
       "moves-in-flight" -> movesInFlight,
       "deadline"        -> deadline,
       "fallback"        -> fallback,
-      "solver"          -> solver
+      "solver"          -> solver,
+      "images"          -> strings(images)
     ).collect { case (key, Some(value)) => key -> value })
 
   /** Flags for settings of the scenario that is flown. */

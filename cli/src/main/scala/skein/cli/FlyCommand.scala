@@ -19,6 +19,7 @@ import skein.loop.{LoopKind, Outcome}
 import skein.record.{ClockKind, DuckDbRecorder, Record}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
+import skein.scene.Scene
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Clock
 import skein.view.Shows
@@ -89,13 +90,14 @@ final class FlyCommand(using Scenarios)
         "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
       )
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
-      sinks = RecordOptions.Sinks(options.beside, out)
+      scene = if simulator.isEmpty then settings.world.scene else Scene.Empty
+      sinks = RecordOptions.Sinks(options.beside, out, scene)
       flown <- clock match
         case ClockKind.Real =>
           for
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(options.twins)), out)
             _ <- OpenFiles.enoughFor(plans.size)
-            _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file)))
+            _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil))
             shows    = Shows()
             requests = OutsideRequests()
             flown <-
@@ -104,11 +106,11 @@ final class FlyCommand(using Scenarios)
                 plans,
                 simulator,
                 out,
-                Option.when(options.view.view.value)(OnShow(shows, requests)),
+                Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.sights)),
                 sinks,
                 requests
               ))
-          yield flown.and(kept(out)(flyTwins(flown.landed, settings, options.twins, out)))
+          yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), options.twins, out)))
         case ClockKind.Virtual =>
           for
             _      <- nothingToOverwrite(plans, out)
@@ -170,7 +172,8 @@ final class FlyCommand(using Scenarios)
       simulator,
       tell = tell,
       calledOff = requests.calledOff,
-      solvers = SolverOptions.reached(settings)
+      solvers = SolverOptions.reached(settings),
+      isWatched = shown.isDefined
     )
     try
       if simulator.isEmpty then

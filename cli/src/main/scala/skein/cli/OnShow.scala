@@ -5,12 +5,13 @@ import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.ExecutionContext
 import skein.flight.{LiveFlights, OutsideRequests}
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
-import skein.record.{RecordingHeader, Record, Topic}
+import skein.record.{RecordingHeader, Record, Sight, Topic}
+import skein.scene.Scene
 import skein.units.Span
 import skein.view.{Control, Feed, Gauge, LiveShow, Shows}
 
 /** Live flights on show, each with its records and its graph as it runs. */
-private[cli] final class OnShow(shows: Shows, requests: OutsideRequests):
+private[cli] final class OnShow(shows: Shows, requests: OutsideRequests, scene: Scene, sights: Vector[Sight]):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
   /** What is shown of a flight that begins. */
@@ -21,7 +22,14 @@ private[cli] final class OnShow(shows: Shows, requests: OutsideRequests):
     val graph    = Gauge(OnShow.topic, Span.ofMillis(500), gauge.json)
     val controls =
       Control.values.map(control => control -> (() => act(control, heading.flight.id)))
-    shows.add(LiveShow(heading, feed, Vector(graph), controls = controls.toMap))
+    shows.add(LiveShow(
+      heading,
+      feed,
+      Vector(graph),
+      controls = controls.toMap,
+      scene = scene,
+      sights = sights
+    ))
     feed.offer
 
   private def act(control: Control, id: String): Unit = control match

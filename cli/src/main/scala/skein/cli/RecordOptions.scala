@@ -5,7 +5,8 @@ import java.util.concurrent.ConcurrentLinkedQueue
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import skein.record.{ClockKind, McapRecording, McapRowSink, PostgresRowSink, RecordingHeader, RowSink}
-import skein.settings.FlightPlan
+import skein.scene.Scene
+import skein.settings.{FlightPlan, NamedScene}
 
 /** Where flights are recorded besides their DuckDB files. */
 final case class RecordOptions(
@@ -36,10 +37,11 @@ final case class RecordOptions(
   private def sinksOf(
       plan: FlightPlan,
       folder: Path,
-      heading: RecordingHeader
+      heading: RecordingHeader,
+      scene: Scene
   ): Seq[Either[String, RowSink]] =
     record.distinct.map:
-      case "mcap" => McapRowSink.open(fileOf(plan, folder), heading).left.map(_.message)
+      case "mcap" => McapRowSink.open(fileOf(plan, folder), heading, scene).left.map(_.message)
       case url    => PostgresRowSink.open(url, heading).left.map("--record: " + _)
 
   private def fileOf(plan: FlightPlan, folder: Path) =
@@ -52,19 +54,24 @@ final case class RecordOptions(
     *   or why not
     */
   def exported(plan: FlightPlan, folder: Path): Either[String, Unit] =
-    if wantsMcap then McapRecording.write(plan.file(folder), fileOf(plan, folder)).left.map(_.message)
+    if wantsMcap then
+      McapRecording.write(plan.file(folder), fileOf(plan, folder), RecordOptions.sceneOf).left.map(_.message)
     else Right(())
 
 object RecordOptions:
   given ParserForClass[RecordOptions] = ParserForClass[RecordOptions]
 
+  /** What stood in a flight's world, by its recording's parameters; nothing where these do not tell it. */
+  def sceneOf(parameters: Map[String, String]): Scene =
+    NamedScene.ofRecording(parameters).fold(_ => Scene.Empty, _.scene)
+
   /** Those that are written while flights fly, and what went wrong with them. */
-  final class Sinks(options: RecordOptions, folder: Path):
+  final class Sinks(options: RecordOptions, folder: Path, scene: Scene):
     private val opened = ConcurrentLinkedQueue[(flight: String, sink: RowSink)]()
 
     /** For a flight that begins. */
     def open(plan: FlightPlan, heading: RecordingHeader): Either[String, Vector[RowSink]] =
-      val (wrong, sinks) = options.sinksOf(plan, folder, heading).partitionMap(identity)
+      val (wrong, sinks) = options.sinksOf(plan, folder, heading, scene).partitionMap(identity)
       if wrong.isEmpty then
         sinks.foreach(sink => opened.add((plan.id, sink)))
         Right(sinks.toVector)

@@ -39,7 +39,7 @@ final class ReplayCommand(using Scenarios)
     for
       _ <- options.files.value.foldLeft[Either[String, Unit]](Right(())): (soFar, file) =>
         soFar.flatMap(_ => RecordingReader.records(Path.of(file)).left.map(_.message)).map(rows =>
-          shows.add(RecordedShow.of(rows))
+          shows.add(RecordedShow.of(rows, RecordOptions.sceneOf))
         )
       _ <- options.view.serving(shows):
         val ended = Promise[Either[String, Unit]]()

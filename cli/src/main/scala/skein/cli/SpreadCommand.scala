@@ -29,8 +29,13 @@ final class SpreadCommand(using Scenarios)
     for
       settings <- options.flights.settings
       _        <- SolverOptions.virtual(settings)
-      _        <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
-      out      <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      _        <- Either.cond(
+        settings.images.isEmpty,
+        (),
+        "--images: expected with fly alone; spread keeps no recordings"
+      )
+      _   <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
+      out <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       plans =
         for plan <- settings.plans; number <- 0 until options.seeds
         yield plan.copy(seed = settings.seed + number)

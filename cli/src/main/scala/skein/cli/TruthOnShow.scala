@@ -20,7 +20,7 @@ private[cli] object TruthOnShow:
     import system.dispatcher
     val feed     = Feed()
     val sequence = AtomicLong()
-    shows.add(LiveShow(heading(settings, server, clock.now()), feed))
+    shows.add(LiveShow(heading(settings, server, clock.now()), feed, scene = settings.scene))
     system.scheduler.scheduleWithFixedDelay(Every, Every)(() =>
       server.truth().foreach: truth =>
         val now    = clock.now()

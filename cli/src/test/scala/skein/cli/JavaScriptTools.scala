@@ -15,9 +15,10 @@ object JavaScriptTools:
     val named  = Seq("package.json", "package-lock.json")
     for name <- named do
       Files.copy(scripts.resolve(name), folder.resolve(name), StandardCopyOption.REPLACE_EXISTING): Unit
-    val isThere = Seq("@foxglove/ws-protocol", "ajv", "playwright-core", "ws").forall(name =>
-      Files.isDirectory(folder.resolve("node_modules").resolve(name))
-    )
+    val isThere =
+      Seq("@bufbuild/protobuf", "@foxglove/ws-protocol", "ajv", "playwright-core", "ws").forall(name =>
+        Files.isDirectory(folder.resolve("node_modules").resolve(name))
+      )
     if isThere then Right(folder)
     else
       run(120, "npm", "ci", "--no-audit", "--no-fund", "--prefix", folder.toString).map(_ => folder).left.map(

@@ -10,7 +10,7 @@ import skein.forward.Reduced
 import skein.identify.Structure
 import skein.loop.LoopKind
 import skein.mcap.file.McapFile
-import skein.record.{MemoryRecorder, Recording}
+import skein.record.{FlightTopics, MemoryRecorder, Recording, Sight}
 import skein.report.DuelReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
@@ -190,8 +190,15 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
     plots.foreach:
       case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
       case other              => fail(other)
-    val shown = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str
-    assertEquals(shown.diff(schemas.keySet), Set.empty[String])
+    // The duel's, and those of a forest's scouts with their lidars; two vehicles' front cameras.
+    val scouts = (1 to 5).map(number => s"Scout$number").toVector
+    val sights = scouts.map(Sight(_, "lidar", isLidar = true)) ++
+      Seq("Pursuer", "Evader").map(Sight.camera(_, "front_center", "Scene"))
+    val known = schemas.keySet ++ (FlightTopics.all(scouts) ++ sights.flatMap(FlightTopics.of(_))).map(_.name)
+    val images = panels.values.flatMap(_.obj.get("imageMode")).toVector
+    val shown  = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str ++
+      images.flatMap(mode => Seq(mode("imageTopic").str, mode("calibrationTopic").str))
+    assertEquals((images.size, shown.diff(known)), (2, Set.empty[String]))
 
   recordings.test("export says what it can write when nothing was asked for"): folder =>
     val (status, _, err) = run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString)

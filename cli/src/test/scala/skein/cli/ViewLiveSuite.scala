@@ -47,9 +47,8 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
   folder.test("Foxglove's client subscribes to every topic, and every message is as its topic's schema says"):
     out =>
       val packages = needed(JavaScriptTools.packages)
-      // For as long as a busy machine may need to serve both; they end it.
-      val flying = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "150s")
-      val saids  = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
+      val flying   = Flying.start(out, Flown*)
+      val saids    = Seq("foxglove.sdk.v1", "foxglove.websocket.v1").map: protocol =>
         protocol -> Future(
           JavaScriptTools.run(
             240,
@@ -77,7 +76,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
         assertEquals((seen("protocol").str, seen("wrong")), (protocol, ujson.Arr()))
         val counts = seen("topics").arr.map(topic => topic("name").str -> topic("messages").num.toInt).toMap
         val topics = FlightTopics.all(recorded.heading.vehicles.map(_.name).toVector).map(_.name).toSet
-        assertEquals(counts.keySet, topics + "/skein/graph")
+        assertEquals(counts.keySet, topics ++ Sights + "/skein/graph")
         for topic <- SeenTopics do assert(counts(topic) > 0, s"$topic: $counts")
         val readings = seen("readings").arr
         assert(readings.size >= SeenReadings, readings.size.toString)
@@ -91,7 +90,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
   folder.test("in a browser a flight is seen, paused and let go on, and its recording is played and sought"):
     out =>
       val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
-      val flying = Flying.start(out, "--loop", "predictive", "--link", "vpn", "--duration", "150s")
+      val flying = Flying.start(out, Flown*)
       val shown  =
         "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
       val seen = browse(
@@ -102,6 +101,14 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
           "window.skein?.flight?.vehicles.size === 2 && skein.flight.now > 4 && skein.frames > 10"
         ),
         step("ask", "before", shown),
+        step("ask", "obstacles", "skein.flight.obstacles.length"),
+        step("wait", "skein.cameras.length === 2 && skein.cameras.every(one => one.shown > 3)"),
+        step("ask", "cameras", "skein.cameras.map(one => [one.name, one.canvas.width, one.canvas.height])"),
+        step(
+          "ask",
+          "colours",
+          "skein.cameras.map(one => [...one.canvas.getContext('2d').getImageData(2, 2, 1, 1).data])"
+        ),
         step("ask", "parts", "document.querySelectorAll('#graph rect').length"),
         step("click", "#pause"),
         step("wait", "skein.flight.paused"),
@@ -124,6 +131,21 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
         Vector(EventKind.Paused, EventKind.Continued, EventKind.Aborted)
       )
       assertEquals(seen("questions").arr.size, 3)
+      // A street's objects, and its sky above what two cameras see.
+      assert(seen("told")("obstacles").num >= 10, seen("told")("obstacles").toString)
+      assertEquals(
+        seen("told")("cameras").arr.toSet,
+        Set[ujson.Value](
+          ujson.Arr("Pursuer, front_center", 256, 144),
+          ujson.Arr("Evader, front_center", 256, 144)
+        )
+      )
+      for colour <- seen("told")("colours").arr do assertEquals(colour(3).num, 255.0)
+      val images =
+        RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
+          case picture: Picture => picture
+      assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
+      assert(images.sizeIs > 20, s"${images.size} images")
       assertEquals(seen("told")("decided"), seen("told")("still"))
       // Two of each part of a vehicle, and due, events, view, cast, steered, fan, record, feed back.
       assertEquals(seen("told")("parts").num.toInt, 18)
@@ -139,7 +161,8 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
   /** What the page shows at a time is what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =
     val shows = Shows()
-    shows.add(RecordedShow.of(RecordingReader.records(file).fold(error => fail(error.message), identity)))
+    val rows  = RecordingReader.records(file).fold(error => fail(error.message), identity)
+    shows.add(RecordedShow.of(rows))
     val server = Edge.await(ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0))
     try
       val shown =
@@ -163,7 +186,8 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
         step("sleep", 500),
         step("ask", "at1", shown)
       )
-      val start = recorded.readings.map(_.state.receivedAt).min
+      // The first may be an image.
+      val start = rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).next()
       for (asked, seconds) <- Seq("at3" -> 3, "at1" -> 1); vehicle <- seen("told")(asked).arr.drop(1) do
         val until  = start + skein.units.Span.ofSeconds(seconds)
         val newest =
@@ -174,9 +198,34 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
 object ViewLiveSuite:
   private val SeenReadings = 60
 
+  /** For as long as a busy machine may need to serve all; they end it. */
+  private val Flown = Seq(
+    "--loop",
+    "predictive",
+    "--link",
+    "vpn",
+    "--duration",
+    "150s",
+    "--scene",
+    "street",
+    "--images",
+    "front_center@5"
+  )
+
+  private val Sights = Set("Pursuer", "Evader").flatMap(name =>
+    Set(s"/vehicles/$name/front_center/image", s"/vehicles/$name/front_center/calibration")
+  )
+
   private val SeenTopics =
     Seq("reading", "decision", "command", "prediction", "acknowledgement", "graph").map("/skein/" + _) ++
-      Seq("/tf", "/tf_static", "/vehicles/Evader/pose", "/vehicles/Pursuer/trail", "/vehicles/Pursuer/body")
+      Seq(
+        "/tf",
+        "/tf_static",
+        "/vehicles/Evader/pose",
+        "/vehicles/Pursuer/trail",
+        "/vehicles/Pursuer/body"
+      ) ++
+      Seq("/scene", "/vehicles/Pursuer/front_center/image", "/vehicles/Evader/front_center/calibration")
 
   /** What waits for other processes, each on a thread of its own. */
   private val threads = ExecutionContext.fromExecutor(Executors.newCachedThreadPool())

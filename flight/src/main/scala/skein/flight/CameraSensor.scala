@@ -25,13 +25,16 @@ import skein.units.*
   *   of the vehicle
   * @param seed
   *   of how long recognition takes
+  * @param seen
+  *   is shown each image; must not wait for anything
   */
 private[skein] final class CameraSensor(
     val eye: Eye,
     eyes: Eyes,
     seed: Long,
     clock: Clock,
-    note: (EventKind, String) => Unit
+    note: (EventKind, String) => Unit,
+    seen: Stamped[Image] => Unit = _ => ()
 )(using system: ActorSystem):
   import CameraSensor.*
   import system.dispatcher
@@ -103,6 +106,7 @@ private[skein] final class CameraSensor(
     .image(shot)
     .map(_.map: frame =>
       val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
+      seen(frame)
       frame)
 
   private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =

@@ -1,8 +1,9 @@
 package skein.flight
 
-import skein.airsim.{LidarSensor, Multirotor}
+import skein.airsim.{LidarSensor, Multirotor, Scan}
 import skein.port.{Sensor, VehiclePort}
 import skein.scenario.{Equipment, Scenario}
+import skein.signal.Stamped
 
 /** A vehicle with more sensors than its own. */
 private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sensor]) extends VehiclePort:
@@ -15,14 +16,17 @@ private[skein] object Equipped:
     *
     * @param seen
     *   what its eyes make of its cameras, by name
+    * @param scanned
+    *   is shown each scan of a lidar, with its name
     */
   def by(
       scenario: Scenario,
       vehicle: VehiclePort,
       multirotor: Multirotor,
-      seen: Map[String, Sensor] = Map.empty
+      seen: Map[String, Sensor] = Map.empty,
+      scanned: (String, Stamped[Scan]) => Unit = (_, _) => ()
   ): VehiclePort =
     val lidars = scenario.equipment.collect:
       case lidar: Equipment.Lidar if lidar.vehicle == multirotor.name =>
-        lidar.name -> LidarSensor(multirotor.eyes, lidar)
+        lidar.name -> LidarSensor(multirotor.eyes, lidar, scanned(lidar.name, _))
     if lidars.isEmpty && seen.isEmpty then vehicle else Equipped(vehicle, lidars.toMap ++ seen)

@@ -102,6 +102,8 @@ final case class FlightResult(
   *   the links to solvers, for flights that are not decided for here
   * @param calledOff
   *   why a flight, by its name, goes no further while its vehicles are brought to their starts
+  * @param isWatched
+  *   whether its records are shown, so that images and clouds are offered that are not recorded
   */
 final class FlightAssembler(
     transport: Transport,
@@ -112,9 +114,15 @@ final class FlightAssembler(
     tell: String => Unit = _ => (),
     learnsOn: Option[ExecutionContext] = None,
     calledOff: String => Option[String] = _ => None,
-    solvers: Solvers = Solvers.none
+    solvers: Solvers = Solvers.none,
+    isWatched: Boolean = false
 )(using system: ActorSystem):
   import system.dispatcher
+
+  private val recorded: Set[Sight] = settings.recordedSights
+
+  /** Whether a record is kept, and not only shown. */
+  private[flight] def keeps(record: Record): Boolean = Sight.of(record).forall(recorded)
 
   /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
@@ -192,6 +200,9 @@ final class FlightAssembler(
         endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
           for one <- reached.cameras do
+            opened.closing(one)(_.close()): Unit
+            one.run()
+          for one <- reached.films do
             opened.closing(one)(_.close()): Unit
             one.run()
         watchdog.over(flight)
@@ -283,15 +294,18 @@ final class FlightAssembler(
         // Altitudes count from where each vehicle starts, as in its own frame.
         Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
       )
-      cameras = vehicles.map(look(plan, _, monitor))
-      crafts  = vehicles.zip(cameras).map: (vehicle, eyes) =>
-        val craft = AirSimVehicle(
+      logs    = vehicles.map(SightLog(_, monitor, sight => isWatched || recorded(sight)))
+      cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
+      films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
+      crafts  = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
+        val (vehicle, eyes) = looking
+        val craft           = AirSimVehicle(
           vehicle,
           lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
         )
         val isPaused = plan.loop == LoopKind.Paused
         val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
-        Equipped.by(settings.scenario, craft, vehicle, seen.toMap)
+        Equipped.by(settings.scenario, craft, vehicle, seen.toMap, log.scan)
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
     yield Reached(
       crafts,
@@ -299,7 +313,8 @@ final class FlightAssembler(
       address.toString,
       () => client.ping(),
       () => FlightAssembler.startedAgain(vehicles, address),
-      cameras.flatten
+      cameras.flatten,
+      films
     )
 
   /** By a connection of bytes to a simulator of its own, by datagrams to any other. */
@@ -337,6 +352,8 @@ final class FlightAssembler(
     *   see [[SimulatorWatchdog]]
     * @param cameras
     *   what recognises in their cameras' images
+    * @param films
+    *   of their other cameras
     */
   private final case class Reached(
       crafts: Vector[VehiclePort],
@@ -344,7 +361,8 @@ final class FlightAssembler(
       where: String,
       ping: () => Future[Any],
       isOther: () => Future[Either[String, Option[String]]],
-      cameras: Vector[CameraSensor] = Vector.empty
+      cameras: Vector[CameraSensor] = Vector.empty,
+      films: Vector[FilmedCamera] = Vector.empty
   )
 
   private def serve(): Future[Option[SimulatorServer]] =
@@ -370,13 +388,33 @@ final class FlightAssembler(
         .map(Some(_))
 
   /** What the scenario's eyes make of a vehicle's cameras. */
-  private def look(plan: FlightPlan, vehicle: Multirotor, recorder: Recorder): Vector[CameraSensor] =
+  private def look(
+      plan: FlightPlan,
+      vehicle: Multirotor,
+      recorder: Recorder,
+      log: SightLog
+  ): Vector[CameraSensor] =
     settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
+      if isWatched || recorded.nonEmpty then log.ask(eye.camera)
       CameraSensor(
         eye,
         vehicle.eyes,
         plan.seed,
         clock,
+        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+        log.image
+      )
+
+  /** Its cameras that nobody decides by. */
+  private def film(vehicle: Multirotor, recorder: Recorder, log: SightLog): Vector[FilmedCamera] =
+    settings.filmed.filter(_.sight.vehicle == vehicle.name).map: (sight, every) =>
+      log.ask(sight.name)
+      FilmedCamera(
+        sight.name,
+        every,
+        vehicle.eyes,
+        clock,
+        log.image,
         (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail))
       )
 

@@ -101,7 +101,7 @@ object LiveFlights:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
           assembler
-            .start(plan, ObservedRecorder(recorder, observe(heading)))
+            .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps))
             .recover { case NonFatal(error) => Left(s"it could not be started: $error") }
             .flatMap:
               case Left(reason) =>

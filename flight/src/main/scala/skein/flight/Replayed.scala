@@ -43,12 +43,20 @@ object Replayed:
         case Some(result) => result.map(Some(_))
     yield Replayed(recording.flight.id, recording.decisions.size, decided, again)
 
+  /** Formats up to 5 did not record where plans lead. */
+  private def withoutCourse(record: Record): Record = record match
+    case planned: Planned => planned.copy(course = None)
+    case other            => other
+
   private def flyAgain(file: Path, recording: Recording, flown: RecordedPlan): Either[String, FlownAgain] =
     for
       recorded <- Digest.ofFile(file).left.map(_.message)
       landing  <- VirtualFlights.fly(flown.settings, flown.plan)
     yield FlownAgain(
       recorded,
-      landing.recorder.digest,
+      Digest.of(
+        if recording.planned.exists(_.course.isDefined) then landing.recorder.all
+        else landing.recorder.all.map(withoutCourse)
+      ),
       Difference.first(recording.decisions, landing.recorder.recording.decisions)
     )

@@ -2,6 +2,7 @@ package skein.loop
 
 import skein.planning.*
 import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
+import skein.record.Course
 import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.ReducedModel
@@ -48,14 +49,20 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
       plan: Plan,
       isOld: Boolean
   ): (Memory, PlannedDecision) =
-    val action =
-      if isOld then byPolicy(memory, view, now, part)
-      else
-        PlannedMove.of(plan.copy(manoeuvre = begun(part, plan)), part.situation, part.objective, planner.dtS)
+    val chosen = if isOld then None else Some(begun(part, plan))
+    val action = chosen.fold(byPolicy(memory, view, now, part))(manoeuvre =>
+      PlannedMove.of(plan.copy(manoeuvre = manoeuvre), part.situation, part.objective, planner.dtS)
+    )
     val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
     val (next, decision) =
       decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
-    (next, PlannedDecision(atAltitude(decision), action, plan, isOld))
+    (next, PlannedDecision(atAltitude(decision), action, plan, isOld, chosen.map(course(part, _))))
+
+  /** Where the plan leads. */
+  private def course(part: Part, manoeuvre: Manoeuvre): Course =
+    val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).fly(manoeuvre).track
+    val steps = Vector.range(0, track.steps)
+    Course(steps.map(track.x), steps.map(track.y), Span.ofSeconds(planner.dtS))
 
   private def atAltitude(decision: Decision): Decision =
     if altitudeM == startM then decision
@@ -73,8 +80,16 @@ private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings)
   *
   * @param byPolicy
   *   whether the last plan was too old to go on with
+  * @param course
+  *   where the plan leads; absent where the policy decides in its place
   */
-final case class PlannedDecision(decision: Decision, action: PlannedMove, plan: Plan, byPolicy: Boolean)
+final case class PlannedDecision(
+    decision: Decision,
+    action: PlannedMove,
+    plan: Plan,
+    byPolicy: Boolean,
+    course: Option[Course] = None
+)
 
 object Planning:
 

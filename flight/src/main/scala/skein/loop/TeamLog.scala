@@ -91,7 +91,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** A planned decision, how it was planned, and what from. */
   def planned(made: PlannedDecision, answer: PlanStage.Answer, regardsTeam: Boolean): Unit =
-    val PlannedDecision(decision, action, plan, byPolicy) = made
+    val PlannedDecision(decision, action, plan, byPolicy, course) = made
     import decision.vehicle
     decided(decision, regardsTeam)
     recorder.offer(
@@ -102,7 +102,8 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
         answer.slices.map(_.toLong),
         Option.when(plan.cost.isFinite)(plan.cost),
         clock.now().since(decision.decidedAt),
-        action.breaches.size
+        action.breaches.size,
+        course
       )
     )
     if plan.slices == 0 then

@@ -9,7 +9,8 @@ import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy, Policy}
-import skein.scenario.{PaperDuel, Scenario, Scenarios}
+import skein.record.Sight
+import skein.scenario.{Equipment, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -35,6 +36,8 @@ import skein.vehicle.ReducedModel
   * @param solver
   *   by whom the flights are flown too, beside those that decide in this process; a decision then has a deadline, the
   *   period where none is set
+  * @param images
+  *   whose images and clouds are recorded
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -51,8 +54,30 @@ final case class FlySettings(
     planning: PlanSettings = PlanSettings(),
     scene: Option[NamedScene] = None,
     wire: Wire = Wire.AirSim,
-    solver: Option[SolverChoice] = None
+    solver: Option[SolverChoice] = None,
+    images: List[ImageSource] = Nil
 ):
+
+  /** The cameras and lidars whose images and clouds the flight has. */
+  def sights: Vector[Sight] = (seen ++ filmed.map((sight, _) => sight)).distinct
+
+  /** Those of which they are recorded. */
+  def recordedSights: Set[Sight] =
+    (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sight, _) => sight)
+
+  /** Those that its policies look through. */
+  private def seen: Vector[Sight] =
+    scenario.eyes.map(eye => Sight.camera(eye.vehicle, eye.camera, "Scene")) ++
+      scenario.equipment.collect { case lidar: Equipment.Lidar =>
+        Sight(lidar.vehicle, lidar.name, isLidar = true)
+      }
+
+  /** Those that are looked through for the recording alone, and how often. */
+  def filmed: Vector[(sight: Sight, every: Span)] =
+    for
+      agent <- fleet.agents
+      case ImageSource.Camera(name, hz) <- images.toVector
+    yield (Sight.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
 
   /** What stands in the world. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
@@ -223,6 +248,9 @@ object FlySettings:
       Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
         "wire: mavlink flies no loop paused, since its vehicles' time does not pass in steps; name other loops"
       ),
+      Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
+        "images: expected none with wire mavlink, which carries no images"
+      ),
       Option.when(settings.movesInFlight < 1 || settings.movesInFlight > FlySettings.MostMovesInFlight)(
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
@@ -273,6 +301,7 @@ object FlySettings:
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
 
   private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse)
+  private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)
 
   private given (using Scenarios): ConfigReader[Fallback] = parsed("fallback", Fallback.parse)
 

@@ -28,6 +28,7 @@ object RecordedPlan:
 
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
+  private val Images        = "images"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -54,6 +55,9 @@ object RecordedPlan:
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
     ) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
+      Option.when(settings.images.nonEmpty)(
+        Parameter(Images, settings.images.map(_.text).mkString(" "))
+      ) ++
       settings.deadlineOf(plan).toSeq.flatMap(deadline =>
         Seq(
           Parameter(DeadlineNs, deadline.toNanos.toString),
@@ -93,6 +97,9 @@ object RecordedPlan:
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
       solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
+      images   <- optional(Images, "sources of images, with a space between two"): text =>
+        val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
+        Option.when(wrong.isEmpty)(sources)
       // Recordings from before there was planning have none.
       planning <-
         if parameters.contains(Planning) then parameter(Planning, "settings of plans")(PlanSettings.parse)
@@ -118,7 +125,8 @@ object RecordedPlan:
         movesInFlight = moves.getOrElse(settings.movesInFlight),
         deadline = within.map(Span.ofNanos),
         fallback = fallback.getOrElse(settings.fallback),
-        scene = Some(scene)
+        scene = Some(scene),
+        images = images.getOrElse(Nil)
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
     )

@@ -23,7 +23,8 @@ private[record] final case class Column(
     nullable: Boolean = false,
     older: Option[String] = None
 ):
-  def sql: String = s"$name $sqlType" + (if nullable then "" else " NOT NULL")
+  def isBlob: Boolean = sqlType == "BLOB"
+  def sql: String     = s"$name $sqlType" + (if nullable then "" else " NOT NULL")
 
 /** Walks over the cells of a result's current row from left to right. */
 private[record] final class Cells(row: ResultSet):
@@ -71,6 +72,15 @@ private[record] object Columns:
 
   def texts(name: String): Columns[Vector[String]] =
     single(name, "VARCHAR[]", _.texts(_), (row, column) => listed(row.getArray(column)).map(_.toString))
+
+  /** Compressed by Zstandard. */
+  def blob(name: String): Columns[Blob] = single(
+    name,
+    "BLOB",
+    _.blob(_),
+    (row, column) =>
+      Blob.ofPacked(row.getBytes(column)).fold(why => throw SQLException(s"$name: $why"), identity)
+  )
 
   private def listed(list: java.sql.Array): Vector[Object] =
     list.getArray.asInstanceOf[Array[Object]].toVector

@@ -49,6 +49,7 @@ object Difference:
       def longs(values: Vector[Long]): Unit     = cells += values.mkString(",")
       def doubles(values: Vector[Double]): Unit = cells += values.mkString(",")
       def texts(values: Vector[String]): Unit   = cells += values.mkString(",")
+      def blob(value: Blob): Unit               = cells += s"${value.size} bytes, CRC ${Blob.crc(value)}"
       def nothing(): Unit                       = cells += "absent"
     Table.columnsOf(record).append(record, row)
     cells.result()

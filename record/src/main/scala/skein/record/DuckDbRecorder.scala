@@ -1,7 +1,7 @@
 package skein.record
 
 import java.nio.file.Path
-import java.util.concurrent.atomic.AtomicReference
+import java.util.concurrent.atomic.{AtomicLong, AtomicReference}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
@@ -17,6 +17,7 @@ import scala.util.{Failure, Success}
 final class DuckDbRecorder private (
     capacity: Int,
     queue: BoundedSourceQueue[Record],
+    waitingBytes: AtomicLong,
     failed: Promise[RecordError],
     ending: AtomicReference[Option[Ending]],
     closing: Promise[Unit],
@@ -24,14 +25,29 @@ final class DuckDbRecorder private (
 ) extends Recorder:
 
   def offer(record: Record): Unit = record match
-    case last: Ending => ending.set(Some(last))
-    case _            =>
-      queue.offer(record) match
-        case QueueOfferResult.Dropped =>
-          val _ = failed.trySuccess(RecordError.QueueFull(capacity))
-          // What is queued already is still written; what comes now would leave a gap.
-          queue.complete()
-        case QueueOfferResult.Enqueued | QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => ()
+    case last: Ending             => ending.set(Some(last))
+    case large: (Picture | Cloud) => offerLarge(large)
+    case _                        => enqueue(record)
+
+  /** Images and clouds are left out, and told of, where the disk is slower than they come: the flight goes on. */
+  private def offerLarge(record: Picture | Cloud): Unit =
+    val (vehicle, name, at) = record match
+      case one: Picture => (one.vehicle, one.camera, one.receivedAt)
+      case one: Cloud   => (one.vehicle, one.lidar, one.receivedAt)
+    val size = Record.blobOf(record).fold(0)(_.size)
+    if waitingBytes.addAndGet(size) <= DuckDbRecorder.mostWaitingBytes then enqueue(record)
+    else
+      val waiting = waitingBytes.addAndGet(-size)
+      val why     = s"$name: not recorded, since $waiting bytes of images and clouds wait to be written"
+      enqueue(Event(at, EventKind.Dropped, Some(vehicle), why))
+
+  private def enqueue(record: Record): Unit =
+    queue.offer(record) match
+      case QueueOfferResult.Dropped =>
+        val _ = failed.trySuccess(RecordError.QueueFull(capacity))
+        // What is queued already is still written; what comes now would leave a gap.
+        queue.complete()
+      case QueueOfferResult.Enqueued | QueueOfferResult.QueueClosed | QueueOfferResult.Failure(_) => ()
 
   def failure: Future[RecordError] = failed.future
 
@@ -44,6 +60,11 @@ object DuckDbRecorder:
 
   /** Records that may wait to be written: at 20 vehicles and 10 Hz about a minute. */
   val defaultCapacity = 65536
+
+  /** Of images and clouds among them: two seconds of four cameras of 640 × 480 pixels at 10 Hz. What comes then is left out,
+    * and is an event.
+    */
+  val mostWaitingBytes: Long = 96L * 1024 * 1024
 
   /** With the time that a commit takes, a kill of the process loses less than 200 ms. */
   val commitInterval: FiniteDuration = 50.millis
@@ -80,12 +101,14 @@ object DuckDbRecorder:
     val failed           = Promise[RecordError]()
     val ending           = AtomicReference(Option.empty[Ending])
     val closing          = Promise[Unit]()
+    val waitingBytes     = AtomicLong()
     val (queue, drained) = Source
       .queue[Record](capacity)
       .groupedWithin(batchSize, commitInterval)
       .map: batch =>
         val written = file.write(batch)
         if written.isRight then rows.put(batch)
+        for blob <- batch.iterator.flatMap(Record.blobOf) do waitingBytes.addAndGet(-blob.size): Unit
         written
       .takeWhile(_.isRight, inclusive = true)
       .toMat(Sink.foreach(_.left.foreach(failed.trySuccess)))(Keep.both)
@@ -105,7 +128,7 @@ object DuckDbRecorder:
       case Failure(reason) =>
         failed.trySuccess(RecordError.WriteFailed(file.path, reason.toString)): Unit
         Future.successful(finish())
-    DuckDbRecorder(capacity, queue, failed, ending, closing, closed)
+    DuckDbRecorder(capacity, queue, waitingBytes, failed, ending, closing, closed)
 
   /** Numbers rows as the file does, for those beside it. */
   private final class Numbered(beside: Vector[RowSink]):

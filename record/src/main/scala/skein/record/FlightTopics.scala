@@ -1,11 +1,27 @@
 package skein.record
 
+import java.nio.charset.StandardCharsets.UTF_8
+import skein.scene.Scene
 import skein.units.*
 
-/** A topic that a flight is shown by, and what its messages look like, as JSON Schema. */
-final case class Topic(name: String, schemaName: String, schema: String)
+/** A topic that a flight is shown by, and what its messages look like.
+  *
+  * @param schema
+  *   JSON Schema; of binary messages a `FileDescriptorSet` of Protocol Buffers, in Base64
+  * @param isBinary
+  *   whether messages are of Protocol Buffers, else JSON
+  * @param newestOnly
+  *   whether an older message is of no use beside a newer one
+  */
+final case class Topic(
+    name: String,
+    schemaName: String,
+    schema: String,
+    isBinary: Boolean = false,
+    newestOnly: Boolean = false
+)
 
-/** A message of a topic. Its JSON is made when somebody first asks for it.
+/** A message of a topic. Its bytes are made when somebody first asks for them.
   *
   * @param key
   *   what it replaces the older messages of in its topic: those about the same vehicle
@@ -19,9 +35,13 @@ final class FlightMessage(
     val key: String,
     val known: Instant,
     val published: Instant,
-    make: => String
+    make: () => Array[Byte]
 ):
-  lazy val json: String = make
+  lazy val bytes: Array[Byte] = make()
+
+object FlightMessage:
+  def json(topic: String, key: String, known: Instant, published: Instant)(text: => String): FlightMessage =
+    FlightMessage(topic, key, known, published, () => text.getBytes(UTF_8))
 
 /** The rows of a flight as messages: every row on the topic `/skein/TABLE`, by the names of its columns, and beside them
   * views of the same rows by Foxglove's schemas ([[FoxgloveViews]]). Rows are to come in their order.
@@ -31,11 +51,21 @@ final class FlightMessage(
   * @param offset
   *   from the simulator's clock to the controller's until a decision estimates it; without one, as if the first reading
   *   had taken no time
+  * @param scene
+  *   what stands in the world
+  * @param form
+  *   of images and clouds
   */
-final class FlightTopics(vehicles: Vector[String], from: Instant, offset: Option[Span] = None):
+final class FlightTopics(
+    vehicles: Vector[String],
+    from: Instant,
+    offset: Option[Span] = None,
+    scene: Scene = Scene.Empty,
+    form: SightForm = SightForm.Whole
+):
   import FlightTopics.*
 
-  private val views = FoxgloveViews(vehicles, offset)
+  private val views = FoxgloveViews(vehicles, offset, scene, form)
   private var known = from
 
   /** What is there before the first row. */
@@ -48,11 +78,11 @@ final class FlightTopics(vehicles: Vector[String], from: Instant, offset: Option
     known = knownAt(record).getOrElse(known)
     val (at, published) = (known, publishedAt(record).getOrElse(known))
     val key             = keyOf(number, record)
-    FlightMessage(ofTable(Table.of(record)), key, at, published, JsonRow.of(number, record)) +:
+    FlightMessage.json(ofTable(Table.of(record)), key, at, published)(JsonRow.of(number, record)) +:
       views.of(record).map(message(_, key, at, published))
 
   private def message(view: FoxgloveViews.View, key: String, known: Instant, published: Instant) =
-    FlightMessage(view.topic, key, known, published, view.json())
+    FlightMessage(view.topic, key, known, published, view.make)
 
 object FlightTopics:
   private[record] val Prefix = "/skein/"
@@ -62,10 +92,24 @@ object FlightTopics:
     Table.all.map(table => Topic(ofTable(table), s"skein.${table.name}", JsonRow.schema(table))) ++
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
+  /** Of a camera or a lidar. */
+  def of(sight: Sight, form: SightForm = SightForm.Whole): Vector[Topic] =
+    def binary(name: String, schema: String) =
+      Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)
+    if sight.isLidar then Vector(binary(FoxgloveViews.cloudOf(sight), "foxglove.PointCloud"))
+    else
+      val calibration = "foxglove.CameraCalibration"
+      Vector(
+        Topic(FoxgloveViews.calibrationOf(sight), calibration, FoxgloveSchemas.all(calibration)),
+        binary(FoxgloveViews.imageOf(sight), form.imageSchema)
+      )
+
   /** When it was known to the controller, if it says so. */
   def knownAt(record: Record): Option[Instant] = record match
     case reading: Reading        => Some(reading.state.receivedAt)
     case measured: Measurement   => Some(measured.receivedAt)
+    case picture: Picture        => Some(picture.receivedAt)
+    case cloud: Cloud            => Some(cloud.receivedAt)
     case decision: Decision      => Some(decision.decidedAt)
     case solved: Solved          => Some(solved.receivedAt)
     case command: Command        => Some(command.sentAt)
@@ -79,6 +123,8 @@ object FlightTopics:
     case reading: Reading        => reading.vehicle
     case measured: Measurement   => s"${measured.vehicle} ${measured.sensor}"
     case sensing: Sensing        => s"${sensing.vehicle} ${sensing.sensor}"
+    case picture: Picture        => s"${picture.vehicle} ${picture.camera} ${picture.kind}"
+    case cloud: Cloud            => s"${cloud.vehicle} ${cloud.lidar}"
     case decision: Decision      => decision.vehicle
     case sighting: Sighting      => s"${sighting.decider} ${sighting.vehicle}"
     case planned: Planned        => planned.vehicle

@@ -1,9 +1,19 @@
 package skein.record
 
+import java.util.Base64
+import scala.util.Using
+
 /** The schemas of Foxglove's that a flight is shown by, as JSON Schema, with the fields that are written
   * (https://docs.foxglove.dev/docs/sdk/schemas).
   */
 private[record] object FoxgloveSchemas:
+
+  /** Those of binary messages, as `FileDescriptorSet` in Base64, by name: those of Foxglove, which are of the MIT licence. */
+  val binary: Map[String, String] = Vector("RawImage", "CompressedImage", "PointCloud").map: name =>
+    val set = Using.resource(getClass.getResourceAsStream(s"foxglove/$name.fds"))(_.readAllBytes())
+    s"foxglove.$name" -> Base64.getEncoder.encodeToString(set)
+  .toMap
+
   private def typed(kind: String) = Json.obj("type" -> Json.string(kind))
   private val number              = typed("number")
   private val integer             = typed("integer")
@@ -38,6 +48,18 @@ private[record] object FoxgloveSchemas:
         )
       )
     ),
+    "foxglove.CameraCalibration" -> titled(
+      "foxglove.CameraCalibration",
+      "timestamp"        -> time,
+      "frame_id"         -> text,
+      "width"            -> integer,
+      "height"           -> integer,
+      "distortion_model" -> text,
+      "D"                -> many(number),
+      "K"                -> many(number),
+      "R"                -> many(number),
+      "P"                -> many(number)
+    ),
     "foxglove.Log" -> titled(
       "foxglove.Log",
       "timestamp" -> time,
@@ -60,9 +82,17 @@ private[record] object FoxgloveSchemas:
           "metadata"     -> many(nobody),
           "arrows"       -> many(nobody),
           "cubes"        -> many(fields("pose" -> pose, "size" -> vector, "color" -> colour)),
-          "spheres"      -> many(nobody),
-          "cylinders"    -> many(nobody),
-          "lines"        -> many(
+          "spheres"      -> many(fields("pose" -> pose, "size" -> vector, "color" -> colour)),
+          "cylinders"    -> many(
+            fields(
+              "pose"         -> pose,
+              "size"         -> vector,
+              "bottom_scale" -> number,
+              "top_scale"    -> number,
+              "color"        -> colour
+            )
+          ),
+          "lines" -> many(
             fields(
               "type"            -> integer,
               "pose"            -> pose,

@@ -1,6 +1,8 @@
 package skein.record
 
+import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.mutable
+import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.units.*
 
 /** What viewers show of a flight, as messages of Foxglove's schemas, made from the rows in their order. Frames: `world` is
@@ -8,41 +10,55 @@ import skein.units.*
   * body, front, right, down. Times in messages are when physics was sampled, on the controller's clock, as far as the
   * offset of the simulator's was known by then.
   */
-private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset: Option[Span]):
+private[record] final class FoxgloveViews(
+    vehicles: Vector[String],
+    firstOffset: Option[Span],
+    stands: Scene = Scene.Empty,
+    form: SightForm = SightForm.Whole
+):
   import FoxgloveViews.*
 
   private val colours = vehicles.zipWithIndex.map((name, at) => name -> colour(at)).toMap
   private var offset  = firstOffset
   private val trails  = mutable.Map.empty[String, Trail]
+  private val downs   = mutable.Map.empty[String, Double]
+  private val decided = mutable.Map.empty[String, Instant]
+  private val errors  = mutable.Map.empty[String, Metres]
+  private val lenses  = mutable.Map.empty[Sight, (Long, Long, Option[Radians])]
 
   /** Before the first row. */
   def opening(at: Instant): Vector[View] =
-    def world = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
-    View(FixedFrames, () => Json.obj("transforms" -> Json.array(Vector(world)))) +: vehicles.map: name =>
+    def world    = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
+    val standing = Option.when(stands.objects.nonEmpty)(View.text(Standing)(scene(obstacles(at))))
+    val bodies   = vehicles.map: name =>
       def drawn = entity(at, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
-      View(bodyOf(name), () => scene(drawn))
+      View.text(bodyOf(name))(scene(drawn))
+    Vector(View.text(FixedFrames)(Json.obj("transforms" -> Json.array(Vector(world))))) ++ bodies ++ standing
 
   def of(record: Record): Vector[View] = record match
     case reading: Reading =>
       // As long as nothing better is known, as if the first reading had taken no time.
-      val ahead = offset.getOrElse(reading.state.receivedAt.since(reading.state.validAt))
+      val ahead = aheadOf(reading.state.validAt, reading.state.receivedAt)
       offset = Some(ahead)
-      val at     = reading.state.validAt + ahead
-      val state  = reading.state.value
-      val name   = reading.vehicle
+      val at    = reading.state.validAt + ahead
+      val state = reading.state.value
+      val name  = reading.vehicle
+      downs(name) = state.positionNed.z
       def moved  = transform(at, "world_ned", name, state.positionNed, state.orientation)
       def placed = pose(at, state.positionNed, state.orientation)
       Vector(
-        View(Frames, () => Json.obj("transforms" -> Json.array(Vector(moved)))),
-        View(poseOf(name), () => placed)
+        View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved)))),
+        View.text(poseOf(name))(placed)
       ) ++ trail(name, at, state.positionNed)
     case decision: Decision =>
       decision.trueAge.foreach(age => offset = Some(age.clockOffset))
       val name = decision.vehicle
+      decided(name) = decision.decidedAt
       decision.predicted.toVector.map: expected =>
         val at   = expected.actsAt + offset.getOrElse(Span.Zero)
         val from = decision.own.state.value.positionNed
-        View(predictionOf(name), () => scene(carried(name, at, from, expected.ownPositionNed)))
+        val off  = errors.get(name)
+        View.text(predictionOf(name))(scene(carried(name, at, from, expected.ownPositionNed, off)))
     case event: Event =>
       def log = Json.obj(
         "timestamp" -> time(event.at),
@@ -52,8 +68,99 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
         "file"      -> "\"\"",
         "line"      -> "0"
       )
-      Vector(View(Log, () => log))
+      Vector(View.text(Log)(log))
+    case prediction: Prediction =>
+      if prediction.decider == prediction.vehicle then errors(prediction.vehicle) = prediction.error
+      Vector.empty
+    case planned: Planned =>
+      planned.course.toVector.map: course =>
+        val name   = planned.vehicle
+        val down   = downs.getOrElse(name, 0.0)
+        val places = course.north.zip(course.east).map((north, east) => Vector3(north, east, down))
+        def drawn  = entity(
+          decided.getOrElse(name, Instant.Epoch),
+          "world_ned",
+          s"$name plan",
+          lines = Vector(line(name, places, thickness = 3))
+        )
+        View.text(planOf(name))(scene(drawn))
+    case picture: Picture => seen(picture)
+    case cloud: Cloud     =>
+      val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
+      Vector(View(
+        cloudOf(Sight(cloud.vehicle, cloud.lidar, isLidar = true)),
+        () => SightForm.cloud(cloud, at, form.mostPoints)
+      ))
     case _ => Vector.empty
+
+  /** The controller's clock ahead of the simulator's: as known, or as if this had taken no time. */
+  private def aheadOf(validAt: Instant, receivedAt: Instant): Span =
+    offset.getOrElse(receivedAt.since(validAt))
+
+  /** An image, where its camera was, and what lens it has where that is new. */
+  private def seen(picture: Picture): Vector[View] =
+    val sight = Sight.camera(picture.vehicle, picture.camera, picture.kind)
+    val at    = picture.validAt + aheadOf(picture.validAt, picture.receivedAt)
+    val frame = s"${picture.vehicle}/${picture.camera}"
+    val lens  = (picture.width, picture.height, picture.fov)
+    val isNew = !lenses.get(sight).contains(lens)
+    lenses(sight) = lens
+    def moved =
+      transform(at, "world_ned", frame, picture.positionNed, times(picture.orientation, OpticalInCamera))
+    val calibrated =
+      picture.fov.filter(_ => isNew).map(fov =>
+        View.text(calibrationOf(sight))(calibration(at, frame, picture, fov))
+      )
+    Vector(
+      View(imageOf(sight), () => form.image(picture, at, frame)),
+      View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved))))
+    ) ++ calibrated
+
+  /** A pinhole without distortion, whose axis goes through the middle. */
+  private def calibration(at: Instant, frame: String, picture: Picture, fov: Radians): String =
+    val focal                 = picture.width / (2 * StrictMath.tan(fov.value / 2))
+    val (cx, cy)              = (picture.width / 2.0, picture.height / 2.0)
+    def numbers(all: Double*) = Json.array(all.map(Json.number))
+    Json.obj(
+      "timestamp"        -> time(at),
+      "frame_id"         -> Json.string(frame),
+      "width"            -> s"${picture.width}",
+      "height"           -> s"${picture.height}",
+      "distortion_model" -> "\"plumb_bob\"",
+      "D"                -> numbers(0, 0, 0, 0, 0),
+      "K"                -> numbers(focal, 0, cx, 0, focal, cy, 0, 0, 1),
+      "R"                -> numbers(1, 0, 0, 0, 1, 0, 0, 0, 1),
+      "P"                -> numbers(focal, 0, cx, 0, 0, focal, cy, 0, 0, 0, 1, 0)
+    )
+
+  /** What stands in the world, as one entity. */
+  private def obstacles(at: Instant): String =
+    val parts = stands.objects.flatMap(thing => thing.parts.map(part => (part, thing.place.outside(part.at))))
+    entity(
+      at,
+      "world_ned",
+      "scene",
+      cubes = parts.collect:
+        case (SceneObject.Part(Shape.Box(half), _, rgb), place)    => block(place, half * 2, rgb)
+        case (SceneObject.Part(Shape.Tag(_, side), _, rgb), place) =>
+          block(place, Vector3(TagM, side * 5 / 4, side * 5 / 4), rgb)
+      ,
+      cylinders = parts.collect:
+        case (SceneObject.Part(Shape.Pole(radius, half), _, rgb), place) =>
+          Json.obj(
+            "pose"         -> placed(place.position, place.orientation),
+            "size"         -> xyz(Vector3(radius * 2, radius * 2, half * 2)),
+            "bottom_scale" -> "1",
+            "top_scale"    -> "1",
+            "color"        -> painted(rgb)
+          )
+    )
+
+  private def block(place: Placement, size: Vector3, rgb: Int) = Json.obj(
+    "pose"  -> placed(place.position, place.orientation),
+    "size"  -> xyz(size),
+    "color" -> painted(rgb)
+  )
 
   /** Where the vehicle has flown lately: as a whole, once a second, so that whoever jumps to a time sees it at once. */
   private def trail(name: String, at: Instant, position: Vector3): Option[View] =
@@ -64,17 +171,32 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
       trail.points.dropWhileInPlace((passed, _) => at.since(passed) > TrailLength): Unit
       val points = trail.points.toVector.map(_._2)
       def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
-      View(trailOf(name), () => scene(drawn))
+      View.text(trailOf(name))(scene(drawn))
 
-  /** From where a vehicle was read to where it is expected when the command acts. */
-  private def carried(name: String, at: Instant, from: Vector3, to: Vector3) =
+  /** From where a vehicle was read to where it is expected when the command acts; around that, as far as the newest
+    * prediction was off.
+    */
+  private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
     val there = Json.obj(
       "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
       "size"  -> xyz(Vector3(0.5, 0.5, 0.5)),
       "color" -> colours(name)
     )
-    val way = line(name, Vector(from, to), thickness = 4)
-    entity(at, "world_ned", s"$name prediction", cubes = Vector(there), lines = Vector(way))
+    val way  = line(name, Vector(from, to), thickness = 4)
+    val wide = off.map: error =>
+      Json.obj(
+        "pose"  -> placed(to, Quaternion(1, 0, 0, 0)),
+        "size"  -> xyz(Vector3(2, 2, 2) * error.value),
+        "color" -> Doubt
+      )
+    entity(
+      at,
+      "world_ned",
+      s"$name prediction",
+      cubes = Vector(there),
+      spheres = wide.toVector,
+      lines = Vector(way)
+    )
 
   private def line(name: String, points: Vector[Vector3], thickness: Int) = Json.obj(
     "type"            -> LineStrip,
@@ -103,8 +225,12 @@ private[record] final class FoxgloveViews(vehicles: Vector[String], firstOffset:
   )
 
 private[record] object FoxgloveViews:
-  /** A message for a topic; its JSON is made when it is wanted. */
-  final case class View(topic: String, json: () => String)
+  /** A message for a topic; its bytes are made when they are wanted. */
+  final case class View(topic: String, make: () => Array[Byte]):
+    def json: String = String(make(), UTF_8)
+
+  object View:
+    def text(topic: String)(json: => String): View = View(topic, () => json.getBytes(UTF_8))
 
   private val FixedFrames                = "/tf_static"
   private val Frames                     = "/tf"
@@ -113,14 +239,20 @@ private[record] object FoxgloveViews:
   private def poseOf(name: String)       = s"/vehicles/$name/pose"
   private def trailOf(name: String)      = s"/vehicles/$name/trail"
   private def predictionOf(name: String) = s"/vehicles/$name/prediction"
+  private def planOf(name: String)       = s"/vehicles/$name/plan"
+  private val Standing                   = "/scene"
+
+  def imageOf(sight: Sight): String       = s"/vehicles/${sight.vehicle}/${sight.name}/image"
+  def calibrationOf(sight: Sight): String = s"/vehicles/${sight.vehicle}/${sight.name}/calibration"
+  def cloudOf(sight: Sight): String       = s"/vehicles/${sight.vehicle}/${sight.name}/cloud"
 
   /** Every topic with the name of its schema. */
   def topics(vehicles: Vector[String]): Vector[(String, String)] =
     Vector(FixedFrames, Frames).map(_ -> "foxglove.FrameTransforms") ++
       vehicles.map(poseOf(_) -> "foxglove.PoseInFrame") ++
-      vehicles.flatMap(name => Vector(bodyOf(name), trailOf(name), predictionOf(name))).map(
+      vehicles.flatMap(name => Vector(bodyOf(name), trailOf(name), predictionOf(name), planOf(name))).map(
         _ -> "foxglove.SceneUpdate"
-      ) :+ (Log -> "foxglove.Log")
+      ) ++ Vector(Standing -> "foxglove.SceneUpdate", Log -> "foxglove.Log")
 
   private final class Trail(var shownAt: Instant):
     val points: mutable.ArrayBuffer[(Instant, Vector3)] = mutable.ArrayBuffer.empty
@@ -132,6 +264,29 @@ private[record] object FoxgloveViews:
 
   /** Half a turn about the line between north and east: x becomes y, y becomes x, and z turns round. */
   private val NedInWorld = Quaternion(0, math.sqrt(0.5), math.sqrt(0.5), 0)
+
+  /** A camera's frame as viewers have it, right, down, front, in its own, front, right, down. */
+  private val OpticalInCamera = Quaternion(0.5, 0.5, 0.5, 0.5)
+
+  /** Of the plates that bear tags. */
+  private val TagM = 0.002
+
+  private val Doubt = Json.obj("r" -> "0.5", "g" -> "0.5", "b" -> "0.5", "a" -> "0.3")
+
+  /** One turn after the other, the right one first. */
+  private def times(a: Quaternion, b: Quaternion) = Quaternion(
+    a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+    a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+    a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+    a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w
+  )
+
+  /** @param rgb
+    *   0xrrggbb
+    */
+  private def painted(rgb: Int) =
+    def part(shift: Int) = Json.number((rgb >> shift & 0xff) / 255.0)
+    Json.obj("r" -> part(16), "g" -> part(8), "b" -> part(0), "a" -> "1")
 
   private def colour(at: Int) =
     val (r, g, b) =
@@ -183,6 +338,8 @@ private[record] object FoxgloveViews:
       frame: String,
       id: String,
       cubes: Vector[String] = Vector.empty,
+      spheres: Vector[String] = Vector.empty,
+      cylinders: Vector[String] = Vector.empty,
       lines: Vector[String] = Vector.empty,
       texts: Vector[String] = Vector.empty
   ) = Json.obj(
@@ -194,8 +351,8 @@ private[record] object FoxgloveViews:
     "metadata"     -> "[]",
     "arrows"       -> "[]",
     "cubes"        -> Json.array(cubes),
-    "spheres"      -> "[]",
-    "cylinders"    -> "[]",
+    "spheres"      -> Json.array(spheres),
+    "cylinders"    -> Json.array(cylinders),
     "lines"        -> Json.array(lines),
     "triangles"    -> "[]",
     "texts"        -> Json.array(texts),

@@ -2,18 +2,21 @@ package skein.record
 
 import java.io.IOException
 import java.nio.file.{Files, Path, StandardCopyOption}
+import java.util.Base64
 import org.duckdb.DuckDBConnection
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
 import scala.util.Using
 import skein.mcap.{Bytes, McapWriter, Parsed, Record as McapRecord, WriterOptions}
 import skein.mcap.file.McapFile
+import skein.scene.Scene
 import skein.units.*
 
 /** A recording as an MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun, and back.
   *
   * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are the recording
-  * in full, and what `read` reads. Beside them stand views of the same rows by Foxglove's schemas ([[FoxgloveViews]]).
+  * in full, and what `read` reads; but the pixels of an image and the points of a cloud are in the message behind its row,
+  * a `foxglove.RawImage` or a `foxglove.PointCloud`. Beside them stand views of the same rows by Foxglove's schemas ([[FoxgloveViews]]).
   *
   * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there: a reading
   * was received, a decision made, a command sent or answered; of a row that says no such time, that of the row before. The
@@ -21,20 +24,30 @@ import skein.units.*
   * sampled is in the message.
   */
 object McapRecording:
-  private val About = "skein"
+  private val About  = "skein"
+  private val Binary = "protobuf"
 
-  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory. */
-  def write(recording: Path, file: Path): Either[RecordError, Unit] =
+  /** Writes the file, or replaces it. Blocks; holds the whole recording in memory, images and clouds compressed.
+    *
+    * @param scene
+    *   what stands in the world, by the recording's parameters
+    */
+  def write(
+      recording: Path,
+      file: Path,
+      scene: Map[String, String] => Scene = _ => Scene.Empty
+  ): Either[RecordError, Unit] =
     for
       rows <- RecordingReader.records(recording)
       _    <- attempt(RecordError.ExportFailed(file, _)):
-        if Files.exists(file) && !Files.isRegularFile(file) then McapFile.write(file, options)(write(rows, _))
+        if Files.exists(file) && !Files.isRegularFile(file) then
+          McapFile.write(file, options)(write(rows, scene, _))
         else
           // What was there stays until all of the new file is.
           val folder = Files.createTempDirectory(file.toAbsolutePath.getParent, ".skein")
           val made   = folder.resolve("made.mcap")
           try
-            McapFile.write(made, options)(write(rows, _))
+            McapFile.write(made, options)(write(rows, scene, _))
             val _ = Files.move(made, file, StandardCopyOption.REPLACE_EXISTING)
           finally
             val _ = Files.deleteIfExists(made)
@@ -43,14 +56,30 @@ object McapRecording:
 
   private[record] val options = WriterOptions(library = "skein")
 
-  private def write(rows: Vector[(Long, Record)], mcap: McapWriter): Unit =
+  private def write(
+      rows: Vector[(Long, Record)],
+      scene: Map[String, String] => Scene,
+      mcap: McapWriter
+  ): Unit =
     val names = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
     val from  =
       rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
         Instant.ofNanos(0)
       )
-    val flight = Rows(mcap, names, from, Some(firstOffset(rows)))
+    val flight = Rows(mcap, names, from, Some(firstOffset(rows)), sceneOf(rows, scene))
     rows.foreach(flight.put)
+
+  /** What stood in the world of a recording's flight, where that was ours.
+    *
+    * @param scene
+    *   by the recording's parameters
+    */
+  def sceneOf(rows: Vector[(Long, Record)], scene: Map[String, String] => Scene): Scene =
+    val isOurs = rows.exists:
+      case (_, flight: Flight) => flight.isBuiltIn
+      case _                   => false
+    if isOurs then scene(rows.collect { case (_, Parameter(name, value)) => name -> value }.toMap)
+    else Scene.Empty
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
@@ -66,16 +95,20 @@ object McapRecording:
       mcap: McapWriter,
       vehicles: Vector[String],
       from: Instant,
-      offset: Option[Span]
+      offset: Option[Span],
+      scene: Scene
   ):
-    private val topics   = FlightTopics(vehicles, from, offset)
+    private val topics   = FlightTopics(vehicles, from, offset, scene)
     private val channels = Channels(mcap)
+    private val sights   = mutable.Set.empty[Sight]
 
     mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
     FlightTopics.all(vehicles).foreach(channels.add)
     topics.opening.foreach(channels.put)
 
-    def put(number: Long, record: Record): Unit = topics.of(number, record).foreach(channels.put)
+    def put(number: Long, record: Record): Unit =
+      for sight <- Sight.of(record) if sights.add(sight) do FlightTopics.of(sight).foreach(channels.add)
+      topics.of(number, record).foreach(channels.put)
 
   private final class Channels(mcap: McapWriter):
     private val schemas  = mutable.Map.empty[String, Int]
@@ -85,9 +118,11 @@ object McapRecording:
     def add(topic: Topic): Unit =
       val schema = schemas.getOrElseUpdate(
         topic.schemaName,
-        mcap.schema(topic.schemaName, "jsonschema", Bytes.utf8(topic.schema))
+        if topic.isBinary then
+          mcap.schema(topic.schemaName, Binary, Bytes.of(Base64.getDecoder.decode(topic.schema)))
+        else mcap.schema(topic.schemaName, "jsonschema", Bytes.utf8(topic.schema))
       )
-      channels(topic.name) = mcap.channel(topic.name, "json", schema)
+      channels(topic.name) = mcap.channel(topic.name, if topic.isBinary then Binary else "json", schema)
 
     def put(message: FlightMessage): Unit =
       val channel = channels(message.topic)
@@ -96,7 +131,7 @@ object McapRecording:
         counts(channel),
         message.known.toNanos.max(0),
         message.published.toNanos.max(0),
-        Bytes.utf8(message.json)
+        Bytes.of(message.bytes)
       )
       counts(channel) += 1
 
@@ -128,31 +163,72 @@ object McapRecording:
           )(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
       .flatten
 
-  /** The rows of each table that has any, as a file of JSON, a row a line. */
-  private def gather(file: Path, folder: Path): Either[RecordError, Vector[(Table[?], Path)]] =
+  /** The rows of each table that has any, as a file of JSON, a row a line, with the length of the longest. */
+  private def gather(file: Path, folder: Path): Either[RecordError, Vector[Gathered]] =
     McapFile.stream(file): records =>
-      val outs = mutable.LinkedHashMap.empty[String, java.io.BufferedWriter]
+      val outs = mutable.LinkedHashMap.empty[String, RowsFile]
+      // A row whose bytes have not come yet.
+      var waiting              = Option.empty[(table: String, row: String)]
+      def refused(why: String) = Some(RecordError.NotARecording(file, why))
+      def lacking(row: String) = refused(s"an image or a cloud has no bytes behind its row: ${row.take(100)}")
+      def out(table: String)   = outs.getOrElseUpdate(table, RowsFile(folder.resolve(s"$table.json")))
+      def row(message: McapRecord.Message, topic: String) =
+        val name = topic.drop(FlightTopics.Prefix.length)
+        (tables.get(name), waiting) match
+          case (None, _)              => refused(s"its topic $topic is none of a recording's tables")
+          case (_, Some((_, before))) => lacking(before)
+          case (Some(table), _)       =>
+            val text = message.data.utf8
+            if table.columns.definitions.exists(_.isBlob) then waiting = Some((name, text))
+            else out(name).line(text)
+            None
+      def bytes(message: McapRecord.Message, topic: String) = waiting match
+        case Some((table, row)) if isOf(table, topic) =>
+          Protobuf.bytesOf(message.data, BytesField) match
+            case None       => lacking(row)
+            case Some(data) =>
+              val packed = Base64.getEncoder.encodeToString(Blob.of(data.toArray).packed)
+              val blob   = tables(table).columns.definitions.last.name
+              out(table).line(s"${row.stripSuffix("}")},${Json.string(blob)}:${Json.string(packed)}}")
+              waiting = None
+              None
+        case _ => None
       try
         val failed = records
           .flatMap:
-            case Left(error) => Some(RecordError.NotARecording(file, error.message))
+            case Left(error)                                              => refused(error.message)
             case Right(Parsed.Found(metadata: McapRecord.Metadata, _, _)) => otherFormat(file, metadata)
             case Right(Parsed.Found(message: McapRecord.Message, _, _))   =>
               val topic = records.channel(message.channelId).fold("")(_.topic)
-              if topic.startsWith(FlightTopics.Prefix) then
-                val name = topic.drop(FlightTopics.Prefix.length)
-                if tables.contains(name) then
-                  val out = outs.getOrElseUpdate(name, Files.newBufferedWriter(folder.resolve(s"$name.json")))
-                  out.write(message.data.utf8)
-                  out.newLine()
-                  None
-                else
-                  Some(RecordError.NotARecording(file, s"its topic $topic is none of a recording's tables"))
-              else None
+              if topic.startsWith(FlightTopics.Prefix) then row(message, topic) else bytes(message, topic)
             case Right(_) => None
           .nextOption()
-        failed.toLeft(outs.keys.map(name => tables(name) -> folder.resolve(s"$name.json")).toVector)
+          .orElse(waiting.flatMap((_, row) => lacking(row)))
+        failed.toLeft(outs.map((name, lines) => Gathered(tables(name), lines.file, lines.longest)).toVector)
       finally outs.values.foreach(_.close())
+
+  /** Whether the bytes of a table's row are in a message of this topic. */
+  private def isOf(table: String, topic: String) =
+    topic.endsWith(if table == Table.cloud.name then "/cloud" else "/image")
+
+  /** `data`, in both messages. */
+  private val BytesField = SightForm.RawImageData.ensuring(_ == SightForm.PointCloudData)
+
+  /** @param longest
+    *   line, in bytes, about
+    */
+  private final case class Gathered(table: Table[?], file: Path, longest: Int)
+
+  private final class RowsFile(val file: Path) extends AutoCloseable:
+    private val out = Files.newBufferedWriter(file)
+    var longest     = 0
+
+    def line(text: String): Unit =
+      longest = longest.max(text.length * 3)
+      out.write(text)
+      out.newLine()
+
+    def close(): Unit = out.close()
 
   private val tables: Map[String, Table[?]] = Table.all.map(table => table.name -> table).toMap
 
@@ -164,16 +240,23 @@ object McapRecording:
       .filter(found => found < RecordingFormat.oldest || found > RecordingFormat.version)
       .map(RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, _))
 
-  private def insert(rows: (Table[?], Path), connection: DuckDBConnection): Unit =
-    val (table, file) = rows
-    val columns       = JsonRow.numbered(table)
-    val types         = columns.map(column => s"${column.name}: '${column.sqlType}'").mkString("{", ", ", "}")
-    val quoted        = "'" + file.toString.replace("'", "''") + "'"
+  private def insert(rows: Gathered, connection: DuckDBConnection): Unit =
+    val table   = rows.table
+    val columns = JsonRow.numbered(table)
+    val types   =
+      columns.map(column => s"${column.name}: '${if column.isBlob then "VARCHAR" else column.sqlType}'")
+        .mkString("{", ", ", "}")
+    val values  = columns.map(column => if column.isBlob then s"from_base64(${column.name})" else column.name)
+    val quoted  = "'" + rows.file.toString.replace("'", "''") + "'"
+    val longest = rows.longest.max(JsonLine)
     Using.resource(connection.createStatement()): statement =>
       val _ = statement.execute(
-        s"INSERT INTO ${table.name} SELECT ${columns.map(_.name).mkString(", ")} FROM " +
-          s"read_json($quoted, format = 'newline_delimited', columns = $types)"
+        s"INSERT INTO ${table.name} SELECT ${values.mkString(", ")} FROM " +
+          s"read_json($quoted, format = 'newline_delimited', columns = $types, maximum_object_size = $longest)"
       )
+
+  /** DuckDB's own limit of a line, bytes. */
+  private val JsonLine = 16 * 1024 * 1024
 
   private def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =
     try Right(action)

@@ -7,12 +7,14 @@ import java.nio.file.{Files, Path}
 import scala.util.control.NonFatal
 import skein.mcap.McapWriter
 import skein.mcap.file.ChannelSink
+import skein.scene.Scene
 
 /** Writes a flight into an MCAP file while it flies: what [[McapRecording]] exports of its recording, message by message.
   * Only until the first decision has estimated the offset between the clocks, poses are placed as if the first reading had
   * taken no time. The file can be read up to its last second should the process end.
   */
-final class McapRowSink private (channel: FileChannel, file: Path, heading: RecordingHeader) extends RowSink:
+final class McapRowSink private (channel: FileChannel, file: Path, heading: RecordingHeader, scene: Scene)
+    extends RowSink:
   private val mcap = new McapWriter(ChannelSink(channel), McapRecording.options)
 
   @volatile private var failed = Option.empty[String]
@@ -21,7 +23,8 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
     mcap,
     heading.vehicles.map(_.name).toVector,
     heading.flight.startedAt,
-    offset = None
+    offset = None,
+    scene
   )
   private var batches = 0L
 
@@ -52,9 +55,17 @@ object McapRowSink:
   /** Of the recording's commits: a second. */
   private val FlushEvery = 20
 
-  /** Makes the file, which must not be there yet. */
-  def open(file: Path, heading: RecordingHeader): Either[RecordError, McapRowSink] =
+  /** Makes the file, which must not be there yet.
+    *
+    * @param scene
+    *   what stands in the world
+    */
+  def open(
+      file: Path,
+      heading: RecordingHeader,
+      scene: Scene = Scene.Empty
+  ): Either[RecordError, McapRowSink] =
     if Files.exists(file) then Left(RecordError.AlreadyExists(file))
     else
-      try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading))
+      try Right(McapRowSink(FileChannel.open(file, CREATE, TRUNCATE_EXISTING, WRITE), file, heading, scene))
       catch case error: IOException => Left(RecordError.CannotCreate(file, error.toString))

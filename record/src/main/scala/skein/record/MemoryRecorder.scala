@@ -15,7 +15,13 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   private var closed = false
   private val failed = Promise[RecordError]()
 
-  def offer(record: Record): Unit = synchronized:
+  def offer(record: Record): Unit = keep(record match
+    // Many would not fit otherwise.
+    case picture: Picture => picture.copy(pixels = picture.pixels.compressed)
+    case cloud: Cloud     => cloud.copy(xyz = cloud.xyz.compressed)
+    case other            => other)
+
+  private def keep(record: Record): Unit = synchronized:
     if record.isInstanceOf[Ending] && failed.isCompleted then kept += record: Unit
     else if !closed then
       if kept.size < capacity then kept += record: Unit
@@ -38,8 +44,11 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   /** The same, sorted by kind. */
   def recording: Recording = Recording(heading, records)
 
+  /** How it begins, and what was recorded since. */
+  def all: Iterator[Record] = heading.records.iterator ++ records
+
   /** Of what [[writeTo]] writes. */
-  def digest: Digest = Digest.of(heading.records.iterator ++ records)
+  def digest: Digest = Digest.of(all)
 
   /** Writes the file that a [[DuckDbRecorder]] would have written. Blocks. */
   def writeTo(file: Path): Either[RecordError, Written] =

@@ -2,10 +2,18 @@ package skein.record
 
 import scala.concurrent.Future
 
-/** Records as `recorder` does, and shows every record to `observer`, which must not wait for anything. */
-final class ObservedRecorder(recorder: Recorder, observer: Record => Unit) extends Recorder:
+/** Records as `recorder` does, and shows every record to `observer`, which must not wait for anything.
+  *
+  * @param keeps
+  *   what is recorded; all is shown
+  */
+final class ObservedRecorder(
+    recorder: Recorder,
+    observer: Record => Unit,
+    keeps: Record => Boolean = _ => true
+) extends Recorder:
   def offer(record: Record): Unit =
-    recorder.offer(record)
+    if keeps(record) then recorder.offer(record)
     observer(record)
 
   def failure: Future[RecordError]                  = recorder.failure

@@ -20,6 +20,7 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
 
   private val queue            = ArrayBlockingQueue[(Long, Record)](Capacity)
   private val lost             = AtomicLong()
+  private val waitingBytes     = AtomicLong()
   private val inserts          = scala.collection.mutable.Map.empty[String, PreparedStatement]
   @volatile private var ended  = false
   @volatile private var failed = Option.empty[String]
@@ -27,7 +28,10 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
   private val writer = Thread.ofPlatform().daemon().name("skein-postgres").start(() => writeAll())
 
   def put(rows: Seq[(Long, Record)]): Unit = rows.foreach: row =>
-    if failed.isDefined || !queue.offer(row) then lost.incrementAndGet(): Unit
+    val size = Record.blobOf(row._2).fold(0)(_.size)
+    if failed.isDefined || waitingBytes.get + size > MostWaitingBytes || !queue.offer(row) then
+      lost.incrementAndGet(): Unit
+    else waitingBytes.addAndGet(size): Unit
 
   def close(): Unit =
     ended = true
@@ -59,6 +63,7 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
             batch.add(first): Unit
             queue.drainTo(batch, BatchSize - 1): Unit
             write(batch.asScala.toVector)
+            batch.forEach(row => Record.blobOf(row._2).foreach(blob => waitingBytes.addAndGet(-blob.size)))
     catch case NonFatal(error) => failed = Some(s"${error.getMessage}".linesIterator.next())
 
   private def write(rows: Vector[(Long, Record)]): Unit =
@@ -79,6 +84,9 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
 object PostgresRowSink:
   /** Rows that may wait: at 20 vehicles and 10 Hz about a minute. */
   val Capacity = 65536
+
+  /** Of images and clouds among them. */
+  val MostWaitingBytes: Long = 64L * 1024 * 1024
 
   private val BatchSize   = 1024
   private val PollMillis  = 50L
@@ -118,7 +126,8 @@ object PostgresRowSink:
     connection.commit()
     PostgresRowSink(connection, schema, target)
 
-  private[record] def typeOf(duckDb: String): String = duckDb.replace("DOUBLE", "DOUBLE PRECISION")
+  private[record] def typeOf(duckDb: String): String =
+    duckDb.replace("DOUBLE", "DOUBLE PRECISION").replace("BLOB", "BYTEA")
 
   private def attempt[A](target: PostgresAddress, action: => A): Either[String, A] =
     try Right(action)
@@ -144,6 +153,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
   def longs(values: Vector[Long]): Unit     = array("bigint", values)
   def doubles(values: Vector[Double]): Unit = array("float8", values)
   def texts(values: Vector[String]): Unit   = array("text", values)
+  def blob(value: Blob): Unit               = insert.setBytes(next, value.packed)
 
   def nothing(): Unit =
     val at = next

@@ -13,6 +13,13 @@ import skein.units.*
   */
 sealed trait Record
 
+object Record:
+  /** The large part of an image or a cloud. */
+  def blobOf(record: Record): Option[Blob] = record match
+    case picture: Picture => Some(picture.pixels)
+    case cloud: Cloud     => Some(cloud.xyz)
+    case _                => None
+
 /** What was flown: exactly one row a recording.
   *
   * @param loop
@@ -45,6 +52,9 @@ final case class Flight(
 
   /** Whether it is the truth that others are held against: the simulator stood still while a loop decided. */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
+
+  /** Whether its world is that of the recording's parameters. */
+  def isBuiltIn: Boolean = simulator.startsWith("built-in")
 
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
 
@@ -89,6 +99,68 @@ final case class Measurement(
     validAt: Instant,
     sentAt: Instant,
     receivedAt: Instant
+) extends Record
+
+/** An image of a vehicle's camera.
+  *
+  * @param sequence
+  *   counts the images of this camera that came
+  * @param kind
+  *   what it shows, by AirSim's name, for example `Scene`
+  * @param encoding
+  *   `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest first, m
+  * @param fov
+  *   horizontal; absent where nobody has told
+  * @param positionNed
+  *   of the camera, world, when it was exposed
+  * @param orientation
+  *   from the camera's frame (front, right, down) to the world's
+  * @param validAt
+  *   when it was exposed
+  * @param pixels
+  *   in rows from the top, without gaps
+  */
+final case class Picture(
+    sequence: Long,
+    vehicle: String,
+    camera: String,
+    kind: String,
+    encoding: String,
+    width: Long,
+    height: Long,
+    fov: Option[Radians],
+    positionNed: Vector3,
+    orientation: Quaternion,
+    validAt: Instant,
+    sentAt: Instant,
+    receivedAt: Instant,
+    pixels: Blob
+) extends Record
+
+/** A scan of a vehicle's lidar.
+  *
+  * @param sequence
+  *   counts the scans of this lidar that came
+  * @param positionNed
+  *   of the lidar, world
+  * @param orientation
+  *   from the lidar's frame (front, right, down) to the world's
+  * @param validAt
+  *   when it was scanned
+  * @param xyz
+  *   of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
+  */
+final case class Cloud(
+    sequence: Long,
+    vehicle: String,
+    lidar: String,
+    points: Long,
+    positionNed: Vector3,
+    orientation: Quaternion,
+    validAt: Instant,
+    sentAt: Instant,
+    receivedAt: Instant,
+    xyz: Blob
 ) extends Record
 
 /** A measurement that a decision was made from.
@@ -186,6 +258,8 @@ final case class Sighting(
   *   from asking until the decision was there
   * @param breaches
   *   of hard limits within the plan's horizon
+  * @param course
+  *   where the plan leads; absent where the policy decided in its place
   */
 final case class Planned(
     vehicle: String,
@@ -194,7 +268,8 @@ final case class Planned(
     slices: Vector[Long],
     cost: Option[Double],
     took: Span,
-    breaches: Long
+    breaches: Long,
+    course: Option[Course] = None
 ) extends Record
 
 /** A decision that was made in another process, and the times of its ways there and back.
@@ -234,6 +309,9 @@ final case class Solved(
   *   the truth lies within ± this
   */
 final case class SolverClock(offset: Span, uncertainty: Span)
+
+/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command acts. */
+final case class Course(north: Vector[Double], east: Vector[Double], step: Span)
 
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)

@@ -35,7 +35,12 @@ object RecordingSchema:
     case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
       "The measurements that a decision was made from: one row for each sensor that its policy reads."
-    case "plan"   => "How a plan was found: candidates, slices of each search, cost, broken limits."
+    case "image" =>
+      "One row for each image, where images are recorded (`fly --images`). `pixels` are compressed by Zstandard: rows from the top, `bgr8` or, as numbers of 32 bits, `32FC1`. Position and orientation are the camera's at its exposure."
+    case "cloud" =>
+      "One row for each scan of a lidar, where these are recorded. `xyz` are compressed by Zstandard: three numbers of 32 bits a point, in the lidar's frame."
+    case "plan" =>
+      "How a plan was found: candidates, slices of each search, cost, broken limits; and where it leads, from the moment at which its command acts, a place for each step."
     case "solved" =>
       "Decisions that were made in another process: when the question left and the answer came, and how long the solver took. Questions that are missing were not answered in time."
     case "prediction"      => "Predictions that a later reading could be compared with, and their errors."

@@ -13,6 +13,9 @@ private[record] trait RowWriter:
   def doubles(values: Vector[Double]): Unit
   def texts(values: Vector[String]): Unit
 
+  /** The last of a row. */
+  def blob(value: Blob): Unit
+
   /** An absent value. */
   def nothing(): Unit
 
@@ -27,4 +30,5 @@ private[record] final class AppenderRow(appender: DuckDBAppender) extends RowWri
   def longs(values: Vector[Long]): Unit     = { val _ = appender.append(values.toArray) }
   def doubles(values: Vector[Double]): Unit = { val _ = appender.append(values.toArray) }
   def texts(values: Vector[String]): Unit   = { val _ = appender.append(values.asJava) }
+  def blob(value: Blob): Unit               = { val _ = appender.append(value.packed) }
   def nothing(): Unit                       = { val _ = appender.appendNull() }

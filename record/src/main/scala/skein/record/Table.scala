@@ -182,6 +182,48 @@ private[record] object Table:
     since = 5
   )
 
+  val picture: Table[Picture] = Table(
+    "image",
+    product[Picture]:
+      (
+        long("sequence"),
+        text("vehicle"),
+        text("camera"),
+        text("kind"),
+        text("encoding"),
+        long("width"),
+        long("height"),
+        optional(radians("fov")),
+        ned("position", "M"),
+        quaternion("orientation"),
+        instantNs("validAt"),
+        instantNs("sentAt"),
+        instantNs("receivedAt"),
+        blob("pixels")
+      )
+    ,
+    since = 6
+  )
+
+  val cloud: Table[Cloud] = Table(
+    "cloud",
+    product[Cloud]:
+      (
+        long("sequence"),
+        text("vehicle"),
+        text("lidar"),
+        long("points"),
+        ned("position", "M"),
+        quaternion("orientation"),
+        instantNs("validAt"),
+        instantNs("sentAt"),
+        instantNs("receivedAt"),
+        blob("xyz")
+      )
+    ,
+    since = 6
+  )
+
   val planned: Table[Planned] = Table(
     "plan",
     product[Planned]:
@@ -192,7 +234,10 @@ private[record] object Table:
         migrated(longs("slices"), "string_split(slices, ',')::BIGINT[]"),
         optional(double("cost")),
         spanMs("took"),
-        long("breaches")
+        long("breaches"),
+        added(optional(
+          product[Course]((doubles("courseNorthM"), doubles("courseEastM"), spanMs("courseStep")))
+        ))
       )
     ,
     since = 3
@@ -285,6 +330,8 @@ private[record] object Table:
       sighting,
       measurement,
       sensing,
+      picture,
+      cloud,
       planned,
       solved,
       prediction,
@@ -311,6 +358,8 @@ private[record] object Table:
     case _: Sighting        => sighting
     case _: Measurement     => measurement
     case _: Sensing         => sensing
+    case _: Picture         => picture
+    case _: Cloud           => cloud
     case _: Planned         => planned
     case _: Solved          => solved
     case _: Prediction      => prediction

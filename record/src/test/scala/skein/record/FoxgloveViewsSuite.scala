@@ -1,5 +1,7 @@
 package skein.record
 
+import skein.mcap.Bytes
+import skein.scene.SceneFile
 import skein.units.*
 
 /** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is for ever, colours lie
@@ -11,7 +13,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
   private val drawn = views.opening(Samples.at(0))
   private val still = ujson.Obj("x" -> 0.0, "y" -> 0.0, "z" -> 0.0, "w" -> 1.0)
 
-  private def read(view: FoxgloveViews.View)         = ujson.read(view.json())
+  private def read(view: FoxgloveViews.View)         = ujson.read(view.json)
   private def entity(view: FoxgloveViews.View)       = read(view)("entities")(0)
   private def place(x: Double, y: Double, z: Double) = ujson.Obj("x" -> x, "y" -> y, "z" -> z)
   private def pose(x: Double, y: Double, z: Double)  =
@@ -29,7 +31,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assert(at("x").num == 0 && at("y").num == 0 && at("z").num < 0, at.toString)
 
   test("five vehicles have colours that differ, and the sixth has the first one's again"):
-    val colours = drawn.tail.map(entity(_)("cubes")(0)("color"))
+    val colours = drawn.tail.take(6).map(entity(_)("cubes")(0)("color"))
     assertEquals(colours.distinct.size, 5)
     assertEquals(colours(5), colours(0))
     for colour <- colours do
@@ -90,3 +92,75 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val event   = Samples.oneOfEach.collectFirst { case one: Event => one }.get
     val log     = read(views.of(event).head)
     assertEquals((log("level").num, log("name").str), (3.0, "Evader"))
+
+  test("what stands in the world is a scene of boxes and poles, where and as large as they are"):
+    val stands = SceneFile
+      .parse(
+        """objects = [
+          |  { name = House, box = [10, 6, 8], at = [20, -5], yaw-deg = 90, colour = "#ff8000" }
+          |  { name = Pole, pole = [0.25, 5], at = [3, 4], colour = "#000000" }
+          |]""".stripMargin,
+        "here"
+      )
+      .fold(error => fail(error.message), identity)
+    val scene = FoxgloveViews(names, None, stands).opening(Samples.at(0)).find(_.topic == "/scene").get
+    val seen  = ujson.read(scene.json)("entities")(0)
+    val cube  = seen("cubes")(0)
+    assertEquals((seen("frame_id").str, cube("size")), ("world_ned", place(10, 6, 8)))
+    assertEquals(cube("pose")("position"), place(20, -5, -4))
+    assertEquals(cube("color"), ujson.Obj("r" -> 1.0, "g" -> 128 / 255.0, "b" -> 0.0, "a" -> 1))
+    assertEqualsDouble(cube("pose")("orientation")("z").num, math.sqrt(0.5), 1e-15)
+    val pole = seen("cylinders")(0)
+    assertEquals((pole("size")("z").num, pole("pose")("position")("z").num), (5.0, -2.5))
+    assertEquals(views.opening(Samples.at(0)).find(_.topic == "/scene"), None)
+
+  test("a plan is a line where it leads, at the vehicle's height"):
+    val seen = FoxgloveViews(names, Some(Span.Zero))
+    seen.of(Samples.reading(1)): Unit
+    val planned = Samples.oneOfEach.collectFirst { case one: Planned => one }.get
+    val plan    = seen.of(planned).head
+    assertEquals(plan.topic, "/vehicles/Pursuer/plan")
+    assertEquals(
+      entity(plan)("lines")(0)("points").arr.toVector,
+      Vector[ujson.Value](place(1.5, -0.5, -20.3), place(2.5, 0.25, -20.3))
+    )
+
+  test("where a vehicle is expected, a ball is as large as its newest prediction was off"):
+    val seen  = FoxgloveViews(names, Some(Span.Zero))
+    val guess = Samples.oneOfEach.collectFirst { case one: Prediction => one }.get
+    seen.of(guess.copy(vehicle = "Pursuer", error = Metres(0.75))): Unit
+    val drawn = entity(seen.of(Samples.decision(1)).head)
+    assertEquals(drawn("spheres")(0)("size"), place(1.5, 1.5, 1.5))
+    assertEquals(drawn("spheres")(0)("pose"), drawn("cubes")(0)("pose"))
+
+  test("a camera's image is raw, its frame right, down, front, and its lens told once"):
+    val seen                             = FoxgloveViews(names, Some(Span.Zero))
+    val Vector(image, frame, calibrated) = seen.of(Samples.picture(1)): @unchecked
+    val bytes                            = Protobuf.bytesOf(Bytes.of(image.make()), 6).get
+    assertEquals(image.topic, "/vehicles/Pursuer/front_center/image")
+    assertEquals(Blob.of(bytes.toArray), Samples.picture(1).pixels)
+    assertEquals(Protobuf.bytesOf(Bytes.of(image.make()), 4).map(_.utf8), Some("bgr8"))
+    val moved = ujson.read(frame.json)("transforms")(0)
+    assertEquals(moved("child_frame_id").str, "Pursuer/front_center")
+    val lens = ujson.read(calibrated.json)
+    // 40 pixels see 1.5 rad.
+    assertEqualsDouble(lens("K")(0).num, 20 / math.tan(0.75), 1e-9)
+    assertEquals((lens("K")(2).num, lens("K")(5).num), (20.0, 15.0))
+    assertEquals(lens("frame_id"), moved("child_frame_id"))
+    assertEquals(seen.of(Samples.picture(2)).size, 2)
+
+  test("a camera that looks north has its right in the east and its front in the north"):
+    val level = Samples.picture(1).copy(orientation = Quaternion(1, 0, 0, 0))
+    val turn  = ujson.read(FoxgloveViews(names, None).of(level)(1).json)("transforms")(0)("rotation")
+    assertEquals(turn, ujson.Obj("x" -> 0.5, "y" -> 0.5, "z" -> 0.5, "w" -> 0.5))
+
+  test("a cloud has its points as they came, in the lidar's frame; too many are thinned"):
+    val topics = FoxgloveViews(names, Some(Span.Zero)).of(Samples.cloud(1))
+    assertEquals(topics.map(_.topic), Vector("/vehicles/Evader/Lidar/cloud"))
+    def points(most: Int) =
+      Protobuf.bytesOf(Bytes.of(SightForm.cloud(Samples.cloud(1), Instant.Epoch, most)), 6).get.toArray
+    assertEquals(Blob.of(points(3)), Samples.cloud(1).xyz)
+    assertEquals(
+      points(2).toVector,
+      Samples.cloud(1).xyz.bytes.toVector.take(12) ++ Samples.cloud(1).xyz.bytes.takeRight(12)
+    )

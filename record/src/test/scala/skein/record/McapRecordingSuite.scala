@@ -30,6 +30,10 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val again = folder.resolve("again.duckdb")
     assertEquals(McapRecording.read(exported(folder), again), Right(()))
     assertEquals(RecordingReader.read(again), Right(Recording(Samples.heading, Samples.oneOfEach)))
+    assertEquals(
+      RecordingReader.records(again).map(_.map(_._2)),
+      Right(Samples.heading.records.toVector ++ Samples.oneOfEach)
+    )
     assertEquals(Digest.ofFile(again), Digest.ofFile(folder.resolve("flight.duckdb")))
     assertEquals(Files.list(folder).count(), 3L)
 
@@ -53,8 +57,13 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       case ujson.Str("array")                                     => refused(s"$at[]", schema("items"))
       case ujson.Str("number" | "integer" | "string" | "boolean") => Vector.empty
       case other                                                  => Vector(s"$at is of type $other")
-    val schemas = McapFile.read(exported(folder))(_.summary.schemas.values.toVector).toOption.get
+    val (binary, schemas) = McapFile
+      .read(exported(folder))(_.summary.schemas.values.toVector)
+      .toOption
+      .get
+      .partition(_.encoding == "protobuf")
     assertEquals(schemas.size, Table.all.size + FoxgloveSchemas.all.size)
+    assertEquals(binary.map(_.name).toSet, Set("foxglove.RawImage", "foxglove.PointCloud"))
     assertEquals(schemas.flatMap(one => refused(one.name, ujson.read(one.data.utf8))), Vector.empty)
 
   folder.test("log times are when the controller knew, publish times when it was made or sent"): folder =>
@@ -85,6 +94,23 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assert(frames.exists(_.contains(""""child_frame_id":"Pursuer"""")))
     assertEquals(messages(mcap, "/vehicles/Evader/body").size, 1)
     assert(messages(mcap, "/log").head.message.data.utf8.contains(""""level":3"""))
+
+  folder.test("pixels and points are in the message behind their row, and a row without them is refused"):
+    folder =>
+      val mcap  = exported(folder)
+      val found = messages(mcap, "/vehicles/Pursuer/front_center/image")
+      assertEquals(found.map(_.schema.map(_.name)), Vector.fill(2)(Some("foxglove.RawImage")))
+      assertEquals(
+        found.flatMap(one => Protobuf.bytesOf(one.message.data, 6)).map(bytes => Blob.of(bytes.toArray)),
+        Vector(1L, 2L).map(Samples.picture(_).pixels)
+      )
+      assert(!messages(mcap, "/skein/image").head.message.data.utf8.contains("pixels"))
+      val cut = folder.resolve("cut.mcap")
+      McapFile.write(cut)(out =>
+        out.message(out.channel("/skein/image", "json"), 0, 0, 0, Bytes.utf8("""{"row":1}"""))
+      )
+      val error = McapRecording.read(cut, folder.resolve("again.duckdb")).left.map(_.message)
+      assert(error.left.exists(_.contains("""no bytes behind its row: {"row":1}""")), error)
 
   folder.test("a trail is shown once a second, and is that of the last twenty"): folder =>
     val file     = folder.resolve("long.duckdb")

@@ -39,7 +39,8 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
             (1 to width).map(at =>
               row.getObject(at) match
                 case list: java.sql.Array => list.getArray.asInstanceOf[Array[Object]].mkString("[", ",", "]")
-                case other                => s"$other"
+                case _: (java.sql.Blob | Array[Byte]) => found.getBytes(at).mkString(" ")
+                case other                            => s"$other"
             ).mkString("|")
           )
           .toVector

@@ -80,6 +80,40 @@ object Samples:
     )
   )
 
+  /** Of 40 × 30 pixels, no two rows alike. */
+  def picture(sequence: Long): Picture =
+    val base = sequence * 33_000_000L
+    Picture(
+      sequence,
+      "Pursuer",
+      "front_center",
+      "Scene",
+      "bgr8",
+      40,
+      30,
+      Some(Radians(1.5)),
+      Vector3(0.5, 1.25, -20.5),
+      Quaternion(0.5, 0.5, -0.5, 0.5),
+      Instant.ofNanos(base + 3_000_002),
+      at(base),
+      at(base + 26_000_000),
+      Blob.of(Array.tabulate(40 * 30 * 3)(index => (index * 7 + sequence).toByte))
+    )
+
+  def cloud(sequence: Long): Cloud =
+    Cloud(
+      sequence,
+      "Evader",
+      "Lidar",
+      3,
+      Vector3(20.5, 1.25, -20.5),
+      Quaternion(1, 0, 0, 0),
+      Instant.ofNanos(sequence * 100_000_000L),
+      at(sequence * 100_000_000L),
+      at(sequence * 100_000_000L + 12_000_000),
+      Blob.of(Array.tabulate(36)(index => (index * 5).toByte))
+    )
+
   val oneOfEach: Vector[Record] = Vector(
     reading(1),
     decision(1),
@@ -103,7 +137,19 @@ object Samples:
       at(61_000_000)
     ),
     Sensing("Pursuer", 2, "gps", 3),
-    Planned("Pursuer", 1, 40_960, Vector(40, 39), Some(12.25), Span.ofMillis(60.5), 0),
+    picture(1),
+    cloud(1),
+    picture(2),
+    Planned(
+      "Pursuer",
+      1,
+      40_960,
+      Vector(40, 39),
+      Some(12.25),
+      Span.ofMillis(60.5),
+      0,
+      Some(Course(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
+    ),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
     Solved(
       "Pursuer",

@@ -1,10 +1,10 @@
-// Foxglove's WebSocket protocol, as far as the page needs it; messages are JSON.
+// Foxglove's WebSocket protocol, as far as the page needs it.
 
 const protocols = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 const statuses = ["playing", "paused", "buffering", "ended"];
 
 /** Connects, again after a second where the connection ends, and subscribes to what is wanted.
- *  @param on info(serverInfo), row(topic, row, logNs), time(ns), playback(state), warning(id, text), closed() */
+ *  @param on info(serverInfo), row(topic, row, logNs) of JSON, sight(topic, bytes, logNs) of Protocol Buffers, time(ns), playback(state), warning(id, text), closed() */
 export function connect(path, wanted, on) {
   let socket, ended = false, timer;
   const open = () => {
@@ -19,7 +19,7 @@ export function connect(path, wanted, on) {
     else if (message.op === "status") on.warning(message.id, message.message);
     else if (message.op === "advertise") {
       const chosen = message.channels.filter(channel => wanted(channel.topic));
-      for (const { id, topic } of chosen) topics.set(id, topic);
+      for (const { id, topic, encoding } of chosen) topics.set(id, { topic, isBinary: encoding === "protobuf" });
       socket.send(JSON.stringify({ op: "subscribe", subscriptions: chosen.map(({ id }) => ({ id, channelId: id })) }));
     }
   };
@@ -27,8 +27,9 @@ export function connect(path, wanted, on) {
     const view = new DataView(buffer);
     switch (view.getUint8(0)) {
       case 1: {
-        const row = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 13)));
-        on.row(topics.get(view.getUint32(1, true)), row, view.getBigUint64(5, true));
+        const { topic, isBinary } = topics.get(view.getUint32(1, true)), data = new Uint8Array(buffer, 13), logNs = view.getBigUint64(5, true);
+        if (isBinary) on.sight(topic, data, logNs);
+        else on.row(topic, JSON.parse(new TextDecoder().decode(data)), logNs);
         break;
       }
       case 2: on.time(view.getBigUint64(1, true)); break;

@@ -1,6 +1,6 @@
 // What is known of one flight: from rows, in their order. Times are seconds since its first row.
 
-const trailS = 20, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
+const trailS = 20, trailEveryS = 0.1, bucketS = 0.1, windowS = 30, mostEvents = 200, mostLines = 6;
 
 const colours = ["#d1495b", "#1f6fb2", "#2a9d5c", "#b8860b", "#7b4fa3", "#0f8b8d", "#c1666b", "#4d648d"];
 
@@ -15,7 +15,8 @@ export class Flight {
     this.ending = undefined;
     this.paused = false;
     this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series() };
-    this.unacknowledged = new Map();
+    this.obstacles = [];
+    this.clouds = new Map();
   }
 
   seconds(ns) {
@@ -35,6 +36,8 @@ export class Flight {
         vehicle.at = at;
         vehicle.north = row.positionNorthM; vehicle.east = row.positionEastM; vehicle.down = row.positionDownM;
         vehicle.velocityNorth = row.velocityNorthMps; vehicle.velocityEast = row.velocityEastMps;
+        // The last point moves until the next is due.
+        if (vehicle.trail.length > 1 && at - vehicle.trail.at(-2)[0] < trailEveryS) vehicle.trail.pop();
         vehicle.trail.push([at, vehicle.north, vehicle.east]);
         while (vehicle.trail.length && vehicle.trail[0][0] < at - trailS) vehicle.trail.shift();
         this.series.roundTrip.put(at, this.line(vehicle), (row.receivedAtNs - row.sentAtNs) / 1e6);
@@ -52,6 +55,9 @@ export class Flight {
       case "command":
         vehicle.command = { north: row.velocityNorthMps, east: row.velocityEastMps };
         break;
+      case "plan":
+        vehicle.plan = row.courseNorthM && { north: row.courseNorthM, east: row.courseEastM, stepS: row.courseStepMs / 1000, at };
+        break;
       case "prediction":
         vehicle.errorM = row.errorM;
         this.series.error.put(at, this.line(vehicle), row.errorM);
@@ -65,6 +71,9 @@ export class Flight {
       case "ending": this.ending = row; break;
     }
   }
+
+  /** Takes what stands in the world: a foxglove.SceneUpdate. */
+  scene({ entities }) { this.obstacles = entities.flatMap(({ cubes, cylinders }) => [...cubes.map(footprint), ...cylinders.map(disc)]); }
 
   /** The smallest distance between any two. */
   measure(at) {
@@ -83,13 +92,14 @@ export class Flight {
   rewind(at) {
     for (const vehicle of this.vehicles.values()) {
       vehicle.trail = vehicle.trail.filter(point => point[0] <= at);
-      vehicle.at = undefined;
+      vehicle.at = vehicle.plan = undefined;
     }
     for (const series of Object.values(this.series)) series.cut(at);
     this.events = this.events.filter(event => event.at <= at);
     this.eventCount = this.events.length;
     this.paused = this.events.find(event => event.kind === "Paused" || event.kind === "Continued")?.kind === "Paused";
     this.ending = undefined;
+    this.clouds.clear();
   }
 
   vehicle(name) {
@@ -107,6 +117,38 @@ export class Flight {
     const all = [...this.vehicles.values()];
     return all.length > mostLines ? [{ name: "worst", colour: colours[0] }] : all;
   }
+}
+
+const paint = ({ r, g, b }) => `${Math.round(r * 255)},${Math.round(g * 255)},${Math.round(b * 255)}`;
+
+function disc({ pose: { position }, size, color }) {
+  return { north: position.x, east: position.y, reach: size.x / 2, rgb: paint(color) };
+}
+
+/** A box from above: the hull of its corners. */
+function footprint({ pose: { position, orientation: { x, y, z, w } }, size, color }) {
+  const corners = [];
+  for (const f of [-size.x / 2, size.x / 2]) for (const r of [-size.y / 2, size.y / 2]) for (const d of [-size.z / 2, size.z / 2]) corners.push([
+    position.x + (1 - 2 * (y * y + z * z)) * f + 2 * (x * y - w * z) * r + 2 * (x * z + w * y) * d,
+    position.y + 2 * (x * y + w * z) * f + (1 - 2 * (x * x + z * z)) * r + 2 * (y * z - w * x) * d,
+  ]);
+  corners.sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = points => {
+    const hull = [];
+    for (const [n, e] of points) {
+      while (hull.length > 1) {
+        const [[n0, e0], [n1, e1]] = hull.slice(-2);
+        if ((n1 - n0) * (e - e0) - (e1 - e0) * (n - n0) > 1e-9) break;
+        hull.pop();
+      }
+      hull.push([n, e]);
+    }
+    return hull.slice(0, -1);
+  };
+  return {
+    north: position.x, east: position.y, reach: Math.hypot(size.x, size.y, size.z) / 2,
+    corners: [...half(corners), ...half(corners.reverse())], rgb: paint(color),
+  };
 }
 
 /** The largest value of each line in each tenth of a second, for some time back. */

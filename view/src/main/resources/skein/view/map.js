@@ -1,4 +1,5 @@
-// The vehicles from above, north up: trails, where each is expected when its command acts, and the velocity commanded.
+// The vehicles from above, north up: what stands there and what lidars see of it, trails, plans, where each is expected when
+// its command acts, and the velocity commanded.
 
 export class FlightMap {
   constructor(canvas) {
@@ -23,10 +24,13 @@ export class FlightMap {
     const x = value => width / 2 + (value - east) * scale;
     const y = value => height / 2 - (value - north) * scale;
     this.grid(width, height, x, y);
+    this.obstacles(flight.obstacles, width, height, x, y);
+    this.clouds(flight.clouds, x, y);
     const close = vehicles.length > 8;
     for (const vehicle of vehicles) {
       this.trail(vehicle, flight.now, x, y);
       const px = x(vehicle.east), py = y(vehicle.north);
+      if (vehicle.plan && !flight.paused) this.plan(vehicle, x, y);
       if (vehicle.predicted && !flight.paused) {
         pen.strokeStyle = pen.fillStyle = vehicle.colour;
         pen.lineWidth = 1.5;
@@ -36,6 +40,13 @@ export class FlightMap {
         pen.beginPath();
         pen.arc(x(vehicle.predicted.east), y(vehicle.predicted.north), 5, 0, 7);
         pen.stroke();
+        if (vehicle.errorM * scale > 5) {
+          pen.globalAlpha = 0.35;
+          pen.beginPath();
+          pen.arc(x(vehicle.predicted.east), y(vehicle.predicted.north), vehicle.errorM * scale, 0, 7);
+          pen.stroke();
+          pen.globalAlpha = 1;
+        }
       }
       if (vehicle.command && !flight.paused) {
         const from = vehicle.predicted ?? vehicle;
@@ -62,8 +73,10 @@ export class FlightMap {
       north: (top + bottom) / 2, east: (left + right) / 2,
       scale: Math.min(width / (right - left + 10), height / (top - bottom + 10)) * 0.9,
     };
+    const now = performance.now(), share = 1 - Math.exp((this.followed - now) / 250);
+    this.followed = now;
     if (!this.view) this.view = wanted;
-    else for (const key of ["north", "east", "scale"]) this.view[key] += (wanted[key] - this.view[key]) * 0.08;
+    else for (const key of ["north", "east", "scale"]) this.view[key] += (wanted[key] - this.view[key]) * share;
   }
 
   grid(width, height, x, y) {
@@ -83,13 +96,58 @@ export class FlightMap {
     }
   }
 
+  obstacles(all, width, height, x, y) {
+    const { pen, view } = this;
+    pen.lineWidth = 1;
+    for (const { north, east, reach, corners, rgb } of all) {
+      const px = x(east), py = y(north), far = reach * view.scale;
+      if (px + far < 0 || px - far > width || py + far < 0 || py - far > height) continue;
+      pen.fillStyle = `rgba(${rgb},.4)`;
+      pen.strokeStyle = `rgba(${rgb},.9)`;
+      pen.beginPath();
+      if (corners) {
+        for (const [n, e] of corners) pen.lineTo(x(e), y(n));
+        pen.closePath();
+      } else pen.arc(px, py, Math.max(far, 1.5), 0, 7);
+      pen.fill();
+      pen.stroke();
+    }
+  }
+
+  clouds(all, x, y) {
+    const { pen } = this;
+    for (const { points, colour } of all.values()) {
+      pen.fillStyle = colour;
+      pen.globalAlpha = 0.6;
+      for (let at = 0; at < points.length; at += 2) pen.fillRect(x(points[at + 1]) - 1, y(points[at]) - 1, 2, 2);
+      pen.globalAlpha = 1;
+    }
+  }
+
+  /** Where its plan leads, with a dot for each half second. */
+  plan({ plan: { north, east, stepS }, colour }, x, y) {
+    const { pen } = this, every = Math.max(1, Math.round(0.5 / stepS));
+    pen.strokeStyle = pen.fillStyle = colour;
+    pen.lineWidth = 1.5;
+    pen.setLineDash([1, 4]);
+    pen.beginPath();
+    north.forEach((value, at) => pen.lineTo(x(east[at]), y(value)));
+    pen.stroke();
+    pen.setLineDash([]);
+    for (let at = every - 1; at < north.length; at += every) {
+      pen.beginPath();
+      pen.arc(x(east[at]), y(north[at]), 2, 0, 7);
+      pen.fill();
+    }
+  }
+
   trail(vehicle, now, x, y) {
     const { pen } = this, { trail } = vehicle;
     pen.strokeStyle = vehicle.colour;
     pen.lineWidth = 2;
     // In pieces, each as faint as it is old.
-    for (let from = 0; from < trail.length - 1; from += 10) {
-      const piece = trail.slice(from, from + 11);
+    for (let from = 0; from < trail.length - 1; from += 20) {
+      const piece = trail.slice(from, from + 21);
       pen.globalAlpha = Math.max(0.08, 0.7 - (now - piece[0][0]) / 28);
       pen.beginPath();
       piece.forEach(([, north, east], at) => at ? pen.lineTo(x(east), y(north)) : pen.moveTo(x(east), y(north)));

@@ -3,23 +3,36 @@ import { Flight } from "/flight.js";
 import { FlightMap } from "/map.js";
 import { Graph } from "/graph.js";
 import { Plots } from "/plots.js";
+import { Cameras, pointsOf } from "/sights.js";
 import { Task } from "/task.js";
 
+// Where a graphics card is imitated by software, canvases are drawn several times faster without it.
+const gl = document.createElement("canvas").getContext("webgl");
+const card = gl?.getParameter(gl.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER) ?? "none";
+if (/none|swiftshader|llvmpipe|software/i.test(card)) {
+  const context = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, options) { return context.call(this, kind, { willReadFrequently: true, ...options }); };
+}
+gl?.getExtension("WEBGL_lose_context")?.loseContext();
+
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "event", "ending", "graph", "progress", "curve", "landscape"];
+const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph", "progress", "curve", "landscape"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));
 const task = new Task(find("task"));
+const cameras = new Cameras(find("cameras"));
+const isWanted = topic => topic.startsWith("/skein/") ? tables.includes(topic.slice(7)) : topic === "/scene" || /\/(image|cloud)$/.test(topic);
 
 let flight, connection, changed = false, recorded, playing, warnings;
 
 /** What a test asks the page. */
-window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, frames: 0 };
+window.skein = { get flight() { return flight; }, get recorded() { return recorded; }, get playing() { return playing; }, get cameras() { return [...cameras.cameras.values()]; }, frames: 0 };
 
 function show(id) {
   connection?.close();
   task.clear();
+  cameras.clear();
   find("graph").hidden = true;
   find("control").hidden = !flights.find(one => one.id === id).controls.length;
   find("control").onsubmit = async event => {
@@ -37,7 +50,7 @@ function show(id) {
   flight = new Flight();
   recorded = playing = undefined;
   warnings = new Map();
-  connection = connect(`/flights/${id}`, topic => topic.startsWith("/skein/") && tables.includes(topic.slice(7)), {
+  connection = connect(`/flights/${id}`, isWanted, {
     info(info) {
       flight = new Flight();
       const ns = time => BigInt(time.sec) * 1000000000n + BigInt(time.nsec);
@@ -47,8 +60,14 @@ function show(id) {
       state("", false);
     },
     row(topic, row, logNs) {
-      if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
+      if (topic === "/scene") flight.scene(row);
+      else if (topic === "/skein/graph") graph.draw(row, flight.seconds(logNs));
       else if (!task.row(topic.slice(7), row)) flight.row(topic.slice(7), row, logNs);
+      changed = true;
+    },
+    sight(topic, bytes, logNs) {
+      if (topic.endsWith("/cloud")) flight.clouds.set(topic, { points: pointsOf(bytes), colour: flight.vehicle(topic.split("/")[2]).colour });
+      else cameras.take(topic, bytes, logNs);
       changed = true;
     },
     time(ns) { flight.now = flight.startNs === undefined ? 0 : flight.seconds(ns); changed = true; },
@@ -78,7 +97,7 @@ function draw(at) {
   changed = false;
   window.skein.frames++;
   map.draw(flight);
-  if (at - drawn < 100) return;
+  if (at - drawn < 200) return;
   drawn = at;
   plots.draw(flight);
   words();
@@ -108,6 +127,11 @@ function words() {
     item.append(dot, `${vehicle.name}${age}`);
     return item;
   }));
+  const signs = [
+    [vehicles.some(one => one.predicted), "ring: where its command acts"], [vehicles.some(one => one.plan), "dotted: its plan"],
+    [flight.clouds.size, "points: what lidars see"],
+  ];
+  find("signs").textContent = signs.filter(([is]) => is).map(([, words]) => words).join("; ");
   if (told === flight.eventCount) return;
   told = flight.eventCount;
   find("eventCount").textContent = `(${flight.eventCount})`;

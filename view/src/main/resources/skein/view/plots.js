@@ -39,7 +39,7 @@ export class Plots {
         scales: { x: { time: false, auto: false }, y: { range: (plot, low, high) => [0, Math.max(high ?? 1, 0.1) * 1.1] } },
         axes: [
           { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 26, font: "10px sans-serif", values: (plot, all) => all.map(value => `${value} s`) },
-          { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 42, font: "10px sans-serif" },
+          { stroke: "#667085", grid: { stroke: "#eef1f5" }, size: 42, space: 16, font: "10px sans-serif" },
         ],
         series: [{}, ...own.map(line => ({ label: line.name, stroke: line.colour, width: 1.5, spanGaps: true, points: { show: false } }))],
       }, [[], ...own.map(() => [])], this.place);

@@ -1,10 +1,11 @@
 package skein.view
 
-import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
-import skein.record.Record
+import skein.record.{Record, Sight}
 
-/** Takes a flight's records to viewers. Bounded, and the newest wins. `offer` takes no lock: a viewer's thread that the
+/** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the clouds of a
+  * lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the
   * system has put off cannot hold up a flight.
   *
   * @param capacity
@@ -15,7 +16,16 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val waiting = AtomicInteger()
   private val dropped = AtomicLong()
 
-  def offer(record: Record): Unit =
+  private val seen = ConcurrentHashMap[Sight, Record]()
+
+  def offer(record: Record): Unit = Sight.of(record) match
+    case Some(sight) => seen.put(sight, record): Unit
+    case None        => enqueue(record)
+
+  /** What is newest of a camera or a lidar, if there is anything since this was asked for last. */
+  def poll(sight: Sight): Option[Record] = Option(seen.remove(sight))
+
+  private def enqueue(record: Record): Unit =
     queue.offer(record): Unit
     if waiting.incrementAndGet() > capacity && poll().isDefined then dropped.incrementAndGet(): Unit
 

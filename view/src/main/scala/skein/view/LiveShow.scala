@@ -1,6 +1,7 @@
 package skein.view
 
-import skein.record.{FlightMessage, FlightTopics, RecordingHeader, Topic}
+import skein.record.{FlightMessage, FlightTopics, RecordingHeader, Sight, Topic}
+import skein.scene.Scene
 import skein.units.{Instant, Span}
 
 /** Something besides the records that is shown of a flight, asked for now and then.
@@ -10,18 +11,32 @@ import skein.units.{Instant, Span}
   */
 final case class Gauge(topic: Topic, every: Span, json: () => String)
 
-/** A flight while it flies. Its records come by `feed`.
+/** A flight while it flies. Its records come by `feed`; of a camera's images and of a lidar's clouds up to ten a second are
+  * shown.
+  *
+  * @param scene
+  *   what stands in its world
+  * @param sights
+  *   whose images and clouds come
   */
 final class LiveShow(
     heading: RecordingHeader,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
     limits: Limits = Limits(),
-    override val controls: Map[Control, () => Unit] = Map.empty
-) extends Show(heading.flight.id, LiveShow.topics(heading) ++ gauges.map(_.topic), limits):
-  private val topics = FlightTopics(heading.vehicles.map(_.name).toVector, heading.flight.startedAt)
+    override val controls: Map[Control, () => Unit] = Map.empty,
+    scene: Scene = Scene.Empty,
+    sights: Vector[Sight] = Vector.empty
+) extends Show(heading.flight.id, LiveShow.topics(heading, sights) ++ gauges.map(_.topic), limits):
+  private val topics = FlightTopics(
+    heading.vehicles.map(_.name).toVector,
+    heading.flight.startedAt,
+    scene = scene,
+    form = SmallSights
+  )
   private var number = 0L
   private var asked  = gauges.map(_ => Instant.ofNanos(0))
+  private var looked = sights.map(_ => Instant.ofNanos(0))
 
   topics.opening.foreach(publish)
   heading.records.foreach(show)
@@ -32,11 +47,14 @@ final class LiveShow(
 
   def turn(now: Instant): Unit =
     Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
+    looked = sights.zip(looked).map: (sight, last) =>
+      if now.since(last) < LiveShow.LookEvery then last
+      else feed.poll(sight).fold(last)(record => { show(record); now })
     asked = gauges.zip(asked).map: (gauge, last) =>
       if now.since(last) < gauge.every then last
       else
         val json = gauge.json()
-        publish(FlightMessage(gauge.topic.name, "", now, now, json))
+        publish(FlightMessage.json(gauge.topic.name, "", now, now)(json))
         now
     notice("time", ServerBytes(Protocol.timeIs(now)))
     if feed.lost > 0 then
@@ -50,7 +68,10 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
-  private def topics(heading: RecordingHeader) = FlightTopics.all(heading.vehicles.map(_.name).toVector)
+  private def topics(heading: RecordingHeader, sights: Vector[Sight]) =
+    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sights.flatMap(FlightTopics.of(_, SmallSights))
+
+  private val LookEvery = Span.ofMillis(100)
 
   /** Records of one turn: so that no turn lasts for long. */
   private val MostAtOnce = 8192

@@ -22,14 +22,17 @@ final case class Outbox[A] private (
   /** A newer notice takes the place of an older one with its key. */
   def noticed(key: String, message: A): Outbox[A] = copy(notices = notices.updated(key, message))
 
-  def offered(subscription: Long, message: A, size: Int): Outbox[A] =
+  /** @param most
+    *   of this subscription that may wait
+    */
+  def offered(subscription: Long, message: A, size: Int, most: Int = limits.waiting): Outbox[A] =
     val places2 = places.updated(subscription, places.getOrElse(subscription, Queue.empty).enqueue(next))
     copy(
       waiting = waiting.updated(next, Outbox.Waiting(subscription, message, size)),
       places = places2,
       bytes = bytes + size,
       next = next + 1
-    ).bounded(subscription)
+    ).bounded(subscription, most)
 
   /** The next to be sent, and what waits then. */
   def taken: Option[(A, Outbox[A])] =
@@ -41,12 +44,12 @@ final case class Outbox[A] private (
   def unsubscribed(subscription: Long): Outbox[A] =
     places.getOrElse(subscription, Queue.empty).foldLeft(this)(_.without(_))
 
-  private def bounded(subscription: Long): Outbox[A] =
+  private def bounded(subscription: Long, most: Int): Outbox[A] =
     val own = places(subscription)
-    if own.size > limits.waiting then losing(own.head).bounded(subscription)
+    if own.size > most then losing(own.head).bounded(subscription, most)
     else if bytes > limits.waitingBytes && waiting.size > 1 then
       val smaller = losing(waiting.firstKey)
-      if smaller.places.contains(subscription) then smaller.bounded(subscription) else smaller
+      if smaller.places.contains(subscription) then smaller.bounded(subscription, most) else smaller
     else this
 
   private def losing(place: Long) = without(place).copy(lost = lost + 1)

@@ -77,10 +77,10 @@ object Protocol:
       ujson.Obj(
         "id"             -> channel.id.toDouble,
         "topic"          -> channel.topic.name,
-        "encoding"       -> "json",
+        "encoding"       -> (if channel.topic.isBinary then "protobuf" else "json"),
         "schemaName"     -> channel.topic.schemaName,
         "schema"         -> channel.topic.schema,
-        "schemaEncoding" -> "jsonschema"
+        "schemaEncoding" -> (if channel.topic.isBinary then "protobuf" else "jsonschema")
       )
     ))
   ).render()

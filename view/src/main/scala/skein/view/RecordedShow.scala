@@ -1,19 +1,23 @@
 package skein.view
 
-import skein.record.{Flight, FlightTopics, Record, Vehicle}
+import skein.record.{Flight, FlightTopics, McapRecording, Record, Sight, Vehicle}
+import skein.scene.Scene
 import skein.units.Instant
 
 /** A recording, played.
   *
   * @param rows
   *   in their order, with their numbers
+  * @param scene
+  *   what stood in its world
   */
 final class RecordedShow(
     id: String,
     vehicles: Vector[String],
     rows: Vector[(Long, Record)],
-    limits: Limits = Limits()
-) extends Show(id, FlightTopics.all(vehicles), limits):
+    limits: Limits = Limits(),
+    scene: Scene = Scene.Empty
+) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
 
   /** When each row was known: of one that says no time, that of the row before. */
   private val times: Array[Instant] =
@@ -27,7 +31,7 @@ final class RecordedShow(
 
   private val start    = times.headOption.getOrElse(Instant.ofNanos(0))
   private var playback = Playback(start, times.lastOption.getOrElse(start))
-  private var topics   = FlightTopics(vehicles, start)
+  private var topics   = begun
   private var next     = 0
   private var told     = Option.empty[Protocol.Status]
 
@@ -58,15 +62,19 @@ final class RecordedShow(
 
   private def rewind(): Unit =
     forget()
-    topics = FlightTopics(vehicles, start)
+    topics = begun
     next = 0
     topics.opening.foreach(publish)
 
+  private def begun = FlightTopics(vehicles, start, scene = scene, form = SmallSights)
+
+  /** Of images and clouds that are passed over, the newest alone. */
   private def showUntil(time: Instant): Unit =
-    while next < rows.size && times(next) <= time do
-      val (number, record) = rows(next)
-      topics.of(number, record).foreach(publish)
-      next += 1
+    val from = next
+    while next < rows.size && times(next) <= time do next += 1
+    val newest = (from until next).flatMap(at => Sight.of(rows(at)._2).map(_ -> at)).toMap
+    for at <- from until next if Sight.of(rows(at)._2).forall(newest(_) == at) do
+      topics.of(rows(at)._1, rows(at)._2).foreach(publish)
 
   private def statusAt(now: Instant) =
     if playback.hasEnded(now) then Protocol.Status.Ended
@@ -81,11 +89,21 @@ final class RecordedShow(
     notice("playback", ServerBytes(Protocol.playbackState(state(now, seeked, request))))
 
 object RecordedShow:
+  private def topics(vehicles: Vector[String], rows: Vector[(Long, Record)]) =
+    FlightTopics.all(vehicles) ++
+      rows.flatMap((_, record) => Sight.of(record)).distinct.flatMap(FlightTopics.of(_, SmallSights))
+
   /** @param rows
     *   of one recording, its heading first
+    * @param scene
+    *   what stood in its world, by the recording's parameters
     */
-  def of(rows: Vector[(Long, Record)]): RecordedShow = RecordedShow(
+  def of(
+      rows: Vector[(Long, Record)],
+      scene: Map[String, String] => Scene = _ => Scene.Empty
+  ): RecordedShow = RecordedShow(
     rows.collectFirst { case (_, flight: Flight) => flight.id }.getOrElse("flight"),
     rows.collect { case (_, vehicle: Vehicle) => vehicle.name },
-    rows
+    rows,
+    scene = McapRecording.sceneOf(rows, scene)
   )

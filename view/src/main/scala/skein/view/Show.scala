@@ -23,11 +23,12 @@ abstract class Show private[view] (
     topics.zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
 
   private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
+  private val latest  = channels.filter(_.topic.newestOnly).map(_.id).toSet
   private val newest  = mutable.Map.empty[Long, VectorMap[String, Shown]]
   private val viewers = mutable.Set.empty[Viewer]
 
   private final class Shown(message: FlightMessage):
-    lazy val payload: ByteString = ByteString(message.json)
+    lazy val payload: ByteString = ByteString.fromArrayUnsafe(message.bytes)
     def at: Instant              = message.known
 
   /** Begin and end, where it can be played. */
@@ -51,7 +52,7 @@ abstract class Show private[view] (
 
   private[view] def subscribed(viewer: Viewer, subscription: Long, channel: Long): Unit = synchronized:
     for shown <- newest.get(channel).toSeq.flatMap(_.values) do
-      viewer.offer(subscription, shown.at, shown.payload)
+      viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
   /** What a viewer is told when it comes. */
   protected def greet(viewer: Viewer): Unit
@@ -63,7 +64,7 @@ abstract class Show private[view] (
       for
         viewer       <- viewers
         subscription <- viewer.subscriptionsTo(channel)
-      do viewer.offer(subscription, shown.at, shown.payload)
+      do viewer.offer(subscription, shown.at, shown.payload, latest(channel))
 
   protected def forget(): Unit = synchronized(newest.clear())
 

@@ -86,7 +86,7 @@ final class TaskShow(id: String, limits: Limits = Limits()) extends Show(id, Tas
 
   def turn(now: Instant): Unit =
     for (key, (topic, json)) <- said.getAndSet(VectorMap.empty) do
-      publish(FlightMessage(topic.name, key, now, now, json))
+      publish(FlightMessage.json(topic.name, key, now, now)(json))
     notice("time", ServerBytes(Protocol.timeIs(now)))
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit] =

@@ -29,9 +29,13 @@ private[view] final class Viewer(limits: Limits, channels: Set[Long], wake: () =
       subscriptions = left
       outbox = outbox.unsubscribed(subscription)
 
-  def offer(subscription: Long, logTime: Instant, payload: ByteString): Unit =
+  /** @param newestOnly
+    *   whether what waits of this subscription is of no use any more
+    */
+  def offer(subscription: Long, logTime: Instant, payload: ByteString, newestOnly: Boolean = false): Unit =
     val message = ServerBytes(Protocol.messageData(subscription, logTime, payload))
-    put(_.offered(subscription, message, message.bytes.length))
+    val most    = if newestOnly then 1 else limits.waiting
+    put(_.offered(subscription, message, message.bytes.length, most))
 
   def notice(key: String, message: ServerMessage): Unit = put(_.noticed(key, message))
 

@@ -68,7 +68,53 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
     Array(first.toByte, (0x80 | payload.length).toByte) ++ mask ++
       payload.zipWithIndex.map((byte, at) => (byte ^ mask(at % 4)).toByte)
 
-/** How a server bears as many malformed frames as are named: a million, for the figure. */
+/** Writes requests to a server that are none, or ask for what they may not: on one connection after the other. */
+private[view] final class MalformedRequests(port: Int, seed: Long):
+  private val random = Random(seed)
+
+  /** @return
+    *   connections that it took
+    */
+  def write(requests: Int): Int =
+    var (written, connections) = (0, 0)
+    while written < requests do
+      connections += 1
+      val socket = Socket("127.0.0.1", port)
+      try
+        val out = BufferedOutputStream(socket.getOutputStream)
+        // Answers are few and short; who reads none of them is closed by the server's own limits.
+        val burst = math.min(1 + random.nextInt(50), requests - written)
+        for _ <- 1 to burst do
+          written += 1
+          out.write(request())
+        out.flush()
+      catch case _: IOException => () // It was turned out.
+      finally socket.close()
+    connections
+
+  private def noise(size: Int) = { val all = new Array[Byte](size); random.nextBytes(all); all }
+
+  private def request(): Array[Byte] =
+    val host               = s"Host: 127.0.0.1:$port\r\n"
+    def said(text: String) = text.getBytes(US_ASCII)
+    def letters(size: Int) = Iterator.fill(size)(('!' + random.nextInt(90)).toChar).mkString
+    random.nextInt(8) match
+      case 0 => noise(1 + random.nextInt(60))
+      case 1 => said(s"GET /${letters(1 + random.nextInt(40))} HTTP/1.1\r\n$host\r\n")
+      case 2 => said(s"GET / HTTP/1.1\r\nHost: ${letters(8)}\r\n\r\n")
+      case 3 => said(s"${letters(5)} / HTTP/9.9\r\n\r\n")
+      case 4 => said(s"GET / HTTP/1.1\r\n$host" + s"X: ${letters(30)}\r\n" * random.nextInt(200) + "\r\n")
+      case 5 => said(s"POST /hover HTTP/1.1\r\n${host}Content-Length: ${random.nextLong()}\r\n\r\n")
+      case 6 => said(
+          s"GET / HTTP/1.1\r\n${host}Upgrade: websocket\r\nConnection: Upgrade\r\nOrigin: http://${letters(6)}\r\n\r\n"
+        )
+      case _ => said(
+          s"POST /flights/stream-vpn/abort HTTP/1.1\r\n${host}X-Skein-Token: ${letters(16)}\r\nContent-Length: 0\r\n\r\n"
+        )
+
+/** How a server bears as many malformed frames, then as many malformed requests, and then a thousand connections that stay
+  * open, while somebody looks: a million, for the figure.
+  */
 @main def bearMalformedFrames(frames: Int): Unit =
   val shows = Shows()
   val feed  = Feed()
@@ -76,13 +122,31 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
   val server =
     Await.result(ViewServer.start(shows, Clock.system, ExecutionContext.global, port = 0), 30.seconds)
   def memory = { System.gc(); (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20 }
-  val before = memory
-  val from   = System.nanoTime()
-  val took   = MalformedFrames(server.port, "/flights/stream-vpn", seed = 1).write(frames)
-  val spent  = (System.nanoTime() - from) * 1e-9
-  println(
-    f"$frames%,d frames on $took%,d connections in $spent%.1f s; ${server.counts.refusedMessages}%,d messages refused, " +
-      f"${server.counts.refusedConnections}%,d connections; heap $before MiB before, $memory MiB after; " +
-      s"${shows.all.head.watching} viewers are left"
+  def told(what: String, from: Long) =
+    println(
+      f"$what in ${(System.nanoTime() - from) * 1e-9}%.1f s; refused: ${server.counts.refusedMessages}%,d messages, " +
+        f"${server.counts.refusedRequests}%,d requests, ${server.counts.refusedConnections}%,d connections; heap $memory MiB; " +
+        s"${shows.all.head.watching} viewers"
+    )
+  println(s"heap $memory MiB before")
+  val first = System.nanoTime()
+  val took  = MalformedFrames(server.port, "/flights/stream-vpn", seed = 1).write(frames)
+  told(f"$frames%,d frames on $took%,d connections", first)
+  val second = System.nanoTime()
+  val more   = MalformedRequests(server.port, seed = 2).write(frames)
+  told(f"$frames%,d requests on $more%,d connections", second)
+  val third   = System.nanoTime()
+  val sockets = Vector.fill(1000)(Socket("127.0.0.1", server.port))
+  // All but the most that may be open see their end.
+  val ended = sockets.drop(Limits().connections).count(socket =>
+    scala.util.Try(socket.getInputStream.read()).getOrElse(-1) == -1
   )
+  told(s"1,000 connections, of which $ended were closed at once,", third)
+  sockets.foreach(_.close())
+  // Whoever speaks the protocol is served all the same.
+  val answer = java.net.http.HttpClient.newHttpClient().send(
+    java.net.http.HttpRequest.newBuilder(java.net.URI.create(s"${server.url}/flights")).build(),
+    java.net.http.HttpResponse.BodyHandlers.ofString
+  )
+  println(s"then: ${answer.statusCode} ${answer.body}")
   Await.result(server.close(), 30.seconds): Unit

@@ -24,6 +24,12 @@ class OutboxSuite extends munit.FunSuite:
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("newer"), 1L, 50L))
     assertEquals(drained(outbox.offered(3, "huge", 1000)), Vector("huge"))
 
+  test("of what is of use only while it is the newest, the newest alone waits, and others are lost"):
+    val outbox = (1 to 4).foldLeft(Outbox.empty[String](limits).offered(2, "row", 1))((all, at) =>
+      all.offered(1, s"image $at", 10, most = 1)
+    )
+    assertEquals((drained(outbox), outbox.lost), (Vector("row", "image 4"), 3L))
+
   test("a notice goes first, and a newer one takes its place"):
     val outbox =
       Outbox.empty[String](limits).offered(1, "row", 1).noticed(

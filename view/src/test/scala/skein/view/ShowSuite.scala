@@ -62,6 +62,58 @@ class ShowSuite extends munit.FunSuite:
       Vector(("Pursuer", 3.0), ("Evader", 3.0))
     )
 
+  /** The topics of all messages of data that wait, and their bytes. */
+  private def came(show: Show, viewer: Viewer): Vector[(topic: String, bytes: Array[Byte])] =
+    val topics = show.channels.map(channel => channel.id -> channel.topic.name).toMap
+    Vector
+      .unfold(())(_ => viewer.take().map((_, ())))
+      .collect { case ServerBytes(bytes) if bytes(0) == 1 => bytes }
+      .map(bytes =>
+        (
+          topics(bytes.slice(1, 5).toByteBuffer.order(ByteOrder.LITTLE_ENDIAN).getInt.toLong),
+          bytes.drop(13).toArray
+        )
+      )
+
+  private val image = "/vehicles/Pursuer/front_center/image"
+  private val sight = Sight.camera("Pursuer", "front_center", "Scene")
+
+  test("of a camera's images the newest is shown, as a JPEG, ten times a second at most"):
+    val feed   = Feed()
+    val show   = LiveShow(heading, feed, sights = Vector(sight))
+    val viewer = watching(show, image, "/skein/image")
+    for number <- 1 to 40 do
+      feed.offer(Samples.picture(number))
+      show.turn(at(10) + Span.ofMillis(25) * number)
+    val told = Vector.unfold(())(_ => Option(came(show, viewer)).filter(_.nonEmpty).map((_, ()))).flatten
+    assertEquals(told.count(_.topic == "/skein/image"), 10)
+    // The viewer took nothing meanwhile: of images the newest alone waits.
+    val files = told.filter(_.topic == image).map(_.bytes)
+    assertEquals(files.size, 1)
+    val jpeg = SmallSightsSuite.jpeg(files.head)
+    assertEquals((jpeg.getWidth, jpeg.getHeight), (40, 30))
+
+  test("a channel of images says that its messages are of Protocol Buffers, and by which descriptors"):
+    val show     = LiveShow(heading, Feed(), sights = Vector(sight))
+    val channels = ujson.read(Protocol.advertise(show.channels))("channels").arr
+    val camera   = channels.find(_("topic").str == image).get
+    assertEquals(
+      (camera("encoding").str, camera("schemaEncoding").str, camera("schemaName").str),
+      ("protobuf", "protobuf", "foxglove.CompressedImage")
+    )
+    assert(java.util.Base64.getDecoder.decode(camera("schema").str).length > 100)
+    assertEquals(channels.find(_("topic").str == "/scene").get("encoding").str, "json")
+
+  test("a jump over many images of a recording shows the newest before it, and no other"):
+    val filmed =
+      heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.picture(step * 3)))
+    val show   = RecordedShow.of(filmed.zipWithIndex.map((row, at) => (at.toLong, row)).toVector)
+    val viewer = watching(show, "/skein/image")
+    came(show, viewer): Unit
+    val Some((a, _)) = show.recorded: @unchecked
+    show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(1000)), ""), at(1)): Unit
+    assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
+
   test("a gauge is asked no more often than it wants"):
     var asked = 0
     val gauge =

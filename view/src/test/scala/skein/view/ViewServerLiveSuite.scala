@@ -139,6 +139,8 @@ class ViewServerLiveSuite extends munit.FunSuite:
           !text.replace("http://www.w3.org/2000/svg", "").contains("://") || path == "/connection.js",
           path
         )
+    val own = files.filter(path => path.endsWith(".js") && !path.startsWith("/uplot"))
+    assert(own.map(get(port, _)._2.length).sum < 60_000)
     assertEquals(
       get(port, "/flights")._2,
       """[{"id":"stream-vpn","controls":["pause","continue","abort"]}]"""

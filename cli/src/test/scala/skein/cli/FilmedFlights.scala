@@ -1,0 +1,49 @@
+package skein.cli
+
+import java.lang.management.ManagementFactory
+import java.nio.file.{Files, Path}
+import scala.util.Using
+import skein.record.{EventKind, Picture, RecordingReader}
+import skein.report.DuelReport
+import skein.scenario.Scenarios
+
+/** The same flight of two vehicles, in turns: without images; with four cameras at 30 Hz in the recording; and with an MCAP
+  * file beside that: `cli/Test/runMain skein.cli.filmedFlights 20 3`. How late control's questions leave, and the processor
+  * time of this whole process, simulator and its drawing included.
+  */
+@main def filmedFlights(seconds: Int, rounds: Int): Unit =
+  given Scenarios = DuelReport.scenarios
+  val folder      = Files.createTempDirectory("filmed")
+  val cameras     = Seq("--images", "front_center@30", "--images", "bottom_center@30")
+  val kinds       = Seq(
+    "no images"           -> Nil,
+    "images"              -> cameras,
+    "images, MCAP beside" -> (cameras ++ Seq("--record", "mcap"))
+  )
+  val cpu = ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
+  try
+    for round <- 1 to rounds; ((what, options), number) <- kinds.zipWithIndex do
+      val out   = folder.resolve(s"$round-$number")
+      val fixed =
+        Seq("--loop", "predictive", "--link", "none", "--duration", s"${seconds}s", "--scene", "street")
+      val flying = ViewLiveSuite.Flying.start(out, fixed ++ options*)
+      flying.awaitStart("predictive-none")
+      val (from, began) = (cpu.getProcessCpuTime, System.nanoTime())
+      flying.land()
+      val spent  = (cpu.getProcessCpuTime - from).toDouble / (System.nanoTime() - began)
+      val file   = out.resolve("predictive-none.duckdb")
+      val late   = Lateness.of(file)
+      val rows   = RecordingReader.records(file).fold(error => sys.error(error.message), identity).map(_._2)
+      val images = rows.collect { case picture: Picture => picture }
+      val lost   = rows.collect:
+        case event: skein.record.Event
+            if event.kind == EventKind.Dropped && event.detail.contains("not recorded") => event
+      println(
+        f"$what%-20s ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
+          f"${images.size.toDouble / seconds}%.0f images/s of ${images.headOption.fold(0)(_.pixels.size)}%,d bytes, ${lost.size} not recorded; " +
+          f"${spent * 100}%.0f %% of one core; load ${load()}"
+      )
+  finally
+    Using.resource(Files.walk(folder))(_.sorted(java.util.Comparator.reverseOrder()).forEach((path: Path) =>
+      Files.delete(path)
+    ))

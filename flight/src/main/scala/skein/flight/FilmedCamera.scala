@@ -1,0 +1,81 @@
+package skein.flight
+
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.KillSwitches
+import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
+import scala.concurrent.Future
+import skein.airsim.{Eyes, Image, Shot}
+import skein.flow.{Frames, Metronome}
+import skein.record.EventKind
+import skein.signal.{ClockAlignment, Stamped}
+import skein.units.*
+
+/** A camera whose images nobody decides by: they are taken beside the loop, which waits for none of them. What is missed is
+  * counted, and told once a second.
+  *
+  * @param seen
+  *   each image, newer than all before; must not wait for anything
+  */
+private[skein] final class FilmedCamera(
+    camera: String,
+    every: Span,
+    eyes: Eyes,
+    clock: Clock,
+    seen: Stamped[Image] => Unit,
+    note: (EventKind, String) => Unit
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  private val stop   = KillSwitches.shared(s"film $camera")
+  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+  private val missed = AtomicReference(FilmedCamera.Missed(0, "", clock.now()))
+  private val ended  = AtomicReference(Future.successful[Done](Done))
+
+  /** Films until it is closed. */
+  def run(): Unit =
+    val ticks = Source.fromGraph(Metronome(clock.now(), every, clock)).via(stop.flow)
+    val end   = Frames
+      .at(ticks, inFlight = 2, isNewer)(() => image())(skipped)
+      .toMat(Sink.foreach(seen))(Keep.right)
+      .run()
+    end.failed.foreach(error => note(EventKind.Aborted, s"$camera: $error"))
+    ended.set(end.recover { case _ => Done })
+
+  def close(): Future[Done] =
+    stop.shutdown()
+    tell(missed.getAndUpdate(_.copy(images = 0)))
+    ended.get
+
+  private def image() = eyes
+    .image(Shot(camera))
+    .map(_.map: frame =>
+      val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
+      frame)
+
+  private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
+
+  private def skipped(what: Frames.Skipped[Any, Any]): Unit =
+    val (images, why) = what match
+      case Frames.Skipped.Missed(frames) => (frames, "the camera is slower")
+      case Frames.Skipped.Failed(error)  => (1, s"$error")
+      case Frames.Skipped.Overtaken(_)   => (1, "an image was overtaken")
+      case Frames.Skipped.Repeated(_)    => (1, "the same image again")
+      case Frames.Skipped.Replaced(_)    => (1, "an image was replaced by a newer one")
+    val now    = clock.now()
+    val before = missed.getAndUpdate: soFar =>
+      if now.since(soFar.since) >= FilmedCamera.TellEvery then FilmedCamera.Missed(0, why, now)
+      else soFar.copy(images = soFar.images + images, why = why)
+    if now.since(before.since) >= FilmedCamera.TellEvery then
+      tell(before.copy(images = before.images + images, why = why))
+
+  private def tell(missed: FilmedCamera.Missed): Unit =
+    if missed.images > 0 then
+      note(EventKind.Skipped, s"$camera: ${missed.images} images missed; the last, since ${missed.why}")
+
+private object FilmedCamera:
+  private final case class Missed(images: Int, why: String, since: Instant)
+
+  private val TellEvery = Span.ofSeconds(1)

@@ -1,0 +1,92 @@
+package skein.flight
+
+import java.nio.{ByteBuffer, ByteOrder}
+import java.util.concurrent.ConcurrentHashMap
+import scala.concurrent.ExecutionContext
+import skein.airsim.{Image, Multirotor, Pixels, Scan}
+import skein.record.{Blob, Cloud, Picture, Recorder, Sight}
+import skein.signal.Stamped
+import skein.units.*
+
+/** Records what a vehicle's cameras and lidars see. From any thread; never waits.
+  *
+  * @param isWanted
+  *   whether anybody wants to have it
+  */
+private[skein] final class SightLog(vehicle: Multirotor, recorder: Recorder, isWanted: Sight => Boolean):
+  private val counts = ConcurrentHashMap[Sight, SightLog.Count]()
+  private val fovs   = ConcurrentHashMap[String, Radians]()
+
+  /** Asks for the camera's field of view, once. */
+  def ask(camera: String): Unit =
+    vehicle.eyes
+      .fov(camera)
+      .foreach(_.foreach(known => fovs.put(camera, known)))(using ExecutionContext.parasitic)
+
+  /** An image came. */
+  def image(frame: Stamped[Image]): Unit =
+    val image = frame.value
+    val shot  = image.shot
+    val sight = Sight.camera(vehicle.name, shot.camera, shot.kind.toString)
+    if isWanted(sight) then
+      val content = image.pixels match
+        case Pixels.Bgr(bytes)      => Some(("bgr8", bytes.toArray))
+        case Pixels.Numbers(values) => Some(("32FC1", SightLog.bytes(values)))
+        case Pixels.Png(_)          => None
+      for
+        (encoding, bytes) <- content
+        number            <- next(sight, frame.validAt)
+      do
+        recorder.offer(Picture(
+          number,
+          vehicle.name,
+          shot.camera,
+          shot.kind.toString,
+          encoding,
+          image.width,
+          image.height,
+          Option(fovs.get(shot.camera)),
+          image.positionNed,
+          image.orientation,
+          frame.validAt,
+          frame.sentAt,
+          frame.receivedAt,
+          Blob.of(bytes)
+        ))
+
+  /** A scan came. */
+  def scan(lidar: String, frame: Stamped[Scan]): Unit =
+    val sight = Sight(vehicle.name, lidar, isLidar = true)
+    if isWanted(sight) then
+      for number <- next(sight, frame.validAt) do
+        recorder.offer(Cloud(
+          number,
+          vehicle.name,
+          lidar,
+          frame.value.size,
+          frame.value.positionNed,
+          frame.value.orientation,
+          frame.validAt,
+          frame.sentAt,
+          frame.receivedAt,
+          Blob.of(SightLog.bytes(frame.value.points))
+        ))
+
+  /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats itself. */
+  private def next(sight: Sight, validAt: Instant): Option[Long] =
+    val now = counts.compute(
+      sight,
+      (_, before) =>
+        if before == null then SightLog.Count(1, validAt, isNew = true)
+        else if before.validAt == validAt then before.copy(isNew = false)
+        else SightLog.Count(before.number + 1, validAt, isNew = true)
+    )
+    Option.when(now.isNew)(now.number)
+
+private object SightLog:
+  private final case class Count(number: Long, validAt: Instant, isNew: Boolean)
+
+  private def bytes(numbers: Array[Float]): Array[Byte] =
+    val out = ByteBuffer.allocate(numbers.length * 4).order(ByteOrder.LITTLE_ENDIAN)
+    out.asFloatBuffer.put(numbers)
+    out.array

@@ -1,0 +1,106 @@
+package skein.record
+
+import java.nio.ByteBuffer
+import java.nio.ByteOrder.LITTLE_ENDIAN
+import skein.units.*
+
+/** A camera or a lidar whose images or clouds are shown.
+  *
+  * @param name
+  *   the lidar's; the camera's, with a slash and what it shows where that is not `Scene`
+  */
+final case class Sight(vehicle: String, name: String, isLidar: Boolean)
+
+object Sight:
+  /** What a record is of. */
+  def of(record: Record): Option[Sight] = record match
+    case picture: Picture => Some(camera(picture.vehicle, picture.camera, picture.kind))
+    case cloud: Cloud     => Some(Sight(cloud.vehicle, cloud.lidar, isLidar = true))
+    case _                => None
+
+  def camera(vehicle: String, camera: String, kind: String): Sight =
+    Sight(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)
+
+/** How images and clouds go to viewers: as messages of Protocol Buffers, by Foxglove's schemas. */
+trait SightForm:
+  /** Of images, a name of [[FoxgloveSchemas.binary]]. */
+  def imageSchema: String
+
+  /** @param at
+    *   its exposure, on the controller's clock
+    * @param frame
+    *   the camera's: right, down, front
+    */
+  def image(picture: Picture, at: Instant, frame: String): Array[Byte]
+
+  /** Of a cloud, at most. */
+  def mostPoints: Int
+
+object SightForm:
+
+  /** As they were recorded. */
+  object Whole extends SightForm:
+    val imageSchema = "foxglove.RawImage"
+    val mostPoints  = Int.MaxValue
+
+    def image(picture: Picture, at: Instant, frame: String): Array[Byte] =
+      val bytesAPixel = if picture.encoding == "bgr8" then 3 else 4
+      Protobuf(picture.pixels.size + 128)
+        .message(1, timestamp(at))
+        .fixed32(2, picture.width.toInt)
+        .fixed32(3, picture.height.toInt)
+        .text(4, picture.encoding)
+        .fixed32(5, picture.width.toInt * bytesAPixel)
+        .bytes(RawImageData, picture.pixels.bytes)
+        .text(7, frame)
+        .result
+
+  private[record] val RawImageData   = 6
+  private[record] val PointCloudData = 6
+
+  /** `foxglove.CompressedImage`.
+    *
+    * @param format
+    *   for example `jpeg`
+    */
+  def compressed(file: Array[Byte], format: String, at: Instant, frame: String): Array[Byte] =
+    Protobuf(file.length + 128)
+      .message(1, timestamp(at))
+      .bytes(2, file)
+      .text(3, format)
+      .text(4, frame)
+      .result
+
+  /** `foxglove.PointCloud`; every n-th point where there are too many. */
+  private[record] def cloud(cloud: Cloud, at: Instant, mostPoints: Int): Array[Byte] =
+    val data   = thinned(cloud.xyz.bytes, mostPoints)
+    val fields = Seq("x" -> 0, "y" -> 4, "z" -> 8).map((name, offset) =>
+      Protobuf().text(1, name).fixed32(2, offset).varint(3, Float32)
+    )
+    val (p, q) = (cloud.positionNed, cloud.orientation)
+    val pose   = Protobuf()
+      .message(1, Protobuf().double(1, p.x).double(2, p.y).double(3, p.z))
+      .message(2, Protobuf().double(1, q.x).double(2, q.y).double(3, q.z).double(4, q.w))
+    val message = Protobuf(data.length + 256)
+      .message(1, timestamp(at))
+      .text(2, "world_ned")
+      .message(3, pose)
+      .fixed32(4, PointBytes)
+    fields.foreach(message.message(5, _))
+    message.bytes(PointCloudData, data).result
+
+  private val Float32    = 7
+  private val PointBytes = 12
+
+  private def thinned(xyz: Array[Byte], most: Int): Array[Byte] =
+    val points = xyz.length / PointBytes
+    if points <= most then xyz
+    else
+      val every = (points + most - 1) / most
+      val out   = ByteBuffer.allocate((points + every - 1) / every * PointBytes).order(LITTLE_ENDIAN)
+      for point <- 0 until points by every do out.put(xyz, point * PointBytes, PointBytes)
+      out.array
+
+  private def timestamp(at: Instant): Protobuf =
+    val ns = at.toNanos.max(0)
+    Protobuf().varint(1, ns / 1_000_000_000L).varint(2, ns % 1_000_000_000L)
