@@ -52,7 +52,9 @@ private[cli] final class ClusterRun private (
   private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
     shown.say(s"workers join by ./skein worker --join ${node.address}")
     try
-      val done = body(this)
+      val done = options.metrics match
+        case None       => body(this)
+        case Some(seen) => MetricsServer.serving(seen, () => node.metrics, Console.err.println(_))(body(this))
       shown.say(account)
       done
     catch case failed: ElsewhereFailed => Left(failed.getMessage)
