@@ -51,15 +51,15 @@ import java.nio.file.{Files, Path}
     f"messages: ${flown.messages}%,d, ${flown.messages / flown.seconds}%,.0f and ${flown.messageBytes / flown.seconds / 1e3}%,.0f kB a second"
   )
   println(
-    f"the coordinator decides for ${flown.decidingNanos * 1e-9}%.1f s, ${100 * flown.decidingNanos * 1e-9 / flown.seconds}%.2f %% of a core, and waits ${flown.savingNanos * 1e-9}%.1f s for the disk; " +
-      f"all of this process took ${processNanos * 1e-9}%.0f s, ${100 * processNanos * 1e-9 / flown.seconds}%.1f %% of a core"
+    f"the coordinator decides for ${flown.decidingNanos * 1e-9}%.1f s, ${1e-7 * flown.decidingNanos / flown.seconds}%.2f %% of a core, and waits ${flown.savingNanos * 1e-9}%.1f s for the disk; " +
+      f"all of this process took ${processNanos * 1e-9}%.0f s, ${1e-7 * processNanos / flown.seconds}%.1f %% of a core"
   )
   println(
     f"heap of all of it, the simulated workers included: ${most / 1e6}%.0f MB; ledger: ${ledger / 1e6}%.1f MB"
   )
   println(
-    f"of all workers' time: ${100 * flown.usefulNanos * 1e-9 / lived}%.1f %% on what counts, " +
-      f"${100 * (flown.computedNanos - flown.usefulNanos) * 1e-9 / lived}%.1f %% on what was lost or came twice"
+    f"of all workers' time: ${1e-7 * flown.usefulNanos / lived}%.1f %% on what counts, " +
+      f"${1e-7 * (flown.computedNanos - flown.usefulNanos) / lived}%.1f %% on what was lost or came twice"
   )
 
 private object Used:

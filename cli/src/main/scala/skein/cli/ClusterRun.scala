@@ -20,8 +20,10 @@ private[cli] final class ClusterRun private (
     threads: Int,
     shown: Shown
 ) extends Elsewhere:
-  private val startedAt = System.nanoTime()
-  private val failure   = AtomicReference(Option.empty[String])
+  private val failure = AtomicReference(Option.empty[String])
+
+  /** When the first answers were seen, and how many: before, workers start. */
+  private var begun = Option.empty[(atNanos: Long, accepted: Long)]
 
   private val processes = WorkerProcesses(
     options.workers,
@@ -84,10 +86,16 @@ private[cli] final class ClusterRun private (
 
   /** How it goes, in a line. */
   def status: String =
-    val now     = node.progress
-    val seconds = (System.nanoTime() - startedAt) * 1e-9
-    val rate    = now.coordinator.counts.accepted / seconds / now.here.max(1)
-    f"${now.done} of ${now.of} blocks; ${now.here} workers, $rate%.2f blocks/s each; ${now.coordinator.workers.size} joined, ${now.died} lost"
+    val now      = node.progress
+    val nanos    = System.nanoTime()
+    val accepted = now.coordinator.counts.accepted
+    if begun.isEmpty && accepted > 0 then begun = Some((nanos, accepted))
+    val rate = begun
+      .filter(first => accepted > first.accepted)
+      .fold("")(first =>
+        f", ${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f blocks/s each"
+      )
+    s"${now.done} of ${now.of} blocks; ${now.here} workers$rate; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
   /** Who did how much. */
   private def account: String =

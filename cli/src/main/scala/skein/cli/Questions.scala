@@ -12,12 +12,15 @@ private[cli] object Questions:
   private val Search  = "search"
   private val Torture = "torture"
   private val Budget  = "budget"
+  private val Spread  = "spread"
 
   def search(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Search, question)
 
   def budget(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Budget, question)
 
   def torture(question: TortureQuestion): ArraySeq[Byte] = of(Torture, question.bytes)
+
+  def spread(question: SpreadQuestion): ArraySeq[Byte] = of(Spread, question.bytes)
 
   private def of(kind: String, question: ArraySeq[Byte]) =
     ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
@@ -29,5 +32,8 @@ private[cli] object Questions:
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSwept.solvers.of(question.drop(1))
       case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
+      case Spread  => SpreadQuestion.solvers.of(question.drop(1))
       case other   =>
-        Left(s"expected a question of $Search, $Budget or $Torture, came one of '${other.take(40)}'")
+        Left(
+          s"expected a question of $Search, $Budget, $Torture or $Spread, came one of '${other.take(40)}'"
+        )

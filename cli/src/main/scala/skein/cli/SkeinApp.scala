@@ -32,7 +32,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
 
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
-    SpreadCommand(),
+    SpreadCommand(program),
     SearchCommand(program),
     LearnCommand(),
     PolicyCommand(),

@@ -31,7 +31,7 @@ class BadInputSuite extends munit.FunSuite:
     val file     = Files.writeString(path.resolve("file"), "").toString
     val commands = Seq(
       FlyCommand(),
-      SpreadCommand(),
+      SpreadCommand("skein.cli.Main"),
       SearchCommand("skein.cli.Main"),
       LearnCommand(),
       BudgetCommand("skein.cli.Main"),

@@ -151,7 +151,8 @@ private[cluster] final class CoordinatorBehavior private (
 
   private def lost(worker: String): Unit =
     addresses -= worker
-    state.workers.get(worker).filter(_.isHere).foreach: record =>
+    // Who goes when all is done was told to.
+    if !isDone then state.workers.get(worker).filter(_.isHere).foreach: record =>
       died += 1
       state = state.lost(worker)
       hungry -= worker
