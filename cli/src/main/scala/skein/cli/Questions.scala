@@ -13,6 +13,7 @@ private[cli] object Questions:
   private val Torture = "torture"
   private val Budget  = "budget"
   private val Spread  = "spread"
+  private val Learn   = "learn"
 
   def search(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Search, question)
 
@@ -21,6 +22,8 @@ private[cli] object Questions:
   def torture(question: TortureQuestion): ArraySeq[Byte] = of(Torture, question.bytes)
 
   def spread(question: SpreadQuestion): ArraySeq[Byte] = of(Spread, question.bytes)
+
+  def learn(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Learn, question)
 
   private def of(kind: String, question: ArraySeq[Byte]) =
     ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
@@ -33,7 +36,8 @@ private[cli] object Questions:
       case Budget  => ClusterSwept.solvers.of(question.drop(1))
       case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
       case Spread  => SpreadQuestion.solvers.of(question.drop(1))
+      case Learn   => LearnWork.solvers.of(question.drop(1))
       case other   =>
         Left(
-          s"expected a question of $Search, $Budget, $Torture or $Spread, came one of '${other.take(40)}'"
+          s"expected a question of $Search, $Budget, $Torture, $Spread or $Learn, came one of '${other.take(40)}'"
         )

@@ -34,7 +34,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     FlyCommand(),
     SpreadCommand(program),
     SearchCommand(program),
-    LearnCommand(),
+    LearnCommand(program),
     PolicyCommand(),
     WorkerCommand(),
     ClusterCommand,

@@ -33,7 +33,7 @@ class BadInputSuite extends munit.FunSuite:
       FlyCommand(),
       SpreadCommand("skein.cli.Main"),
       SearchCommand("skein.cli.Main"),
-      LearnCommand(),
+      LearnCommand("skein.cli.Main"),
       BudgetCommand("skein.cli.Main"),
       LatencyCommand
     )
