@@ -95,24 +95,26 @@ private[cli] final class ClusterRun private (
       .fold("")(first =>
         f", ${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f blocks/s each"
       )
-    s"${now.done} of ${now.of} blocks; ${now.here} workers$rate; ${now.coordinator.workers.size} joined, ${now.died} lost"
+    s"${now.done} of ${now.of} blocks; ${now.here} ${if now.here == 1 then "worker" else "workers"}$rate; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
   /** Who did how much. */
   private def account: String =
-    val now    = node.progress
-    val counts = now.coordinator.counts
-    val rows   = now.coordinator.workers.toVector.sortBy((name, record) => (-record.accepted, name)).map:
+    val now       = node.progress
+    val counts    = now.coordinator.counts
+    val isOneGone = now.coordinator.workers.values.exists(!_.isHere)
+    val rows      = now.coordinator.workers.toVector.sortBy((name, record) => (-record.accepted, name)).map:
       (name, record) =>
         Vector(
           name,
           record.cores.toString,
           record.accepted.toString,
+          f"${100.0 * record.accepted / counts.accepted.max(1)}%.0f %%",
           record.repeated.toString,
           f"${record.busyNanos * 1e-9}%.1f"
-        )
+        ) ++ Option.when(isOneGone)(if record.isHere then "" else "gone")
     s"""${counts.accepted} blocks counted, ${now.resumed} more were in the ledger; ${counts.repeated} answers came twice, ${counts.lost} blocks were lost with their workers and given out again
        |${TextTable(
-        Vector("<worker", "cores", "counted", "repeated", "busy, s"),
+        Vector("<worker", "cores", "counted", "share", "repeated", "busy, s") ++ Option.when(isOneGone)("<"),
         rows.take(ClusterRun.MostRows)
       ).render}${
         if rows.size > ClusterRun.MostRows then s"\nand ${rows.size - ClusterRun.MostRows} more" else ""

@@ -234,7 +234,7 @@ final class LearnCommand(program: String)(using Scenarios)
       threads: Int,
       shown: Shown
   )(body: Measuring => Either[String, Unit]): Either[String, Unit] = options match
-    case None        => body(Measuring(LearnWork.judges(setup, threads), LearnCommand.flown(setup.question, _, _)))
+    case None => body(Measuring(LearnWork.judges(setup, threads), LearnCommand.flown(setup.question, _, _)))
     case Some(asked) =>
       val posed = Questions.learn(LearnWork.question(setup))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
@@ -318,7 +318,7 @@ object LearnCommand:
   ): Either[String, Vector[Double]] =
     for
       flights <- LearnWork.flights(question, policy, count)
-      (settings, plans)  = flights
+      (settings, plans) = flights
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
     yield landed.flatMap(LearnWork.distanceOf)

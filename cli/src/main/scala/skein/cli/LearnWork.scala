@@ -108,10 +108,12 @@ private[cli] object LearnWork:
     try
       val number  = in.getLong.toInt
       val weights = Vector.fill(in.remaining / 8)(in.getDouble)
-      for (settings, plans) <- flights(setup.question, PolicyFile(setup.role, setup.family, weights), number + 1)
+      for (settings, plans) <-
+          flights(setup.question, PolicyFile(setup.role, setup.family, weights), number + 1)
       yield SpreadFlights.one(settings, plans(number)) match
-        case Left(missing) => ArraySeq.from(missing.message.take(MostReason).getBytes(UTF_8)).prepended(NotFlown)
-        case Right(flown)  =>
+        case Left(missing) =>
+          ArraySeq.from(missing.message.take(MostReason).getBytes(UTF_8)).prepended(NotFlown)
+        case Right(flown) =>
           val out = ByteBuffer.allocate(9).put(Flown)
           distanceOf(flown).foreach(out.putDouble)
           ArraySeq.unsafeWrapArray(out.array.take(out.position()))
@@ -125,7 +127,7 @@ private[cli] object LearnWork:
       case Some(Flown) if answer.length == 9 => Right(Some(ByteBuffer.wrap(answer.toArray).getDouble(1)))
       case Some(Flown) if answer.length == 1 => Right(None)
       case Some(NotFlown)                    => Left(String(answer.tail.toArray, UTF_8))
-      case other                             => Left(s"expected a flight's distance, came ${answer.length} bytes of the kind $other")
+      case other => Left(s"expected a flight's distance, came ${answer.length} bytes of the kind $other")
 
   private val Episodes: Byte = 0
   private val Flight: Byte   = 1

@@ -108,12 +108,16 @@ private[cli] object SpreadQuestion:
       val (place, seed) = (in.getInt, in.getLong)
       require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, came $place")
       SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
-        case Left(missing)  => ArraySeq.from(missing.reason.take(MostReason).getBytes(UTF_8)).prepended(Missing)
+        case Left(missing) =>
+          ArraySeq.from(missing.reason.take(MostReason).getBytes(UTF_8)).prepended(Missing)
         case Right(summary) =>
           val bytes = SummaryBytes.write(summary)
           if bytes.length > MostBytes then ArraySeq(TooLarge) else bytes.prepended(Flown)
 
-    private def landed(plan: FlightPlan, answer: ArraySeq[Byte]): Either[String, Either[NotFlown, FlightSummary]] =
+    private def landed(
+        plan: FlightPlan,
+        answer: ArraySeq[Byte]
+    ): Either[String, Either[NotFlown, FlightSummary]] =
       answer.headOption match
         case Some(Flown)    => SummaryBytes.read(answer.tail, Some(settings.scenario)).map(Right(_))
         case Some(Missing)  => Right(Left(NotFlown(plan, String(answer.tail.toArray, UTF_8))))

@@ -9,15 +9,17 @@ import scala.util.Random
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 
-/** A search by five workers whose coordinator is killed twice, and of whom one is killed every 5 s; each time it goes on
-  * with `--resume`. Then its files are held to those of one process:
-  * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 20 DIR"`. Ends with an error where they differ, or where a
+/** A search by five workers whose coordinator is killed twice, and of whom one is killed now and then; each time it goes
+  * on with `--resume`. Then its files are held to those of one process:
+  * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 20 5 DIR"`. Ends with an error where they differ, or where a
   * block counts twice.
   *
   * @param candidates
   *   so many that the search lasts for all kills
+  * @param everyS
+  *   a worker is killed; on a busy machine workers take long to start
   */
-@main def killCoordinator(candidates: Int, runs: Int, out: String): Unit =
+@main def killCoordinator(candidates: Int, runs: Int, everyS: Int, out: String): Unit =
   val question =
     s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
       .split(' ')
@@ -25,7 +27,8 @@ import skein.cluster.WorkerProcesses
   val elsewhere = "--workers 5 --threads 5 --block 1024".split(' ').toSeq
   val alone     = Path.of(out).resolve("alone")
   val said      = ByteArrayOutputStream()
-  val status    = Console.withOut(said)(Console.withErr(said)(Main.run(question ++ Seq("--out", alone.toString))))
+  val status    =
+    Console.withOut(said)(Console.withErr(said)(Main.run(question ++ Seq("--out", alone.toString))))
   require(status == 0, said.toString(UTF_8))
 
   for run <- 1 to runs do
@@ -38,7 +41,7 @@ import skein.cluster.WorkerProcesses
 
     /** From its start until it ends, or until the ledger has so many blocks more, when it is killed. */
     def life(number: Int, until: Option[Int]): Unit =
-      val words   = if number == 0 then question ++ Seq("--out", folder.toString)
+      val words = if number == 0 then question ++ Seq("--out", folder.toString)
       else Seq("search", "--resume", folder.toString)
       val log         = Path.of(out).resolve(s"run-$run-$number.log")
       val before      = blocks
@@ -47,11 +50,11 @@ import skein.cluster.WorkerProcesses
         .redirectOutput(log.toFile)
         .start()
       def children = coordinator.children().toList.asScala.filter(_.isAlive).toVector
-      var next     = System.nanoTime() + 5_000_000_000L
+      var next     = System.nanoTime() + everyS * 1_000_000_000L
       while coordinator.isAlive && until.forall(more => blocks < before + more) do
         coordinator.waitFor(50, TimeUnit.MILLISECONDS): Unit
         if System.nanoTime() > next then
-          next += 5_000_000_000L
+          next = System.nanoTime() + everyS * 1_000_000_000L
           val alive = children
           if alive.nonEmpty then
             alive(random.nextInt(alive.size)).destroyForcibly(): Unit

@@ -42,7 +42,8 @@ class LocaleSuite extends munit.FunSuite:
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
       val said   = ByteArrayOutputStream()
-      val status = Console.withErr(PrintStream(said))(SpreadCommand("skein.cli.Main").run(Seq("--moves-in-flight", "x")))
+      val status =
+        Console.withErr(PrintStream(said))(SpreadCommand("skein.cli.Main").run(Seq("--moves-in-flight", "x")))
       assertEquals(status, 2)
       assert(clue(said.toString).contains("--moves-in-flight: expected a whole number"))
     finally Locale.setDefault(before)

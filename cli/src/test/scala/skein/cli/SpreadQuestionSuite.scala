@@ -88,12 +88,14 @@ class SpreadQuestionSuite extends munit.FunSuite:
       Left("predictive-vpn, seed 2: no rotor turned")
     )
 
-  test("a worker whose flights are others refuses, and so does the command where workers could not ask the policy"):
+  test(
+    "a worker whose flights are others refuses, and so does the command where workers could not ask the policy"
+  ):
     val other = String(question(duels).bytes.toArray, UTF_8).replace("vpn", "direct")
     val told  = SpreadQuestion.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
     assert(clue(told).left.exists(_.startsWith("short flights are others here")))
-    val asked  = options("--policy unix:pursuer:/nowhere")
-    val config = asked.configuration.fold(fail(_), identity)
+    val asked   = options("--policy unix:pursuer:/nowhere")
+    val config  = asked.configuration.fold(fail(_), identity)
     val outside =
       SpreadQuestion.of(config, ready(duels).settings)
     assert(clue(outside).left.exists(_.startsWith("--policy unix:pursuer:/nowhere")))

@@ -152,12 +152,13 @@ private[cluster] final class CoordinatorBehavior private (
   private def lost(worker: String): Unit =
     addresses -= worker
     // Who goes when all is done was told to.
-    if !isDone then state.workers.get(worker).filter(_.isHere).foreach: record =>
-      died += 1
-      state = state.lost(worker)
-      hungry -= worker
-      tell(News.Lost(worker, record.holds.size))
-      feed()
+    if !isDone then
+      state.workers.get(worker).filter(_.isHere).foreach: record =>
+        died += 1
+        state = state.lost(worker)
+        hungry -= worker
+        tell(News.Lost(worker, record.holds.size))
+        feed()
 
   private def compute(asked: Compute): Unit =
     import asked.*

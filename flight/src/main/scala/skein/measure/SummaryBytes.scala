@@ -151,10 +151,10 @@ object SummaryBytes:
 
   private final class Reader(in: DataInputStream):
     def summary(scenario: Option[Scenario]): FlightSummary =
-      val flown  = flight()
-      val tracks = each(track())
-      val roles  = each(role())
-      val trips  = option(distribution())
+      val flown                              = flight()
+      val tracks                             = each(track())
+      val roles                              = each(role())
+      val trips                              = option(distribution())
       val Seq(readings, decisions, commands) = Seq.fill(3)(in.readInt())
       val events                             = each(EventKind.valueOf(text()) -> in.readInt()).toMap
       FlightSummary.put(
@@ -216,10 +216,10 @@ object SummaryBytes:
     private def seeing(scenario: Option[Scenario]): Option[SeeingSummary] =
       val eye    = in.readInt()
       val sights = each:
-        val at                                              = Instant.ofNanos(in.readLong())
-        val Seq(camera, believed, truth)                    = Seq.fill(3)(vector())
-        val Seq(turned, trueTurned)                         = Seq.fill(2)(quaternion())
-        val Seq(since, azimuth, elevation, range, took)     = Seq.fill(5)(in.readDouble())
+        val at                                          = Instant.ofNanos(in.readLong())
+        val Seq(camera, believed, truth)                = Seq.fill(3)(vector())
+        val Seq(turned, trueTurned)                     = Seq.fill(2)(quaternion())
+        val Seq(since, azimuth, elevation, range, took) = Seq.fill(5)(in.readDouble())
         Sight(
           at,
           since,
