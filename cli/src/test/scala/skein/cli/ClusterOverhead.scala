@@ -1,6 +1,9 @@
 package skein.cli
 
+import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.jdk.OptionConverters.*
 import skein.blocks.Ledger
 import skein.optimise.Evaluator
 import skein.policy.Role
@@ -43,17 +46,26 @@ import skein.signal.SplitMix64
       ready.space.axes.map(axis => axis.least + random.nextDouble() * (axis.most - axis.least)).toVector
     )
 
-  def seconds(by: Evaluator, of: Vector[Vector[Double]]) =
-    val begun   = System.nanoTime()
-    val tallies = by.tallies(of, episodes)
-    (tallies, (System.nanoTime() - begun) * 1e-9)
+  /** Of the processor's time, this process and its workers took so much. */
+  def cpuS =
+    val workers = ProcessHandle.current().children().toList.asScala
+    val theirs  = workers.flatMap(_.info().totalCpuDuration().toScala).map(_.toNanos).sum
+    val own     = ManagementFactory.getOperatingSystemMXBean
+      .asInstanceOf[com.sun.management.OperatingSystemMXBean]
+      .getProcessCpuTime
+    (own + theirs) * 1e-9
+
+  def timed(by: Evaluator, of: Vector[Vector[Double]]) =
+    val (begun, cpuFrom) = (System.nanoTime(), cpuS)
+    val tallies          = by.tallies(of, episodes)
+    (tallies = tallies, s = (System.nanoTime() - begun) * 1e-9, cpuS = cpuS - cpuFrom)
 
   val one   = ready.judges(1)(Judge.Candidates)
   val two   = ready.judges(2)(Judge.Candidates)
   val group = 2048
-  for _ <- 1 to 3 do seconds(two, candidates(group)): Unit
+  for _ <- 1 to 3 do timed(two, candidates(group)): Unit
   // The best of a few: whoever else is at work makes it less.
-  val rate  = Vector.fill(5)(group * episodes.size / seconds(one, candidates(group))._2).max
+  val rate  = Vector.fill(5)(group * episodes.size / timed(one, candidates(group)).s).max
   val block = (rate * blockMs * 1e-3).round.toInt.max(episodes.size)
   // Forty blocks of each worker, so that the last ones weigh little.
   val count  = (80.0 * block / episodes.size).round.toInt
@@ -67,22 +79,21 @@ import skein.signal.SplitMix64
   val options = ClusterOptions.Checked(workers = 2, ClusterOptions.Loopback, Some(block), None, None)
   val done    = ClusterRun.using(options, "skein.cli.Main", posed, folder, threads = 2, Shown(false)): run =>
     val elsewhere = ClusterEvaluator(run, Judge.Candidates, block, _ => ())
-    for _ <- 1 to 2 do seconds(elsewhere, candidates(count)): Unit
-    val ratios =
-      for pair <- 1 to pairs yield
-        val asked           = candidates(count)
-        val order           = if pair % 2 == 0 then Seq(two, elsewhere) else Seq(elsewhere, two)
-        val taken           = order.map(by => by -> seconds(by, asked)).toMap
-        val (here, hereS)   = taken(two)
-        val (there, others) = taken(elsewhere)
-        require(here == there, s"pair $pair: other bits")
-        println(
-          f"pair $pair: here $hereS%.2f s, two workers $others%.2f s: ${hereS / others}%.3f of the rate"
-        )
-        hereS / others
-    val sorted = ratios.sorted
-    println(
-      f"two workers fly ${sorted(sorted.size / 2)}%.3f of this process's rate (median of $pairs, ${sorted.head}%.3f to ${sorted.last}%.3f)"
-    )
+    for _ <- 1 to 2 do timed(elsewhere, candidates(count)): Unit
+    val ratios = Vector.range(1, pairs + 1).map: pair =>
+      val asked = candidates(count)
+      val order = if pair % 2 == 0 then Seq(two, elsewhere) else Seq(elsewhere, two)
+      val taken = order.map(by => by -> timed(by, asked)).toMap
+      val here  = taken(two)
+      val there = taken(elsewhere)
+      require(here.tallies == there.tallies, s"pair $pair: other bits")
+      println(
+        f"pair $pair: here ${here.s}%.2f s (${here.cpuS}%.2f s of the processor), two workers ${there.s}%.2f s (${there.cpuS}%.2f s): ${here.s / there.s}%.3f of the rate"
+      )
+      (rate = here.s / there.s, cpu = here.cpuS / there.cpuS)
+    def told(of: Seq[Double]) =
+      f"${of.sorted.apply(of.size / 2)}%.3f (median of ${of.size}, ${of.min}%.3f to ${of.max}%.3f)"
+    println(s"two workers fly ${told(ratios.map(_.rate))} of this process's rate")
+    println(s"and for the same processor's time ${told(ratios.map(_.cpu))} as much")
     Right(())
   done.left.foreach(reason => throw IllegalStateException(reason))
