@@ -312,8 +312,8 @@ object LearnCommand:
       distances: (PolicyFile, Int) => Either[String, Vector[Double]]
   )
 
-  /** In this process. */
-  private[cli] def flown(question: LearnQuestion, policy: PolicyFile, count: Int)(using
+  /** Means of the last 10 s, m, of flights in virtual time with a policy against the paper's, flown by this process. */
+  private[skein] def flown(question: LearnQuestion, policy: PolicyFile, count: Int)(using
       Scenarios
   ): Either[String, Vector[Double]] =
     for
