@@ -56,11 +56,10 @@ object LearnedUnderDelay:
       (loop, link)   <- flown
       (name, policy) <- policies
     yield
-      val file  = Files.writeString(folder.resolve("flown.conf"), policy.hocon(""))
-      val tally = LearnCommand
-        .flown(question(side, loop, link), file.toString, if loop == "paused" then 1 else flights)
+      val distances = LearnCommand
+        .flown(question(side, loop, link), policy, if loop == "paused" then 1 else flights)
         .fold(sys.error, identity)
-      Row(name, loop, link, tally)
+      Row(name, loop, link, RunningStats.of(distances.size)(distances))
 
   private def question(side: String, loop: String, link: String): LearnQuestion =
     LearnCommand

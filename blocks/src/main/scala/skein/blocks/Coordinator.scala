@@ -21,7 +21,7 @@ import scala.collection.immutable.TreeSet
   *   after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
-    waiting: Vector[Block],
+    waiting: Waiting,
     leases: Map[Long, Coordinator.Lease],
     seldom: TreeSet[(Long, Long)],
     workers: Map[String, WorkerRecord],
@@ -50,7 +50,7 @@ final case class Coordinator private (
         cores = cores - record.cores
       )
 
-  def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting ++ blocks)
+  def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.followedBy(blocks))
 
   /** A worker asks for a block. It holds one for each of its cores and, while there are more than enough, as many that
     * wait for their turn at the worker.
@@ -101,16 +101,16 @@ final case class Coordinator private (
         )
         (next, Answer.First(lease.block))
       case None =>
-        waiting.indexWhere(_.number == number) match
+        waiting.again.get(number) match
           // Its lease was given up, and it came all the same.
-          case place if place >= 0 =>
+          case Some(block) =>
             val next = copy(
-              waiting = waiting.patch(place, Nil, 1),
+              waiting = waiting.without(number),
               workers = workers.updated(worker, tallied(known, 1)),
               counts = counts.copy(accepted = counts.accepted + 1)
             )
-            (next, Answer.First(waiting(place)))
-          case _ =>
+            (next, Answer.First(block))
+          case None =>
             val next = copy(
               workers = workers.updated(worker, tallied(known, 0)),
               counts = counts.copy(repeated = counts.repeated + 1)
@@ -128,7 +128,7 @@ final case class Coordinator private (
       val number = lease.block.number
       lease.holders.keys.foldLeft(
         here.copy(
-          waiting = here.waiting.prepended(lease.block),
+          waiting = here.waiting.returned(lease.block),
           leases = here.leases - number,
           seldom = here.seldom - lease.place,
           counts = here.counts.copy(overdue = here.counts.overdue + 1)
@@ -137,16 +137,16 @@ final case class Coordinator private (
 
   /** Gives up all that is asked; answers that still come are repeats. */
   def cancelled: Coordinator = copy(
-    waiting = Vector.empty,
+    waiting = Waiting(),
     leases = Map.empty,
     seldom = TreeSet.empty,
     workers = workers.view.mapValues(_.copy(holds = Map.empty)).toMap
   )
 
   private def handedOut(worker: String, nowNanos: Long): (Coordinator, Option[Block]) =
-    waiting.headOption match
-      case Some(block) =>
-        (copy(waiting = waiting.tail).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
+    waiting.next match
+      case Some((block, others)) =>
+        (copy(waiting = others).leased(Lease(block, Map.empty), worker, nowNanos), Some(block))
       case None =>
         // The last blocks go out twice: whoever is quicker counts.
         val slow = seldom.iterator
@@ -180,7 +180,7 @@ final case class Coordinator private (
         val left = lease.copy(holders = lease.holders - worker)
         if left.holders.isEmpty then
           here.copy(
-            waiting = here.waiting.prepended(lease.block),
+            waiting = here.waiting.returned(lease.block),
             leases = here.leases - number,
             seldom = here.seldom - lease.place,
             counts = here.counts.copy(lost = here.counts.lost + 1)
@@ -200,7 +200,7 @@ object Coordinator:
 
   def apply(patienceNanos: Long = Patience, slowNanos: Long = 0): Coordinator =
     Coordinator(
-      Vector.empty,
+      Waiting(),
       Map.empty,
       TreeSet.empty,
       Map.empty,

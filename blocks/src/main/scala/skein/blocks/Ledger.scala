@@ -23,10 +23,14 @@ import scala.util.Using
 final class Ledger private (
     channel: FileChannel,
     index: mutable.HashMap[BlockKey, (Long, Int)],
+    private var end: Long,
     val cutOff: Long
 ) extends AutoCloseable:
 
   def size: Int = index.size
+
+  /** Of the file. */
+  def bytes: Long = end
 
   def answer(key: BlockKey): Option[ArraySeq[Byte]] =
     index.get(key).map: (at, length) =>
@@ -40,10 +44,11 @@ final class Ledger private (
   def accept(key: BlockKey, answer: ArraySeq[Byte]): Boolean =
     !index.contains(key) && {
       val record = Ledger.record(key, answer)
-      val at     = channel.size
+      // Of a record that could not be written whole nothing is left before the next.
       while record.hasRemaining do
-        val _ = channel.write(record, at + record.position())
-      index.update(key, (at + Ledger.Head + BlockKey.Bytes, answer.length))
+        val _ = channel.write(record, end + record.position())
+      index.update(key, (end + Ledger.Head + BlockKey.Bytes, answer.length))
+      end += record.position()
       true
     }
 
@@ -80,7 +85,7 @@ object Ledger:
         val _       = channel.truncate(0)
         val heading = ByteBuffer.wrap(Magic ++ question.toArray)
         while heading.hasRemaining do { val _ = channel.write(heading) }
-        Right(Ledger(channel, mutable.HashMap.empty, size))
+        Right(Ledger(channel, mutable.HashMap.empty, First, size))
       else
         val heading = read(channel, 0, First)
         if !heading.take(Magic.length).sameElements(Magic) then
@@ -93,7 +98,7 @@ object Ledger:
           val index = mutable.HashMap.empty[BlockKey, (Long, Int)]
           val end   = scan(channel)((key, at, length) => { val _ = index.getOrElseUpdate(key, (at, length)) })
           val _     = channel.truncate(end)
-          Right(Ledger(channel, index, size - end))
+          Right(Ledger(channel, index, end, size - end))
     catch case failed: IOException => Left(s"cannot open the ledger $file: $failed")
 
   /** What a ledger holds, read from the file alone.

@@ -1,5 +1,7 @@
 package skein.blocks
 
+import java.nio.file.{Files, Path}
+
 class CoordinatorSuite extends munit.FunSuite:
   import CoordinatorSimulation.bytes
 
@@ -53,7 +55,10 @@ class CoordinatorSuite extends munit.FunSuite:
     for state <- Seq(one, both) do
       assertEquals(state.at(100).counts.overdue, 0L)
       val late = state.at(101)
-      assertEquals((late.counts.overdue, late.waiting.map(_.number), late.leases.size), (1L, Seq(0L), 0))
+      assertEquals(
+        (late.counts.overdue, late.waiting.iterator.map(_.number).toSeq, late.leases.size),
+        (1L, Seq(0L), 0)
+      )
       val (done, answer) = late.answered("anna", 0, 1)
       assertEquals(answer, Answer.First(blocks(1).head))
       assert(done.isIdle)
@@ -64,19 +69,43 @@ class CoordinatorSuite extends munit.FunSuite:
     assert(cancelled.isIdle)
     assertEquals(cancelled.answered("anna", 0, 1)._2, Answer.Repeated)
 
-  for (deaths, partitions, name) <-
+  private val folder = FunFixture[Path](
+    _ => Files.createTempDirectory("coordinator"),
+    folder =>
+      Files.deleteIfExists(folder.resolve(Ledger.Name))
+      Files.delete(folder)
+  )
+
+  /** Flown to the end, with what its ledger holds. */
+  private def assertRight(flown: CoordinatorSimulation, blocks: Int, clue: String): Unit =
+    assert(flown.isDone, s"$clue: not done")
+    assertEquals(flown.acceptedTwice, 0, clue)
+    assertEquals(flown.result, CoordinatorSimulation.alone(blocks), clue)
+    flown.close()
+    assertEquals(Ledger.audit(flown.file), Ledger.Audit(blocks, repeats = 0, broken = 0), clue)
+
+  for (deaths, cuts, name) <-
       Seq(
         (0.0, 0.0, "all live"),
         (360.0, 0.0, "one in ten dies each second"),
         (60.0, 120.0, "some die, others are cut off")
       )
   do
-    test(s"every block counts once, whatever messages do: $name"):
+    folder.test(s"every block counts once, and the answer is one process's to the bit: $name"): folder =>
+      var restarts = 0
       for seed <- 1L to 170L do
-        val flown = CoordinatorSimulation(seed, workers = 5, blocks = 60)
-        flown.fly(deaths, partitions, restarts = if seed % 2 == 0 then Seq(10, 25) else Nil)
-        assert(flown.isDone, s"seed $seed: not done")
-        assertEquals(flown.acceptedTwice, 0, s"seed $seed")
-        for number <- 0 until 60 do
-          val work = bytes(s"block $number")
-          assertEquals(flown.ledger(BlockKey.of(work)), CoordinatorSimulation.answer(work), s"seed $seed")
+        val flown = CoordinatorSimulation(seed, workers = 5, blocks = 60, folder)
+        flown.fly(deaths, cuts, restarts = if seed % 2 == 0 then Seq(10, 25) else Nil)()
+        restarts += flown.restarts
+        assertRight(flown, 60, s"seed $seed")
+        Files.delete(flown.file)
+      assert(clue(restarts) > 150)
+
+  folder.test("a thousand workers of heavy-tailed speeds, of whom some die and many are cut off at once"):
+    folder =>
+      val flown = CoordinatorSimulation(1, workers = 1000, blocks = 20_000, folder)
+      flown.fly(deathsAnHour = 5, cutsAnHour = 5, restarts = Seq(60), splits = Seq(30, 90))()
+      assertRight(flown, 20_000, "a thousand")
+      assert(clue(flown.deaths) > 100 && clue(flown.cuts) > 400)
+      // No message costs more with more workers and blocks.
+      assert(clue(flown.messages) < 25 * 20_000)

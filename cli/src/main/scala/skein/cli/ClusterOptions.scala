@@ -16,7 +16,11 @@ final case class ClusterOptions(
     @arg(doc = "episodes, or flights, of the blocks that workers compute, about (default: half a second's)")
     block: Option[Int],
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
-    tls: Option[String]
+    tls: Option[String],
+    @arg(doc =
+      "port, or HOST:PORT, at which Prometheus reads how it goes, of this machine alone unless HOST says otherwise; 0 for any that is free"
+    )
+    metrics: Option[String]
 ):
   import ClusterOptions.*
 
@@ -24,9 +28,9 @@ final case class ClusterOptions(
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(
-        block.isEmpty && tls.isEmpty,
+        block.isEmpty && tls.isEmpty && metrics.isEmpty,
         None,
-        "--block, --tls: expected with --workers or --cluster"
+        "--block, --tls, --metrics: expected with --workers or --cluster"
       )
     else
       for
@@ -42,17 +46,29 @@ final case class ClusterOptions(
         )
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
-      yield Some(Checked(workers.getOrElse(0), listen, block, tls))
+        seen   <- metrics.fold(Right(None))(portOrEndpoint(_).map(Some(_)))
+      yield Some(Checked(workers.getOrElse(0), listen, block, tls, seen))
 
 object ClusterOptions:
   given ParserForClass[ClusterOptions] = ParserForClass[ClusterOptions]
 
-  final case class Checked(workers: Int, listen: Endpoint, block: Option[Int], tls: Option[Tls])
+  final case class Checked(
+      workers: Int,
+      listen: Endpoint,
+      block: Option[Int],
+      tls: Option[Tls],
+      metrics: Option[Endpoint]
+  )
 
   private val MostWorkers = 256
 
   /** Any port of this machine alone. */
   val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
+
+  private def portOrEndpoint(text: String): Either[String, Endpoint] =
+    endpoint("--metrics", if text.contains(':') then text else s"${Loopback.host}:$text")
+      .left
+      .map(_ => s"--metrics: expected a port, 0 to 65535, or HOST:PORT, came '$text'")
 
   def endpoint(option: String, text: String): Either[String, Endpoint] =
     Arguments.address(text).map(address => Endpoint(address.host, address.port)).left.map(s"$option: " + _)

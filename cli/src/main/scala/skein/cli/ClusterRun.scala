@@ -20,8 +20,10 @@ private[cli] final class ClusterRun private (
     threads: Int,
     shown: Shown
 ) extends Elsewhere:
-  private val startedAt = System.nanoTime()
-  private val failure   = AtomicReference(Option.empty[String])
+  private val failure = AtomicReference(Option.empty[String])
+
+  /** When the first answers were seen, and how many: before, workers start. */
+  private var begun = Option.empty[(atNanos: Long, accepted: Long)]
 
   private val processes = WorkerProcesses(
     options.workers,
@@ -52,7 +54,9 @@ private[cli] final class ClusterRun private (
   private def run[A](body: ClusterRun => Either[String, A]): Either[String, A] =
     shown.say(s"workers join by ./skein worker --join ${node.address}")
     try
-      val done = body(this)
+      val done = options.metrics match
+        case None       => body(this)
+        case Some(seen) => MetricsServer.serving(seen, () => node.metrics, Console.err.println(_))(body(this))
       shown.say(account)
       done
     catch case failed: ElsewhereFailed => Left(failed.getMessage)
@@ -82,27 +86,39 @@ private[cli] final class ClusterRun private (
 
   /** How it goes, in a line. */
   def status: String =
-    val now     = node.progress
-    val seconds = (System.nanoTime() - startedAt) * 1e-9
-    val rate    = now.coordinator.counts.accepted / seconds / now.here.max(1)
-    f"${now.done} of ${now.of} blocks; ${now.here} workers, $rate%.2f blocks/s each; ${now.coordinator.workers.size} joined, ${now.died} lost"
+    val now      = node.progress
+    val nanos    = System.nanoTime()
+    val accepted = now.coordinator.counts.accepted
+    if begun.isEmpty && accepted > 0 then begun = Some((nanos, accepted))
+    val rate = begun
+      .filter(first => accepted > first.accepted)
+      .fold("")(first =>
+        f", ${(accepted - first.accepted) * 1e9 / (nanos - first.atNanos) / now.here.max(1)}%.2f blocks/s each"
+      )
+    val here = now.here match
+      case 0 => "no worker is here"
+      case 1 => "1 worker"
+      case n => s"$n workers"
+    s"${now.done} of ${now.of} blocks; $here${if now.here == 0 then "" else rate}; ${now.coordinator.workers.size} joined, ${now.died} lost"
 
   /** Who did how much. */
   private def account: String =
-    val now    = node.progress
-    val counts = now.coordinator.counts
-    val rows   = now.coordinator.workers.toVector.sortBy((name, record) => (-record.accepted, name)).map:
+    val now       = node.progress
+    val counts    = now.coordinator.counts
+    val isOneGone = now.coordinator.workers.values.exists(!_.isHere)
+    val rows      = now.coordinator.workers.toVector.sortBy((name, record) => (-record.accepted, name)).map:
       (name, record) =>
         Vector(
           name,
           record.cores.toString,
           record.accepted.toString,
+          f"${100.0 * record.accepted / counts.accepted.max(1)}%.0f %%",
           record.repeated.toString,
           f"${record.busyNanos * 1e-9}%.1f"
-        )
+        ) ++ Option.when(isOneGone)(if record.isHere then "" else "gone")
     s"""${counts.accepted} blocks counted, ${now.resumed} more were in the ledger; ${counts.repeated} answers came twice, ${counts.lost} blocks were lost with their workers and given out again
        |${TextTable(
-        Vector("<worker", "cores", "counted", "repeated", "busy, s"),
+        Vector("<worker", "cores", "counted", "share", "repeated", "busy, s") ++ Option.when(isOneGone)("<"),
         rows.take(ClusterRun.MostRows)
       ).render}${
         if rows.size > ClusterRun.MostRows then s"\nand ${rows.size - ClusterRun.MostRows} more" else ""

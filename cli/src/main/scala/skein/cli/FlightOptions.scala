@@ -83,17 +83,20 @@ final case class FlightOptions(
 
   /** Flags before file before defaults. */
   def settings(using Scenarios): Either[String, FlySettings] =
-    for
-      file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      told = FlightOptions.hovering(flags.withFallback(file))
-      merged   <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))
-      own      <- ofScenario(merged)
-      settings <- FlySettings.read(own.withFallback(merged))
-    yield
+    configuration.flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
         val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
         (slow ++ OpponentModel.missing(settings.fleet)).foreach(Console.err.println)
       settings
+
+  /** The same before it is read: `skein.fly` with all that counts. */
+  def configuration(using Scenarios): Either[String, Config] =
+    for
+      file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
+      told = FlightOptions.hovering(flags.withFallback(file))
+      merged <- FlightOptions.resolved(told.withFallback(ConfigFactory.load()))
+      own    <- ofScenario(merged)
+    yield own.withFallback(merged).withOnlyPath("skein.fly")
 
   private def chosenLoops: Seq[String] =
     if loop.nonEmpty then loop

@@ -3,12 +3,12 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
-import skein.lanes.DuelBatch
 import skein.learn.LearnerSettings
-import skein.optimise.RunningStats
+import skein.optimise.{Evaluator, RunningStats}
 import skein.policy.NeuralShape
 import skein.report.Section
 import skein.scenario.Scenarios
+import skein.search.{ClusterEvaluator, Effort, Judge}
 import skein.settings.PolicyFile
 import skein.training.*
 import skein.units.Span
@@ -53,6 +53,7 @@ final case class LearnOptions(
     fresh: Option[Int],
     @arg(doc = "in virtual time, flown with the policy at the end under the same loop and link (default: 20)")
     flights: Option[Int],
+    cluster: ClusterOptions,
     @arg(doc = "folder for state, policy and learning curve; without it, learned/DATE-TIME")
     out: Option[String],
     @arg(doc = "a folder whose learning was stopped: goes on with it, and ends as if it had not been stopped")
@@ -62,12 +63,17 @@ final case class LearnOptions(
     json: Flag
 )
 
-final class LearnCommand(using Scenarios)
+/** @param program
+  *   the class whose `main` starts the commands
+  */
+final class LearnCommand(program: String)(using Scenarios)
     extends OptionsCommand[LearnOptions](
       "learn",
       "teaches a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
       ParserForClass[LearnOptions]
     ):
+
+  import LearnCommand.Measuring
 
   protected def execute(options: LearnOptions): Either[String, Unit] =
     val flights = options.flights.getOrElse(20)
@@ -78,7 +84,8 @@ final class LearnCommand(using Scenarios)
         (),
         s"--flights: expected 0 to 10000, came $flights"
       )
-      begun <- options.resume.fold(begin(options))(resume(options, _))
+      cluster <- options.cluster.checked
+      begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       setup <- question.setup
       shows  = Shows()
@@ -86,8 +93,10 @@ final class LearnCommand(using Scenarios)
       _      = shows.add(task)
       onShow = LearnOnShow(task, setup)
       _ <- OutFolder.alone(folder):
+        val shown = Shown(options.json.value)
         options.view.serving(shows):
-          run(setup, folder, state, threads, flights, Shown(options.json.value), onShow)
+          measuring(setup, cluster, folder, threads, shown): measure =>
+            run(setup, folder, state, threads, flights, measure, shown, onShow)
     yield ()
 
   private type Begun = (Path, LearnQuestion, LearnState)
@@ -118,7 +127,7 @@ final class LearnCommand(using Scenarios)
       _ <- Either.cond(
         others.forall(_.isEmpty) && forward.isEmpty,
         (),
-        "--resume: everything but --threads and --flights is taken from the folder; expected no other option"
+        "--resume: everything but --threads, --flights and who measures is taken from the folder; expected no other option"
       )
       file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
     yield (Path.of(folder), file.question, file.state)
@@ -142,6 +151,7 @@ final class LearnCommand(using Scenarios)
       from: LearnState,
       threads: Int,
       flights: Int,
+      measure: Measuring,
       shown: Shown,
       onShow: LearnOnShow
   ): Either[String, Unit] =
@@ -171,7 +181,7 @@ final class LearnCommand(using Scenarios)
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else
           val isDone = state.rounds == setup.rounds
-          conclude(setup, batch, folder, state, if isDone then flights else 0, shown)
+          conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
             .map(_ => if !isDone then shown.say(goOn))
 
   private def progress(setup: LearnSetup, state: LearnState): String =
@@ -182,16 +192,16 @@ final class LearnCommand(using Scenarios)
   /** Measures the best policy and writes it and the curve. */
   private def conclude(
       setup: LearnSetup,
-      batch: DuelBatch,
+      measure: Measuring,
       folder: Path,
       state: LearnState,
       flights: Int,
       shown: Shown
   ): Either[String, Unit] =
-    val result = LearnResult.measured(setup, batch, state, setup.question.fresh)
+    val result = LearnResult.measured(setup, measure.judge, state, setup.question.fresh)
     for
       file  <- OutFolder.write(folder, Seq(OutFolder.text("policy.conf", result.file)))
-      flown <- if flights == 0 then Right(None) else virtual(setup, file.head, flights, shown)
+      flown <- if flights == 0 then Right(None) else virtual(setup, measure, result.policy, flights, shown)
       all = result.copy(flights = flown)
       _   = shown.tables(Seq(all.section), Section.text(Seq(all.section)))
       pictures <- OutFolder.write(
@@ -204,7 +214,8 @@ final class LearnCommand(using Scenarios)
   /** Flies the policy in virtual time, against the paper's policy of the other side. */
   private def virtual(
       setup: LearnSetup,
-      policy: Path,
+      measure: Measuring,
+      policy: PolicyFile,
       flights: Int,
       shown: Shown
   ): Either[String, Option[RunningStats]] =
@@ -213,7 +224,30 @@ final class LearnCommand(using Scenarios)
         "no flights: they are flown against the paper's policy, and this one was not taught against it"
       )
       Right(None)
-    else LearnCommand.flown(setup.question, policy.toString, flights).map(Some(_))
+    else measure.distances(policy, flights).map(distances => Some(RunningStats.of(distances.size)(distances)))
+
+  /** Who measures what was learned: this process, or workers, with the same bits. */
+  private def measuring(
+      setup: LearnSetup,
+      options: Option[ClusterOptions.Checked],
+      folder: Path,
+      threads: Int,
+      shown: Shown
+  )(body: Measuring => Either[String, Unit]): Either[String, Unit] = options match
+    case None => body(Measuring(LearnWork.judges(setup, threads), LearnCommand.flown(setup.question, _, _)))
+    case Some(asked) =>
+      val posed = Questions.learn(LearnWork.question(setup))
+      ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
+        val line               = ProgressLine(100, Console.err)
+        def wait(): Unit       = line.show((100 * run.share).toLong, run.status)
+        def judge(from: Judge) = ClusterEvaluator(
+          LearnWork.episodes(run),
+          from,
+          asked.block.getOrElse(Effort.blockEpisodes(byLanes = true, setup.conditions.vehicle)),
+          _ => wait()
+        )
+        try body(Measuring(judge, LearnWork.distances(run, _, _)(wait()).map(_.flatten)))
+        finally line.end()
 
 object LearnCommand:
 
@@ -270,26 +304,21 @@ object LearnCommand:
         Right((least, most))
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
-  /** Mean distances of the last 10 s of flights in virtual time with a policy, against the paper's policy.
-    *
-    * @param policy
-    *   its file
+  /** @param distances
+    *   means of the last 10 s, m, of so many flights in virtual time with a policy, against the paper's
     */
-  private[skein] def flown(question: LearnQuestion, policy: String, flights: Int)(using
+  private final case class Measuring(
+      judge: Judge => Evaluator,
+      distances: (PolicyFile, Int) => Either[String, Vector[Double]]
+  )
+
+  /** Means of the last 10 s, m, of flights in virtual time with a policy against the paper's, flown by this process. */
+  private[skein] def flown(question: LearnQuestion, policy: PolicyFile, count: Int)(using
       Scenarios
-  ): Either[String, RunningStats] =
-    val conditions = question.conditions
-    val options    = ParserForClass[FlightOptions].constructOrThrow(
-      Seq("--scenario", "duel", "--loop", conditions.loop, "--link", question.link, "--policy", policy) ++
-        Seq("--duration", s"${conditions.durationS}s", "--period", s"${conditions.periodMs}ms") ++
-        Seq("--altitude", conditions.altitudeM.toString, "--seed", question.seed.toString)
-    )
+  ): Either[String, Vector[Double]] =
     for
-      settings <- options.settings
-      plans =
-        for plan <- settings.plans.filter(_.policy.isDefined); number <- 0 until flights
-        yield plan.copy(seed = settings.seed + number)
+      flights <- LearnWork.flights(question, policy, count)
+      (settings, plans) = flights
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
-      distances = landed.flatMap(_.distance).flatMap(_.lastTenSeconds).map(_.mean)
-    yield RunningStats.of(distances.size)(distances)
+    yield landed.flatMap(LearnWork.distanceOf)

@@ -38,7 +38,7 @@ private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long 
 
   private def left(now: Long, done: Long): String =
     // The first part runs while the just-in-time compiler still works and tells nothing.
-    if done - from < total / 200 then ""
+    if done - from < (total / 200).max(1) then ""
     else
       val seconds = (now - startedAt) * 1e-9 * (total - done).max(0) / (done - from)
       if seconds < 100 then f"$seconds%.0f s left"

@@ -12,12 +12,18 @@ private[cli] object Questions:
   private val Search  = "search"
   private val Torture = "torture"
   private val Budget  = "budget"
+  private val Spread  = "spread"
+  private val Learn   = "learn"
 
   def search(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Search, question)
 
   def budget(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Budget, question)
 
   def torture(question: TortureQuestion): ArraySeq[Byte] = of(Torture, question.bytes)
+
+  def spread(question: SpreadQuestion): ArraySeq[Byte] = of(Spread, question.bytes)
+
+  def learn(question: ArraySeq[Byte]): ArraySeq[Byte] = of(Learn, question)
 
   private def of(kind: String, question: ArraySeq[Byte]) =
     ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
@@ -29,5 +35,9 @@ private[cli] object Questions:
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSwept.solvers.of(question.drop(1))
       case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
+      case Spread  => SpreadQuestion.solvers.of(question.drop(1))
+      case Learn   => LearnWork.solvers.of(question.drop(1))
       case other   =>
-        Left(s"expected a question of $Search, $Budget or $Torture, came one of '${other.take(40)}'")
+        Left(
+          s"expected a question of $Search, $Budget, $Torture, $Spread or $Learn, came one of '${other.take(40)}'"
+        )

@@ -33,9 +33,9 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private[skein] final val commands: Seq[Command] = Seq(
     FlyCommand(),
     DecideCommand(),
-    SpreadCommand(),
+    SpreadCommand(program),
     SearchCommand(program),
-    LearnCommand(),
+    LearnCommand(program),
     PolicyCommand(),
     WorkerCommand(),
     ClusterCommand,

@@ -1,22 +1,31 @@
 package skein.cli
 
+import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
+import skein.measure.FlightSummary
 import skein.report.{Report, ReportSections, Section}
 import skein.scenario.Scenarios
+import skein.settings.FlySettings
 
 /** Options of `./skein spread`. */
 final case class SpreadOptions(
     flights: FlightOptions,
     @arg(doc = "how many times each flight is flown, each time with another seed")
     seeds: Int = 100,
-    @arg(doc = "folder for spread.html and its pictures; without it, only the tables are shown")
+    cluster: ClusterOptions,
+    @arg(doc =
+      "folder for spread.html and its pictures, and for what workers computed: the same command with the same folder goes on where it was stopped; without it, only the tables are shown (with workers: spread/DATE-TIME)"
+    )
     out: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
 
-final class SpreadCommand(using Scenarios)
+/** @param program
+  *   the class whose `main` starts the commands
+  */
+final class SpreadCommand(program: String)(using Scenarios)
     extends OptionsCommand[SpreadOptions](
       "spread",
       "flies each loop over each link many times in virtual time, and shows mean and spread",
@@ -34,13 +43,23 @@ final class SpreadCommand(using Scenarios)
         (),
         "--images: expected with fly alone; spread keeps no recordings"
       )
-      _   <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
-      out <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
-      plans =
-        for plan <- settings.plans; number <- 0 until options.seeds
-        yield plan.copy(seed = settings.seed + number)
-      (missing, flown) = SpreadFlights.fly(settings, plans).partitionMap(identity)
-      shown            = Shown(options.json.value)
+      _       <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
+      cluster <- options.cluster.checked
+      _       <- Either.cond(
+        cluster.flatMap(_.block).forall(_ == 1),
+        (),
+        s"--block: expected 1, since each flight is a block of its own, came ${options.cluster.block.getOrElse(0)}"
+      )
+      out <- options.out
+        .orElse(cluster.map(_ => OutFolder.dated("spread")))
+        .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      ready = SpreadQuestion.Ready(settings)
+      plans = ready.flights(options.seeds)
+      shown = Shown(options.json.value)
+      landed <- cluster.zip(out) match
+        case None                  => Right(SpreadFlights.fly(settings, plans))
+        case Some((asked, folder)) => elsewhere(options, settings, ready, asked, folder, shown)
+      (missing, flown) = landed.partitionMap(identity)
       sections         = ReportSections.spread(flown)
       _                = shown.tables(sections, Section.text(sections))
       _ <- out.fold(Right(()))(folder =>
@@ -50,3 +69,34 @@ final class SpreadCommand(using Scenarios)
       )
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
     yield ()
+
+  private def elsewhere(
+      options: SpreadOptions,
+      settings: FlySettings,
+      ready: SpreadQuestion.Ready,
+      asked: ClusterOptions.Checked,
+      folder: Path,
+      shown: Shown
+  ): Either[String, Vector[Either[NotFlown, FlightSummary]]] =
+    val flights = ready.flights(options.seeds).size
+    val landed  = SpreadFlights.Landed(flights, tell = _ => ())
+    for
+      config   <- options.flights.configuration
+      question <- SpreadQuestion.of(config, settings)
+      flown    <- OutFolder.alone(folder):
+        ClusterRun.using(
+          asked,
+          program,
+          Questions.spread(question),
+          folder,
+          Runtime.getRuntime.availableProcessors,
+          shown
+        ): run =>
+          val line = ProgressLine(flights, Console.err)
+          landed.tellingIfCut:
+            val all = ready.elsewhere(run, options.seeds, shown.say)(landed.one)(
+              line.show((flights * run.share).toLong, run.status)
+            )
+            line.end()
+            all
+    yield flown

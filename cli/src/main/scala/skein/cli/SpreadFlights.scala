@@ -14,14 +14,31 @@ private[cli] object SpreadFlights:
   def fly(settings: FlySettings, plans: Vector[FlightPlan])(using
       Scenarios
   ): Vector[Either[NotFlown, FlightSummary]] =
-    val landed     = AtomicInteger()
-    def progress() = s"${landed.get} of ${plans.size} flights have landed"
-    Edge.tellingIfCut(progress()):
-      VirtualFlights
-        .inParallel(settings, plans): flight =>
-          val summary = flight.landed.outcome match
-            case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
-            case _                      => Right(FlightSummary.of(flight.recorder.recording))
-          if landed.incrementAndGet() % (plans.size / 20).max(1) == 0 then Console.err.println(progress())
-          summary
-        .map(_.flatten)
+    val landed = Landed(plans.size)
+    landed.tellingIfCut(summaries(settings, plans)(landed.one))
+
+  /** One of them, on a thread of its own. Blocks. */
+  def one(settings: FlySettings, plan: FlightPlan)(using Scenarios): Either[NotFlown, FlightSummary] =
+    summaries(settings, Vector(plan))(()).head
+
+  private def summaries(settings: FlySettings, plans: Vector[FlightPlan])(onLanded: => Unit)(using
+      Scenarios
+  ): Vector[Either[NotFlown, FlightSummary]] =
+    VirtualFlights
+      .inParallel(settings, plans): flight =>
+        val summary = flight.landed.outcome match
+          case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
+          case _                      => Right(FlightSummary.of(flight.recorder.recording))
+        onLanded
+        summary
+      .map(_.flatten)
+
+  /** How many have landed, told now and then. */
+  final class Landed(of: Int, tell: String => Unit = Console.err.println(_)):
+    private val landed     = AtomicInteger()
+    private def progress() = s"${landed.get} of $of flights have landed"
+
+    def one: Unit =
+      if landed.incrementAndGet() % (of / 20).max(1) == 0 then tell(progress())
+
+    def tellingIfCut[A](body: => A): A = Edge.tellingIfCut(progress())(body)

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 import java.time.LocalTime
-import java.time.temporal.ChronoUnit
+import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
 import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
@@ -66,4 +66,7 @@ final class WorkerCommand(using Scenarios)
     yield ()
 
   private def say(line: String): Unit =
-    Console.out.println(s"${LocalTime.now().truncatedTo(ChronoUnit.SECONDS)} $line")
+    Console.out.println(s"${LocalTime.now().format(WorkerCommand.Time)} $line")
+
+private object WorkerCommand:
+  private val Time = DateTimeFormatter.ofPattern("HH:mm:ss")

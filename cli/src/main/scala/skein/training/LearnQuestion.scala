@@ -4,7 +4,7 @@ import skein.environment.EnvironmentSettings
 import skein.forward.Delays
 import skein.lanes.DuelBatch
 import skein.learn.{Algorithm, DuelTask, LearnerSettings}
-import skein.optimise.{DuelEvaluator, Evaluator, Objective, WeightedSum}
+import skein.optimise.{DuelEvaluator, Objective, ValueEvaluator, WeightedSum}
 import skein.policy.{LearnedPolicy, PolicyFamily, Role}
 import skein.search.Conditions
 import skein.scenario.Scenarios
@@ -131,7 +131,7 @@ final case class LearnSetup(
 
   def batch(threads: Int): DuelBatch = conditions.batch(threads)
 
-  def evaluator(batch: DuelBatch, of: PolicyFamily = family): Evaluator = DuelEvaluator(
+  def evaluator(batch: DuelBatch, of: PolicyFamily = family): ValueEvaluator = DuelEvaluator(
     batch,
     conditions.duel.durationS,
     of,

@@ -1,10 +1,9 @@
 package skein.training
 
-import skein.lanes.DuelBatch
-import skein.optimise.RunningStats
+import skein.optimise.{Evaluator, RunningStats}
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
-import skein.search.SearchResult
+import skein.search.{Judge, SearchResult}
 import skein.settings.PolicyFile
 
 /** What was learned, measured on episodes that learning never met.
@@ -84,17 +83,19 @@ final case class LearnResult(
   )
 
 object LearnResult:
-  /** @param state
+  /** @param by
+    *   judges what was learned, and the paper's policy as the baseline
+    * @param state
     *   with a best policy
     */
-  def measured(setup: LearnSetup, batch: DuelBatch, state: LearnState, episodes: Int): LearnResult =
+  def measured(setup: LearnSetup, by: Judge => Evaluator, state: LearnState, episodes: Int): LearnResult =
     val policy = setup.policy(state.best.get.weights)
     val range  = SearchResult.FreshFrom until SearchResult.FreshFrom + episodes
     LearnResult(
       setup,
       state,
       policy,
-      setup.evaluator(batch).tallies(Vector(policy.parameters), range).head,
-      setup.evaluator(batch, setup.paper.family).tallies(Vector(setup.paper.parameters), range).head,
+      by(Judge.Winner).tallies(Vector(policy.parameters), range).head,
+      by(Judge.Baseline).tallies(Vector(setup.paper.parameters), range).head,
       None
     )

@@ -22,9 +22,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     val file     = Files.writeString(path.resolve("file"), "").toString
     val commands = Seq(
       FlyCommand(),
-      SpreadCommand(),
+      SpreadCommand("skein.cli.Main"),
       SearchCommand("skein.cli.Main"),
-      LearnCommand(),
+      LearnCommand("skein.cli.Main"),
       BudgetCommand("skein.cli.Main"),
       LatencyCommand
     )
@@ -123,7 +123,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
           virtual ++ Seq("--solver", "link:vpn", "--loop", "plan"),
           "came with paused and plan alone"
         ),
-        (SpreadCommand(), Seq("--solver", "tcp://127.0.0.1:7400"), "in virtual time expected link:PROFILE"),
+        (
+          SpreadCommand("skein.cli.Main"),
+          Seq("--solver", "tcp://127.0.0.1:7400"),
+          "in virtual time expected link:PROFILE"
+        ),
         (DecideCommand(), Seq("--at", "tcp://10.0.0.1:7400"), "expected an address of this machine"),
         (DecideCommand(), Seq("--at", "link:vpn"), "expected tcp://HOST:PORT"),
         (DecideCommand(), Seq("--broker"), "--broker: expected with --at kafka://"),

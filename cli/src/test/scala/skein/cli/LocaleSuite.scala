@@ -40,7 +40,7 @@ class LocaleSuite extends munit.FunSuite:
     val before = Locale.getDefault
     Locale.setDefault(Locale.forLanguageTag("tr-TR"))
     try
-      val ran = Ran.of(SpreadCommand().run(Seq("--moves-in-flight", "x")))
+      val ran = Ran.of(SpreadCommand("skein.cli.Main").run(Seq("--moves-in-flight", "x")))
       assertEquals(ran.status, 2)
       assert(clue(ran.err).contains("--moves-in-flight: expected a whole number"))
     finally Locale.setDefault(before)

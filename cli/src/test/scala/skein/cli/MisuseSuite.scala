@@ -25,7 +25,11 @@ class MisuseSuite extends munit.FunSuite:
           "--tolerance: expected a number, came 'much'"
         ),
         (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
-        (SpreadCommand(), Seq("--model=drag"), "--model: no such option any more; it is --predictor now"),
+        (
+          SpreadCommand("skein.cli.Main"),
+          Seq("--model=drag"),
+          "--model: no such option any more; it is --predictor now"
+        ),
         (
           BudgetCommand("skein.cli.Main"),
           Seq("--model", "drag"),

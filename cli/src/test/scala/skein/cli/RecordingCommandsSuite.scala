@@ -118,7 +118,8 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
   recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
     val broken =
       Files.writeString(folder.resolve("broken.conf"), "skein.model { use = drag, drag { gain.value = 1 } }")
-    val (status, _, err) = run(SpreadCommand(), "--seeds", "1", "--predictor", broken.toString)
+    val (status, _, err) =
+      run(SpreadCommand("skein.cli.Main"), "--seeds", "1", "--predictor", broken.toString)
     assertEquals(status, 1)
     assert(err.contains("lag-s"), err)
     val (unfit, _, reason) = run(IdentifyCommand, folder.resolve("paused-none.duckdb").toString)

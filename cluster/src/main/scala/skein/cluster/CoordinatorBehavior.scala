@@ -44,6 +44,7 @@ private[cluster] final class CoordinatorBehavior private (
   private var died    = 0
   private var unsaved = false
   private var isDone  = false
+  private var traffic = Traffic()
 
   /** Where each worker is to be answered, also one that has the question alone. */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
@@ -55,6 +56,9 @@ private[cluster] final class CoordinatorBehavior private (
   private var refused = Set.empty[String]
 
   def onMessage(command: Command): Behavior[Command] =
+    command match
+      case heard: ToCoordinator => traffic = traffic.hearing(heard)
+      case _                    => ()
     command match
       case ask: ToCoordinator.Ask                                    => asked(ask)
       case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
@@ -79,7 +83,7 @@ private[cluster] final class CoordinatorBehavior private (
       case Farewell =>
         // Stays until the node ends: there are some who ask only now.
         isDone = true
-        addresses.values.foreach(_ ! ToWorker.Goodbye)
+        addresses.values.foreach(say(_, ToWorker.Goodbye))
         save()
         ended(Right(None))
     publish()
@@ -88,16 +92,20 @@ private[cluster] final class CoordinatorBehavior private (
   private def asked(ask: ToCoordinator.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
-      ask.replyTo ! ToWorker.Refused(reason)
+      say(ask.replyTo, ToWorker.Refused(reason))
       refuse(ask.worker, reason)
-    else if isDone then ask.replyTo ! ToWorker.Goodbye
+    else if isDone then say(ask.replyTo, ToWorker.Goodbye)
     else
       addresses += ask.worker -> ask.replyTo
-      if ask.run != job.run then ask.replyTo ! ToWorker.Welcome(job.run, job.question)
+      if ask.run != job.run then say(ask.replyTo, ToWorker.Welcome(job.run, job.question))
       else
         if !state.workers.get(ask.worker).exists(_.isHere) then tell(News.Joined(ask.worker, ask.cores))
         state = state.joined(ask.worker, ask.cores)
         serve(ask.worker, ask.holding)
+
+  private def say(to: ActorRef[ToWorker], message: ToWorker): Unit =
+    traffic = traffic.saying(message)
+    to ! message
 
   private def refuse(worker: String, reason: String): Unit =
     if !refused(worker) && refused.size < MostRefused then
@@ -109,7 +117,7 @@ private[cluster] final class CoordinatorBehavior private (
     state = after
     block match
       case Some(one) =>
-        addresses(worker) ! ToWorker.Give(job.run, one.number, one.work)
+        say(addresses(worker), ToWorker.Give(job.run, one.number, one.work))
         serve(worker, holding + one.number)
       case None =>
         val record = state.workers(worker)
@@ -145,12 +153,14 @@ private[cluster] final class CoordinatorBehavior private (
 
   private def lost(worker: String): Unit =
     addresses -= worker
-    state.workers.get(worker).filter(_.isHere).foreach: record =>
-      died += 1
-      state = state.lost(worker)
-      hungry -= worker
-      tell(News.Lost(worker, record.holds.size))
-      feed()
+    // Who goes when all is done was told to.
+    if !isDone then
+      state.workers.get(worker).filter(_.isHere).foreach: record =>
+        died += 1
+        state = state.lost(worker)
+        hungry -= worker
+        tell(News.Lost(worker, record.holds.size))
+        feed()
 
   private def compute(asked: Compute): Unit =
     import asked.*
@@ -182,7 +192,15 @@ private[cluster] final class CoordinatorBehavior private (
     call = None
 
   private def publish(): Unit =
-    onProgress(Progress(state, call.fold(0)(_.answers.size), call.fold(0)(_.asked), resumed, died))
+    onProgress(Progress(
+      state,
+      call.fold(0)(_.answers.size),
+      call.fold(0)(_.asked),
+      resumed,
+      died,
+      traffic,
+      ledger.bytes
+    ))
 
 private[cluster] object CoordinatorBehavior:
   /** All answers in the order of the works, none if it was cancelled, or why there are none. */

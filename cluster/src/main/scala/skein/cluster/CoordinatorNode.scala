@@ -17,7 +17,7 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future, Promise}
 import scala.util.control.NonFatal
-import skein.blocks.{Coordinator, Ledger}
+import skein.blocks.Ledger
 
 /** The process that hands out blocks and keeps their answers. */
 final class CoordinatorNode private (
@@ -31,6 +31,9 @@ final class CoordinatorNode private (
     Endpoint(own.host.get, own.port.get)
 
   def progress: Progress = latest.get
+
+  /** How it goes, for Prometheus. */
+  def metrics: String = Metrics.text(progress, Cluster(system.toTyped).state.members.size)
 
   /** Has works computed by whoever is there, or joins; those whose answers the ledger has are not computed again. One
     * call at a time.
@@ -68,6 +71,9 @@ final class CoordinatorNode private (
 object CoordinatorNode:
   private[cluster] val Name = "coordinator"
 
+  /** Of [[CoordinatorNode.metrics]], in HTTP's words. */
+  val MetricsType: String = Metrics.ContentType
+
   /** @param listen
     *   port 0 for any that is free
     * @param ledger
@@ -95,7 +101,7 @@ object CoordinatorNode:
         try Right(ActorSystem(NodeConfig.System, config))
         catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
     yield
-      val latest  = AtomicReference(Progress(Coordinator(), 0, 0, 0, 0))
+      val latest  = AtomicReference(Progress())
       val job     = Job(SecureRandom().nextLong() | 1, build, question)
       val manager = Cluster(system.toTyped).manager
       val actor   =

@@ -98,8 +98,9 @@ private[cluster] final class WorkerBehavior private (
 
   private def summary = String.format(
     Locale.ROOT,
-    "%d blocks computed in %.1f s of its cores",
+    "%d %s computed in %.1f s of its cores",
     blocks: java.lang.Long,
+    if blocks == 1 then "block" else "blocks",
     busy * 1e-9: java.lang.Double
   )
 

@@ -108,14 +108,10 @@ object FlightSummary:
   def of(recording: Recording)(using Scenarios): FlightSummary =
     val tracks   = RecordedTracks.of(recording)
     val scenario = RecordedScenario.of(recording).toOption
-    FlightSummary(
+    put(
       recording.flight,
       tracks,
-      for
-        pursuer <- tracks.find(_.isA(Role.Pursuer)) if scenario.forall(isOfDuels)
-        evader  <- tracks.find(_.isA(Role.Evader))
-        curve   <- DistanceCurve.between(pursuer, evader)
-      yield curve,
+      scenario,
       roles(recording),
       roundTripsMs(recording),
       recording.readings.size,
@@ -123,11 +119,6 @@ object FlightSummary:
       recording.commands.size,
       recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
       cutShort(recording, tracks),
-      scenario,
-      for
-        known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
-        flown <- Tracks.of(tracks)
-      yield Result.of(known, flown),
       recording.heading.parameters.find(_.name == "policy").map(_.value),
       PlanningSummary.of(recording),
       PredictionErrors.of(recording, scenario.forall(isOfDuels)),
@@ -146,6 +137,54 @@ object FlightSummary:
         decision <- decided.get((command.vehicle, sequence))
         age      <- decision.trueAge
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
+
+  /** With what follows from the rest: the distance, and the scenario's result. */
+  private[measure] def put(
+      flight: Flight,
+      tracks: Vector[Track],
+      scenario: Option[Scenario],
+      roles: Vector[RoleSummary],
+      roundTripsMs: Option[Distribution],
+      readings: Int,
+      decisions: Int,
+      commands: Int,
+      events: Map[EventKind, Int],
+      cutShort: Option[String],
+      policy: Option[String],
+      planning: Option[PlanningSummary],
+      predictions: Option[(own: PredictionErrors, others: PredictionErrors)],
+      paused: Option[Span],
+      seeing: Vector[SeeingSummary],
+      solver: Option[SolverSummary],
+      commandAgesMs: Option[Distribution]
+  ): FlightSummary = FlightSummary(
+    flight,
+    tracks,
+    for
+      pursuer <- tracks.find(_.isA(Role.Pursuer)) if scenario.forall(isOfDuels)
+      evader  <- tracks.find(_.isA(Role.Evader))
+      curve   <- DistanceCurve.between(pursuer, evader)
+    yield curve,
+    roles,
+    roundTripsMs,
+    readings,
+    decisions,
+    commands,
+    events,
+    cutShort,
+    scenario,
+    for
+      known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
+      flown <- Tracks.of(tracks)
+    yield Result.of(known, flown),
+    policy,
+    planning,
+    predictions,
+    paused,
+    seeing,
+    solver,
+    commandAgesMs
+  )
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
 

@@ -1,0 +1,136 @@
+package skein.cli
+
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.{BufferUnderflowException, ByteBuffer}
+import scala.collection.immutable.ArraySeq
+import skein.cluster.{Solver, Solvers}
+import skein.optimise.{RunningStats, ValueEvaluator}
+import skein.scenario.Scenarios
+import skein.search.*
+import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
+import skein.training.{LearnQuestion, LearnSetup}
+import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+
+/** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in virtual time. */
+private[cli] object LearnWork:
+  import SearchFile.given
+
+  /** @param probe
+    *   what the paper's policy came to at the coordinator
+    */
+  private final case class Posed(question: LearnQuestion, probe: Vector[RunningStats]) derives ReadWriter
+
+  private val Probes = 0 until 4
+
+  private def probe(setup: LearnSetup) =
+    judges(setup, threads = 1)(Judge.Baseline).tallies(Vector(setup.paper.parameters), Probes)
+
+  /** In this process: what was learned, and the paper's policy as the baseline. */
+  def judges(setup: LearnSetup, threads: Int): Judge => ValueEvaluator =
+    val batch    = setup.batch(threads)
+    val baseline = setup.evaluator(batch, setup.paper.family)
+    val learned  = setup.evaluator(batch)
+    judge => if judge == Judge.Baseline then baseline else learned
+
+  def question(setup: LearnSetup): ArraySeq[Byte] =
+    ArraySeq.unsafeWrapArray(writeJson(Posed(setup.question, probe(setup))).getBytes(UTF_8))
+
+  def solvers(using Scenarios): Solvers = asked =>
+    for
+      posed <-
+        try Right(readJson[Posed](String(asked.toArray, UTF_8)))
+        catch case mistake: Exception => Left(s"expected learning's question, came: ${mistake.getMessage}")
+      setup <- posed.question.setup
+      came = probe(setup)
+      _ <- Either.cond(
+        came == posed.probe,
+        (),
+        s"the paper's policy comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
+          "has a file that --link or --plant names another content here?"
+      )
+    yield () =>
+      val by = judges(setup, threads = 1)
+      work => answer(setup, by, work)
+
+  private def answer(setup: LearnSetup, by: Judge => ValueEvaluator, work: ArraySeq[Byte])(using
+      Scenarios
+  ): ArraySeq[Byte] =
+    def refuse(wrong: String) = throw IllegalArgumentException(wrong)
+    work.headOption match
+      case Some(Episodes) => SearchBlock.read(work.drop(1)).fold(refuse, _.answer(by))
+      case Some(Flight)   => flightAnswer(setup, work.drop(1)).fold(refuse, identity)
+      case other          => refuse(s"expected a block of learning, came one of the kind $other")
+
+  /** Blocks of episodes, among others. */
+  def episodes(run: Elsewhere): Elsewhere = new Elsewhere:
+    def cancel(): Unit                                                           = run.cancel()
+    def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
+      run.compute(works.map(_.prepended(Episodes)), onAnswer)
+
+  /** Flights with a policy against the paper's, as the commands fly it.
+    *
+    * @return
+    *   settings, and a plan for each flight; or why there are none
+    */
+  def flights(question: LearnQuestion, policy: PolicyFile, count: Int)(using
+      Scenarios
+  ): Either[String, (FlySettings, Vector[FlightPlan])] =
+    val conditions = question.conditions
+    val options    = mainargs.ParserForClass[FlightOptions].constructOrThrow(
+      Seq("--scenario", "duel", "--loop", conditions.loop, "--link", question.link) ++
+        Seq("--duration", s"${conditions.durationS}s", "--period", s"${conditions.periodMs}ms") ++
+        Seq("--altitude", conditions.altitudeM.toString, "--seed", question.seed.toString)
+    )
+    options.settings.map: settings =>
+      val plans =
+        for plan <- settings.plansWith(ChosenPolicy(policy.name, policy)); number <- 0 until count
+        yield plan.copy(seed = settings.seed + number)
+      (settings, plans)
+
+  /** The same flights' mean distances of the last 10 s, flown elsewhere; none where there is none. */
+  def distances(run: Elsewhere, policy: PolicyFile, count: Int)(
+      onWait: => Unit
+  ): Either[String, Vector[Option[Double]]] =
+    val numbers = policy.parameters
+    val blocks  = Vector.tabulate(count): number =>
+      val out = ByteBuffer.allocate(1 + 8 + 8 * numbers.size).put(Flight).putLong(number)
+      numbers.foreach(out.putDouble)
+      ArraySeq.unsafeWrapArray(out.array)
+    run
+      .computed(blocks)(onWait)
+      .flatMap(_.toRight("no worker is left"))
+      .flatMap(UntilWrong.each(_)(distance))
+
+  private def flightAnswer(setup: LearnSetup, work: ArraySeq[Byte])(using
+      Scenarios
+  ): Either[String, ArraySeq[Byte]] =
+    val in = ByteBuffer.wrap(work.toArray)
+    try
+      val number  = in.getLong.toInt
+      val weights = Vector.fill(in.remaining / 8)(in.getDouble)
+      for (settings, plans) <-
+          flights(setup.question, PolicyFile(setup.role, setup.family, weights), number + 1)
+      yield SpreadFlights.one(settings, plans(number)) match
+        case Left(missing) =>
+          ArraySeq.from(missing.message.take(MostReason).getBytes(UTF_8)).prepended(NotFlown)
+        case Right(flown) =>
+          val out = ByteBuffer.allocate(9).put(Flown)
+          distanceOf(flown).foreach(out.putDouble)
+          ArraySeq.unsafeWrapArray(out.array.take(out.position()))
+    catch case _: BufferUnderflowException => Left(s"a flight's block is cut off after ${work.length} bytes")
+
+  def distanceOf(flown: skein.measure.FlightSummary): Option[Double] =
+    flown.distance.flatMap(_.lastTenSeconds).map(_.mean)
+
+  private def distance(answer: ArraySeq[Byte]): Either[String, Option[Double]] =
+    answer.headOption match
+      case Some(Flown) if answer.length == 9 => Right(Some(ByteBuffer.wrap(answer.toArray).getDouble(1)))
+      case Some(Flown) if answer.length == 1 => Right(None)
+      case Some(NotFlown)                    => Left(String(answer.tail.toArray, UTF_8))
+      case other => Left(s"expected a flight's distance, came ${answer.length} bytes of the kind $other")
+
+  private val Episodes: Byte = 0
+  private val Flight: Byte   = 1
+  private val Flown: Byte    = 0
+  private val NotFlown: Byte = 1
+  private val MostReason     = 16 << 10

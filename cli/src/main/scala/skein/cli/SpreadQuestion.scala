@@ -1,0 +1,135 @@
+package skein.cli
+
+import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigRenderOptions}
+import java.nio.ByteBuffer
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import scala.jdk.CollectionConverters.*
+import skein.cluster.{Solver, Solvers}
+import skein.flight.{NotFlown, VirtualFlights}
+import skein.measure.{FlightSummary, SummaryBytes}
+import skein.scenario.Scenarios
+import skein.search.{Elsewhere, UntilWrong}
+import skein.settings.{FlightPlan, FlySettings}
+import skein.units.Span
+import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+
+/** What is flown many times, as workers get it. A block is one flight: a plan's place among those of the settings, and a
+  * seed.
+  *
+  * @param settings
+  *   `skein.fly`, as JSON
+  * @param probe
+  *   digests of short flights: who flies them otherwise must not take part
+  */
+private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives ReadWriter:
+  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+
+private[cli] object SpreadQuestion:
+
+  /** @param config
+    *   `skein.fly`, from which the settings were read
+    * @return
+    *   or why others cannot fly it
+    */
+  def of(config: Config, settings: FlySettings): Either[String, SpreadQuestion] =
+    val outside = config.getStringList("skein.fly.policies").asScala.find(_.startsWith("unix:"))
+    outside match
+      case Some(policy) =>
+        Left(s"--policy $policy: a process of this machine, whom workers cannot ask; expected a policy file")
+      case None =>
+        probe(settings).map(SpreadQuestion(config.root.render(ConfigRenderOptions.concise), _))
+
+  /** What is read from a file may be another elsewhere. A recording begins with policies, models and scenes; links tell
+    * on vehicles alone.
+    */
+  private def probe(settings: FlySettings): Either[String, Vector[String]] =
+    val plans = settings.plans
+    val each  = (plans.distinctBy(_.link) ++ plans.distinctBy(_.policy)).distinct
+    val short = settings.copy(duration = settings.duration.min(ProbeDuration))
+    val flown = VirtualFlights.inParallel(short, each)(_.recorder.digest.toString)
+    UntilWrong.each(flown)(_.left.map(_.message))
+
+  private val ProbeDuration = Span.ofSeconds(1)
+
+  /** Flies what was asked of scenarios that are known here. */
+  def solvers(using Scenarios): Solvers = asked =>
+    for
+      question <-
+        try Right(readJson[SpreadQuestion](String(asked.toArray, UTF_8)))
+        catch case mistake: Exception => Left(s"expected spread's question, came: ${mistake.getMessage}")
+      config <-
+        try Right(ConfigFactory.parseString(question.settings))
+        catch case mistake: ConfigException => Left(mistake.getMessage)
+      settings <- FlySettings.read(config)
+      came     <- probe(settings)
+      _        <- Either.cond(
+        came == question.probe,
+        (),
+        "short flights are others here than at the coordinator; has a file that --link, --policy, --predictor or --scene names another content here?"
+      )
+    yield () => (Ready(settings).answer(_)): Solver
+
+  /** Flies, or has flown. */
+  final case class Ready(settings: FlySettings)(using Scenarios):
+    private val plans = settings.plans
+
+    /** Every plan with so many seeds, in the plans' order. */
+    def flights(seeds: Int): Vector[FlightPlan] =
+      for plan <- plans; number <- Vector.range(0, seeds) yield plan.copy(seed = settings.seed + number)
+
+    /** Has them flown elsewhere. What does not fit into a message is flown here, and told.
+      *
+      * @param onLanded
+      *   told of each, in any order
+      */
+    def elsewhere(by: Elsewhere, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
+        onWait: => Unit
+    ): Either[String, Vector[Either[NotFlown, FlightSummary]]] =
+      val flown = flights(seeds)
+      by.computed(blocks(seeds), onAnswer = _ => onLanded)(onWait)
+        .flatMap(_.toRight("no worker is left"))
+        .flatMap: answers =>
+          val large = answers.count(_.headOption.contains(TooLarge))
+          if large > 0 then
+            tell(s"$large of ${flown.size} flights are too large for a message and are flown here again")
+          UntilWrong.each(flown.zip(answers))(landed(_, _))
+
+    private def blocks(seeds: Int): Vector[ArraySeq[Byte]] =
+      for place <- plans.indices.toVector; number <- Vector.range(0, seeds)
+      yield ArraySeq.unsafeWrapArray(
+        ByteBuffer.allocate(BlockBytes).putInt(place).putLong(settings.seed + number).array
+      )
+
+    /** A byte for the kind; then a summary, or why there is none. */
+    def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
+      require(block.length == BlockBytes, s"expected a block of $BlockBytes bytes, came ${block.length}")
+      val in            = ByteBuffer.wrap(block.toArray)
+      val (place, seed) = (in.getInt, in.getLong)
+      require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, came $place")
+      SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
+        case Left(missing) =>
+          ArraySeq.from(missing.reason.take(MostReason).getBytes(UTF_8)).prepended(Missing)
+        case Right(summary) =>
+          val bytes = SummaryBytes.write(summary)
+          if bytes.length > MostBytes then ArraySeq(TooLarge) else bytes.prepended(Flown)
+
+    private def landed(
+        plan: FlightPlan,
+        answer: ArraySeq[Byte]
+    ): Either[String, Either[NotFlown, FlightSummary]] =
+      answer.headOption match
+        case Some(Flown)    => SummaryBytes.read(answer.tail, Some(settings.scenario)).map(Right(_))
+        case Some(Missing)  => Right(Left(NotFlown(plan, String(answer.tail.toArray, UTF_8))))
+        case Some(TooLarge) => Right(SpreadFlights.one(settings, plan))
+        case other          => Left(s"expected a flight's answer, came one of the kind $other")
+
+  private val BlockBytes = 12
+  private val MostReason = 16 << 10
+
+  /** Of an answer: what fits into a message. */
+  private val MostBytes = 600 << 10
+
+  private val Flown: Byte    = 0
+  private val Missing: Byte  = 1
+  private val TooLarge: Byte = 2

@@ -1,0 +1,53 @@
+package skein.cli
+
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.Future
+import scala.concurrent.duration.*
+import skein.scenario.Scenarios
+import skein.search.{ClusterEvaluator, Elsewhere, Judge}
+import skein.settings.PolicyFile
+
+class LearnWorkSuite extends munit.FunSuite:
+  override def munitTimeout: Duration = 2.minutes
+
+  private given Scenarios = Scenarios.ours
+
+  private val question = LearnCommand
+    .question(
+      mainargs
+        .ParserForClass[LearnOptions]
+        .constructOrThrow("--network 4 --fresh 40 --duration 12s --seed 3".split(' ').toSeq)
+    )
+    .fold(fail(_), identity)
+  private val setup  = question.setup.fold(fail(_), identity)
+  private val policy = PolicyFile(
+    setup.role,
+    setup.family,
+    Vector.tabulate(setup.family.space.dimension)(number => math.sin(number.toDouble))
+  )
+
+  /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
+  private lazy val worker: Elsewhere =
+    val solver = Questions.solvers.of(Questions.learn(LearnWork.question(setup))).fold(fail(_), identity)()
+    new Elsewhere:
+      def cancel(): Unit                                                           = ()
+      def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
+        Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))
+
+  test("episodes measured elsewhere come to what they come to here, to the bit"):
+    for judge <- Seq(Judge.Winner, Judge.Baseline) do
+      val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
+      val candidates = Vector(if judge == Judge.Baseline then setup.paper.parameters else policy.parameters)
+      val here       = LearnWork.judges(setup, threads = 2)(judge).tallies(candidates, 0 until 40)
+      assertEquals(elsewhere.tallies(candidates, 0 until 40), here)
+
+  test("so do flights in virtual time"):
+    val here = LearnCommand.flown(question, policy, 2).fold(fail(_), identity)
+    assertEquals(LearnWork.distances(worker, policy, 2)(()).map(_.flatten), Right(here))
+    assertEquals(here.size, 2)
+
+  test("a worker to whom the question comes to something else refuses"):
+    val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
+    val told  = LearnWork.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
+    assert(clue(told).left.exists(_.startsWith("the paper's policy comes to")))
