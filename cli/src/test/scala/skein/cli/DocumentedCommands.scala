@@ -153,7 +153,10 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
   test("README and guides show commands"):
     assert(documented.sizeIs > 10, documented.mkString("\n"))
 
-  for command <- documented if DocumentedCommands.kindOf(command) == kind do
+  for
+    command <- documented
+    if DocumentedCommands.kindOf(command) == kind && !DocumentedCommands.runElsewhere.contains(command)
+  do
     test(s"./skein $command"):
       val settings = Files.writeString(
         folder.resolve("settings.json"),
@@ -227,6 +230,12 @@ object DocumentedCommands:
     val isLive = Seq("--clock", "--view", "--record", "--simulator", "unix:").exists(command.contains)
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
+
+  /** Commands that suites of their own run, with options that make them short. */
+  private val runElsewhere: Map[String, Class[?]] = Map(
+    "search --family lead-pursuit --workers 2" -> classOf[ClusterCommandsLiveSuite],
+    "torture --workers 2"                      -> classOf[TortureElsewhereLiveSuite]
+  )
 
   def kindOf(command: String): Kind =
     val words = command.split(' ').toSeq

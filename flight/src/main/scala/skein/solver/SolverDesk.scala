@@ -62,7 +62,7 @@ final class SolverDesk(
       case Message.Ask(question)   => offered(question, reply)
       case Message.Goodbye(flight) =>
         lock.synchronized:
-          if sessions.contains(flight) then told(f"flight $flight%x has ended")
+          if sessions.contains(flight) then told(s"flight ${flight.toHexString} has ended")
           sessions = sessions.removed(flight)
         None
       case _ => None
@@ -101,7 +101,7 @@ final class SolverDesk(
               case None         =>
                 admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
                 told(
-                  f"flight $flight%x: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles"
+                  s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles"
                 )
                 answer(Message.Welcome(flight, id))
           case Success(Left(reason)) => no(reason)
