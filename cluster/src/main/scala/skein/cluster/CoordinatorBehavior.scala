@@ -72,8 +72,9 @@ private[cluster] final class CoordinatorBehavior private (
         ended(Right(None))
       case Unreachable(address) =>
         down(address)
-        addresses.keys.filter(worker => addresses(worker).path.address == address).foreach(lost)
-      case Ended(worker) =>
+        lostAt(address)
+      case Removed(address) => lostAt(address)
+      case Ended(worker)    =>
         addresses.get(worker).foreach(one => down(one.path.address))
         lost(worker)
       case Tick =>
@@ -151,6 +152,9 @@ private[cluster] final class CoordinatorBehavior private (
     catch case failed: IOException => ended(Left(s"cannot write the ledger of blocks: $failed"))
     unsaved = false
 
+  private def lostAt(address: Address): Unit =
+    addresses.keys.filter(worker => addresses(worker).path.address == address).foreach(lost)
+
   private def lost(worker: String): Unit =
     addresses -= worker
     // Who goes when all is done was told to.
@@ -215,6 +219,9 @@ private[cluster] object CoordinatorBehavior:
   ) extends Local
   case object Cancel                             extends Local
   final case class Unreachable(address: Address) extends Local
+
+  /** It is out of the cluster already; another process may have its address. */
+  final case class Removed(address: Address) extends Local
 
   /** A worker's process has ended. */
   final case class Ended(worker: String) extends Local

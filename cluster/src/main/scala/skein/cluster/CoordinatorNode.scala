@@ -128,6 +128,6 @@ object CoordinatorNode:
       Behaviors.receiveMessage: event =>
         event match
           case UnreachableMember(member) => coordinator ! CoordinatorBehavior.Unreachable(member.address)
-          case MemberRemoved(member, _)  => coordinator ! CoordinatorBehavior.Unreachable(member.address)
+          case MemberRemoved(member, _)  => coordinator ! CoordinatorBehavior.Removed(member.address)
           case _                         => ()
         Behaviors.same

@@ -88,8 +88,11 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val elsewhere = Address("pekko", "behaviors", "somewhere", 2552)
     coordinator ! CoordinatorBehavior.Unreachable(elsewhere)
     assertEquals(down.poll(30, TimeUnit.SECONDS), elsewhere)
+    // Who is out already is not taken out again: somebody else may be there by now.
+    coordinator ! CoordinatorBehavior.Removed(elsewhere)
     coordinator ! CoordinatorBehavior.Farewell
     assertEquals(preparing.next(), ToWorker.Goodbye)
     assertEquals(working.next(), ToWorker.Goodbye)
     assertEquals(worker("cleo", 0).next(), ToWorker.Goodbye)
+    assert(down.isEmpty, down.toString)
     ledger.close()

@@ -13,11 +13,6 @@ import skein.units.*
   *   of the link's own samples where there are any, else of the readings
   * @param scenario
   *   absent where it is not known here
-  * @param result
-  *   absent besides where the vehicles were not all seen
-  * @param distance
-  *   between the first pursuer and the first evader, where all fly against one opponent each; absent if they were not
-  *   both seen
   * @param cutShort
   *   why it ended before its time, if it did
   * @param policy
@@ -38,7 +33,7 @@ import skein.units.*
 final case class FlightSummary(
     flight: Flight,
     tracks: Vector[Track],
-    distance: Option[DistanceCurve],
+    scenario: Option[Scenario],
     roles: Vector[RoleSummary],
     roundTripsMs: Option[Distribution],
     readings: Int,
@@ -46,16 +41,32 @@ final case class FlightSummary(
     commands: Int,
     events: Map[EventKind, Int],
     cutShort: Option[String],
-    scenario: Option[Scenario] = None,
-    result: Option[Result] = None,
-    policy: Option[String] = None,
-    planning: Option[PlanningSummary] = None,
-    predictions: Option[(own: PredictionErrors, others: PredictionErrors)] = None,
-    paused: Option[Span] = None,
-    seeing: Vector[SeeingSummary] = Vector.empty,
-    solver: Option[SolverSummary] = None,
-    commandAgesMs: Option[Distribution] = None
+    policy: Option[String],
+    planning: Option[PlanningSummary],
+    predictions: Option[(own: PredictionErrors, others: PredictionErrors)],
+    paused: Option[Span],
+    seeing: Vector[SeeingSummary],
+    solver: Option[SolverSummary],
+    commandAgesMs: Option[Distribution]
 ):
+
+  /** Between the first pursuer and the first evader, where all fly against one opponent each; absent if they were not
+    * both seen.
+    */
+  val distance: Option[DistanceCurve] =
+    for
+      pursuer <- tracks.find(_.isA(Role.Pursuer)) if scenario.forall(FlightSummary.isOfDuels)
+      evader  <- tracks.find(_.isA(Role.Evader))
+      curve   <- DistanceCurve.between(pursuer, evader)
+    yield curve
+
+  /** Absent where the scenario is not known, or the vehicles were not all seen. */
+  val result: Option[Result] =
+    for
+      known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
+      flown <- Tracks.of(tracks)
+    yield Result.of(known, flown)
+
   /** The loop, the policy where it is not the paper's, whether a solver decided, and whether the flight was cut short or
     * paused.
     */
@@ -108,7 +119,7 @@ object FlightSummary:
   def of(recording: Recording)(using Scenarios): FlightSummary =
     val tracks   = RecordedTracks.of(recording)
     val scenario = RecordedScenario.of(recording).toOption
-    put(
+    FlightSummary(
       recording.flight,
       tracks,
       scenario,
@@ -137,54 +148,6 @@ object FlightSummary:
         decision <- decided.get((command.vehicle, sequence))
         age      <- decision.trueAge
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
-
-  /** With what follows from the rest: the distance, and the scenario's result. */
-  private[measure] def put(
-      flight: Flight,
-      tracks: Vector[Track],
-      scenario: Option[Scenario],
-      roles: Vector[RoleSummary],
-      roundTripsMs: Option[Distribution],
-      readings: Int,
-      decisions: Int,
-      commands: Int,
-      events: Map[EventKind, Int],
-      cutShort: Option[String],
-      policy: Option[String],
-      planning: Option[PlanningSummary],
-      predictions: Option[(own: PredictionErrors, others: PredictionErrors)],
-      paused: Option[Span],
-      seeing: Vector[SeeingSummary],
-      solver: Option[SolverSummary],
-      commandAgesMs: Option[Distribution]
-  ): FlightSummary = FlightSummary(
-    flight,
-    tracks,
-    for
-      pursuer <- tracks.find(_.isA(Role.Pursuer)) if scenario.forall(isOfDuels)
-      evader  <- tracks.find(_.isA(Role.Evader))
-      curve   <- DistanceCurve.between(pursuer, evader)
-    yield curve,
-    roles,
-    roundTripsMs,
-    readings,
-    decisions,
-    commands,
-    events,
-    cutShort,
-    scenario,
-    for
-      known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
-      flown <- Tracks.of(tracks)
-    yield Result.of(known, flown),
-    policy,
-    planning,
-    predictions,
-    paused,
-    seeing,
-    solver,
-    commandAgesMs
-  )
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
 

@@ -1,8 +1,9 @@
 package skein.measure
 
 import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, DataOutputStream, IOException}
-import java.util.zip.{DataFormatException, Deflater, Inflater}
+import java.util.zip.{DeflaterOutputStream, InflaterInputStream}
 import scala.collection.immutable.ArraySeq
+import scala.util.Using
 import skein.record.{EventKind, Flight}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
@@ -19,8 +20,8 @@ object SummaryBytes:
 
   def write(summary: FlightSummary): ArraySeq[Byte] =
     val bytes = ByteArrayOutputStream()
-    Writer(DataOutputStream(bytes)).summary(summary)
-    ArraySeq.unsafeWrapArray(deflated(bytes.toByteArray))
+    Using.resource(DataOutputStream(DeflaterOutputStream(bytes)))(Writer(_).summary(summary))
+    ArraySeq.unsafeWrapArray(bytes.toByteArray)
 
   /** @param scenario
     *   that was flown; absent where it is not known
@@ -30,35 +31,13 @@ object SummaryBytes:
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =
     try Right(Reader(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))).summary(scenario))
     catch
-      case wrong @ (_: IOException | _: DataFormatException | _: IllegalArgumentException |
-          _: NoSuchElementException) =>
+      case wrong @ (_: IOException | _: IllegalArgumentException | _: NoSuchElementException) =>
         Left(s"expected a flight's summary, came ${bytes.length} bytes that are none: $wrong")
 
-  private def deflated(bytes: Array[Byte]): Array[Byte] =
-    val deflater = Deflater()
-    try
-      deflater.setInput(bytes)
-      deflater.finish()
-      val out  = ByteArrayOutputStream()
-      val part = new Array[Byte](1 << 16)
-      while !deflater.finished do out.write(part, 0, deflater.deflate(part))
-      out.toByteArray
-    finally deflater.end()
-
   private def inflated(bytes: Array[Byte]): Array[Byte] =
-    val inflater = Inflater()
-    try
-      inflater.setInput(bytes)
-      val out  = ByteArrayOutputStream()
-      val part = new Array[Byte](1 << 16)
-      while !inflater.finished do
-        val count = inflater.inflate(part)
-        if count == 0 && (inflater.needsInput || inflater.needsDictionary) then
-          throw IOException("they are cut off")
-        out.write(part, 0, count)
-        if out.size > MostBytes then throw IOException(s"they come to more than $MostBytes")
-      out.toByteArray
-    finally inflater.end()
+    val all = InflaterInputStream(ByteArrayInputStream(bytes)).readNBytes(MostBytes + 1)
+    if all.length > MostBytes then throw IOException(s"they come to more than $MostBytes")
+    all
 
   private final class Writer(out: DataOutputStream):
     def summary(of: FlightSummary): Unit =
@@ -165,7 +144,7 @@ object SummaryBytes:
       val trips                              = option(distribution())
       val Seq(readings, decisions, commands) = Seq.fill(3)(in.readInt())
       val events                             = each(EventKind.valueOf(text()) -> in.readInt()).toMap
-      FlightSummary.put(
+      FlightSummary(
         flown,
         tracks,
         scenario,

@@ -73,13 +73,14 @@ private[kafka] final class KafkaPipe(
         answer
       .find(answer => answer.isRight || closing.get)
     if made.exists(_.isRight) then
-      val settings = KafkaTopics.common(topics)
-      settings.put("fetch.max.wait.ms", "100")
-      settings.put("fetch.min.bytes", "1")
-      settings.put("auto.offset.reset", "latest")
-      settings.put("enable.auto.commit", "false")
-      settings.put("check.crcs", "true")
-      settings.put("default.api.timeout.ms", "2000")
+      val settings = KafkaTopics.settings(topics)(
+        "fetch.max.wait.ms"      -> "100",
+        "fetch.min.bytes"        -> "1",
+        "auto.offset.reset"      -> "latest",
+        "enable.auto.commit"     -> "false",
+        "check.crcs"             -> "true",
+        "default.api.timeout.ms" -> "2000"
+      )
       val reader = KafkaConsumer(settings, ByteArrayDeserializer(), ByteArrayDeserializer())
       consumer = Some(reader)
       try
@@ -109,17 +110,18 @@ private[kafka] final class KafkaPipe(
     if !closing.get then lost(s"${error.getMessage}")
 
   private def write(): Unit =
-    val settings = KafkaTopics.common(topics)
-    settings.put("acks", "1")
-    settings.put("linger.ms", "0")
-    settings.put("compression.type", "none")
-    settings.put("enable.idempotence", "false")
-    settings.put("max.in.flight.requests.per.connection", "1")
-    // Who is asked late answers late: an old question is not worth more than this.
-    settings.put("request.timeout.ms", "400")
-    settings.put("delivery.timeout.ms", "500")
-    settings.put("max.block.ms", "500")
-    settings.put("max.request.size", "1000000")
+    val settings = KafkaTopics.settings(topics)(
+      "acks"                                  -> "1",
+      "linger.ms"                             -> "0",
+      "compression.type"                      -> "none",
+      "enable.idempotence"                    -> "false",
+      "max.in.flight.requests.per.connection" -> "1",
+      // Who is asked late answers late: an old question is not worth more than this.
+      "request.timeout.ms"  -> "400",
+      "delivery.timeout.ms" -> "500",
+      "max.block.ms"        -> "500",
+      "max.request.size"    -> "1000000"
+    )
     var writer = Option.empty[KafkaProducer[Array[Byte], Array[Byte]]]
     try
       while !closing.get || !outgoing.isEmpty do

@@ -24,9 +24,8 @@ final case class KafkaTopics(broker: Address, prefix: String):
     *   or why the broker cannot be used
     */
   private[kafka] def made(): Either[String, Unit] =
-    val settings = KafkaTopics.common(this)
-    settings.put("default.api.timeout.ms", "5000")
-    settings.put("request.timeout.ms", "2000")
+    val settings =
+      KafkaTopics.settings(this)("default.api.timeout.ms" -> "5000", "request.timeout.ms" -> "2000")
     try
       Using.resource(Admin.create(settings)): admin =>
         for name <- Seq(questions, answers) do
@@ -42,11 +41,11 @@ final case class KafkaTopics(broker: Address, prefix: String):
 
 object KafkaTopics:
 
-  /** For every client: it comes back soon when a broker does. */
-  private[kafka] def common(topics: KafkaTopics): Properties =
+  /** Of a client: it comes back soon when a broker does. */
+  private[kafka] def settings(topics: KafkaTopics)(own: (String, String)*): Properties =
     val settings = Properties()
     for
-      (key, value) <- Seq(
+      (key, value) <- own ++ Seq(
         "bootstrap.servers"                  -> topics.broker.toString,
         "reconnect.backoff.ms"               -> "50",
         "reconnect.backoff.max.ms"           -> "250",
