@@ -169,7 +169,7 @@ lazy val cluster = project
 lazy val record = project
   .settings(artifact("record", "Recordings of flights"))
   .dependsOn(core, scene, mcap % "compile->compile;test->test")
-  .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere, zstd) ++ pekkoStream ++ munit)
+  .settings(libraryDependencies ++= Seq(duckdb, postgres, postgresHere, zstd, protobuf) ++ pekkoStream ++ munit)
 
 /** What a browser and Foxglove see of a flight, over WebSockets. */
 lazy val view = project

@@ -8,13 +8,13 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.KillSwitches
 import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import skein.airsim.{Eyes, Image, Pixels, Shot}
+import skein.airsim.{Eyes, Image, Pixels}
 import skein.flow.*
 import skein.fusion.{Belief, Fusion, PolarMeasurement}
 import skein.port.{Sensor, VehicleError}
 import skein.record.EventKind
 import skein.scenario.Eye
-import skein.signal.{ClockAlignment, LatencySampler, SplitMix64, Stamped}
+import skein.signal.{LatencySampler, SplitMix64, Stamped}
 import skein.units.*
 
 /** What an [[Eye]] makes of its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest belief`, beside the
@@ -43,8 +43,7 @@ private[skein] final class CameraSensor(
   private val recognisers               = Vector.fill(eye.workers)(eye.recogniser())
   private val duration                  = LatencySampler(eye.takes, seed, SplitMix64.seedOf(seed, 3))
   private val began                     = clock.now()
-  private val shot                      = Shot(eye.camera)
-  private val clocks                    = AtomicReference(Option.empty[ClockAlignment])
+  private val camera                    = AlignedCamera(eyes, eye.camera)
   private val newest                    = AtomicReference(Option.empty[Stamped[IArray[Double]]])
   private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
 
@@ -57,13 +56,19 @@ private[skein] final class CameraSensor(
   def run(): Unit =
     val ticks    = Source.fromGraph(Metronome(clock.now(), eye.every, clock)).via(stop.flow)
     val (_, end) = Frames
-      .at(ticks, inFlight = 2, isNewer)(() => image())(skipped)
-      .via(Recognise(eye.workers, eye.deadline, clock, newestFirst = true, isNewer)(recognised)(unrecognised))
+      .at(ticks, inFlight = 2, camera.isNewer)(() => image())(skipped)
+      .via(Recognise(
+        eye.workers,
+        eye.deadline,
+        clock,
+        newestFirst = true,
+        camera.isNewer
+      )(recognised)(unrecognised))
       .mapConcat(counted)
       .map: seen =>
         newestSeen = Some(seen)
         // What was measured before a restart of the simulator says nothing of what is since.
-        (clocks.get.fold(0)(_.restarts), seen.measured)
+        (camera.restarts, seen.measured)
       .via(Fuse(eye.fusion)((_, _) =>
         note(EventKind.Dropped, s"${eye.sensor}: older than all that is known")
       ))
@@ -102,15 +107,11 @@ private[skein] final class CameraSensor(
         .recover(error => note(EventKind.Refused, s"${eye.sensor}: $error"))
         .flatMap(_ => sensor.read())
 
-  private def image() = eyes
-    .image(shot)
+  private def image() = camera
+    .image()
     .map(_.map: frame =>
-      val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
       seen(frame)
       frame)
-
-  private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
-    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
   private def recognised(worker: Int, frame: Stamped[Image]): Future[(Image, Option[PolarMeasurement])] =
     val startedAt = clock.now()

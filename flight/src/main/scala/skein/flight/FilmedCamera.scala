@@ -6,10 +6,10 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.KillSwitches
 import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import scala.concurrent.Future
-import skein.airsim.{Eyes, Image, Shot}
+import skein.airsim.{Eyes, Image}
 import skein.flow.{Frames, Metronome}
 import skein.record.EventKind
-import skein.signal.{ClockAlignment, Stamped}
+import skein.signal.Stamped
 import skein.units.*
 
 /** A camera whose images nobody decides by: they are taken beside the loop, which waits for none of them. What is missed is
@@ -29,7 +29,7 @@ private[skein] final class FilmedCamera(
   import system.dispatcher
 
   private val stop   = KillSwitches.shared(s"film $camera")
-  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+  private val source = AlignedCamera(eyes, camera)
   private val missed = AtomicReference(FilmedCamera.Missed(0, "", clock.now()))
   private val ended  = AtomicReference(Future.successful[Done](Done))
 
@@ -37,7 +37,7 @@ private[skein] final class FilmedCamera(
   def run(): Unit =
     val ticks = Source.fromGraph(Metronome(clock.now(), every, clock)).via(stop.flow)
     val end   = Frames
-      .at(ticks, inFlight = 2, isNewer)(() => image())(skipped)
+      .at(ticks, inFlight = 2, source.isNewer)(() => source.image())(skipped)
       .toMat(Sink.foreach(seen))(Keep.right)
       .run()
     end.failed.foreach(error => note(EventKind.Aborted, s"$camera: $error"))
@@ -47,15 +47,6 @@ private[skein] final class FilmedCamera(
     stop.shutdown()
     tell(missed.getAndUpdate(_.copy(images = 0)))
     ended.get
-
-  private def image() = eyes
-    .image(Shot(camera))
-    .map(_.map: frame =>
-      val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
-      frame)
-
-  private def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
-    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit =
     val (images, why) = what match

@@ -1,0 +1,26 @@
+package skein.flight
+
+import java.util.concurrent.atomic.AtomicReference
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.{Eyes, Image, Shot}
+import skein.rpc.RpcError
+import skein.signal.{ClockAlignment, Stamped}
+
+/** A camera, and how the simulator's clock stands to ours by the times of its images: which of two is newer, also across
+  * a restart of the simulator. From any thread.
+  */
+private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
+  private val shot   = Shot(camera)
+  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+
+  def image(): Future[Either[RpcError, Stamped[Image]]] = eyes
+    .image(shot)
+    .map(_.map: frame =>
+      val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(frame))(_.updated(frame))))
+      frame)(using ExecutionContext.parasitic)
+
+  def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
+
+  /** How often the simulator was started again, as its clock shows. */
+  def restarts: Int = clocks.get.fold(0)(_.restarts)
