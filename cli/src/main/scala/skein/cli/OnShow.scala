@@ -5,13 +5,18 @@ import java.util.concurrent.atomic.AtomicReference
 import scala.concurrent.ExecutionContext
 import skein.flight.{LiveFlights, OutsideRequests}
 import skein.loop.{GraphLayout, LoopGraph, RunningGraph}
-import skein.record.{RecordingHeader, Record, Sight, Topic}
+import skein.record.{RecordingHeader, Record, ImagingSensor, Topic}
 import skein.scene.Scene
 import skein.units.Span
 import skein.view.{Control, Feed, Gauge, LiveShow, Shows}
 
 /** Live flights on show, each with its records and its graph as it runs. */
-private[cli] final class OnShow(shows: Shows, requests: OutsideRequests, scene: Scene, sights: Vector[Sight]):
+private[cli] final class OnShow(
+    shows: Shows,
+    requests: OutsideRequests,
+    scene: Scene,
+    sights: Vector[ImagingSensor]
+):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
   /** What is shown of a flight that begins. */

@@ -10,7 +10,7 @@ import skein.forward.Reduced
 import skein.identify.Structure
 import skein.loop.LoopKind
 import skein.mcap.file.McapFile
-import skein.record.{FlightTopics, MemoryRecorder, Recording, Sight}
+import skein.record.{FlightTopics, MemoryRecorder, Recording, ImagingSensor}
 import skein.report.DuelReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
@@ -193,8 +193,8 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
       case other              => fail(other)
     // The duel's, and those of a forest's scouts with their lidars; two vehicles' front cameras.
     val scouts = (1 to 5).map(number => s"Scout$number").toVector
-    val sights = scouts.map(Sight(_, "lidar", isLidar = true)) ++
-      Seq("Pursuer", "Evader").map(Sight.camera(_, "front_center", "Scene"))
+    val sights = scouts.map(ImagingSensor(_, "lidar", isLidar = true)) ++
+      Seq("Pursuer", "Evader").map(ImagingSensor.camera(_, "front_center", "Scene"))
     val known = schemas.keySet ++ (FlightTopics.all(scouts) ++ sights.flatMap(FlightTopics.of(_))).map(_.name)
     val images = panels.values.flatMap(_.obj.get("imageMode")).toVector
     val shown  = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str ++

@@ -119,10 +119,10 @@ final class FlightAssembler(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  private val recorded: Set[Sight] = settings.recordedSights
+  private val recorded: Set[ImagingSensor] = settings.recordedImaging
 
   /** Whether a record is kept, and not only shown. */
-  private[flight] def keeps(record: Record): Boolean = Sight.of(record).forall(recorded)
+  private[flight] def keeps(record: Record): Boolean = ImagingSensor.of(record).forall(recorded)
 
   /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
@@ -294,7 +294,7 @@ final class FlightAssembler(
         // Altitudes count from where each vehicle starts, as in its own frame.
         Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
       )
-      logs    = vehicles.map(SightLog(_, monitor, sight => isWatched || recorded(sight)))
+      logs    = vehicles.map(ImageRecorder(_, monitor, sight => isWatched || recorded(sight)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
       films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
       crafts  = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
@@ -392,7 +392,7 @@ final class FlightAssembler(
       plan: FlightPlan,
       vehicle: Multirotor,
       recorder: Recorder,
-      log: SightLog
+      log: ImageRecorder
   ): Vector[CameraSensor] =
     settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
       if isWatched || recorded.nonEmpty then log.ask(eye.camera)
@@ -406,7 +406,7 @@ final class FlightAssembler(
       )
 
   /** Its cameras that nobody decides by. */
-  private def film(vehicle: Multirotor, recorder: Recorder, log: SightLog): Vector[FilmedCamera] =
+  private def film(vehicle: Multirotor, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
     settings.filmed.filter(_.sight.vehicle == vehicle.name).map: (sight, every) =>
       log.ask(sight.name)
       FilmedCamera(

@@ -9,7 +9,7 @@ import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy, Policy}
-import skein.record.Sight
+import skein.record.ImagingSensor
 import skein.scenario.{Equipment, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -59,25 +59,25 @@ final case class FlySettings(
 ):
 
   /** The cameras and lidars whose images and clouds the flight has. */
-  def sights: Vector[Sight] = (seen ++ filmed.map((sight, _) => sight)).distinct
+  def sights: Vector[ImagingSensor] = (seen ++ filmed.map((sight, _) => sight)).distinct
 
   /** Those of which they are recorded. */
-  def recordedSights: Set[Sight] =
+  def recordedImaging: Set[ImagingSensor] =
     (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sight, _) => sight)
 
   /** Those that its policies look through. */
-  private def seen: Vector[Sight] =
-    scenario.eyes.map(eye => Sight.camera(eye.vehicle, eye.camera, "Scene")) ++
+  private def seen: Vector[ImagingSensor] =
+    scenario.eyes.map(eye => ImagingSensor.camera(eye.vehicle, eye.camera, "Scene")) ++
       scenario.equipment.collect { case lidar: Equipment.Lidar =>
-        Sight(lidar.vehicle, lidar.name, isLidar = true)
+        ImagingSensor(lidar.vehicle, lidar.name, isLidar = true)
       }
 
   /** Those that are looked through for the recording alone, and how often. */
-  def filmed: Vector[(sight: Sight, every: Span)] =
+  def filmed: Vector[(sight: ImagingSensor, every: Span)] =
     for
       agent <- fleet.agents
       case ImageSource.Camera(name, hz) <- images.toVector
-    yield (Sight.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
+    yield (ImagingSensor.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
 
   /** What stands in the world. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)

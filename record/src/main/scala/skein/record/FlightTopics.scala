@@ -61,7 +61,7 @@ final class FlightTopics(
     from: Instant,
     offset: Option[Span] = None,
     scene: Scene = Scene.Empty,
-    form: SightForm = SightForm.Whole
+    form: ImageEncoding = ImageEncoding.Whole
 ):
   import FlightTopics.*
 
@@ -93,7 +93,7 @@ object FlightTopics:
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
   /** Of a camera or a lidar. */
-  def of(sight: Sight, form: SightForm = SightForm.Whole): Vector[Topic] =
+  def of(sight: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
     def binary(name: String, schema: String) =
       Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)
     if sight.isLidar then Vector(binary(FoxgloveViews.cloudOf(sight), "foxglove.PointCloud"))

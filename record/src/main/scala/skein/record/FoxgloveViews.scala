@@ -14,7 +14,7 @@ private[record] final class FoxgloveViews(
     vehicles: Vector[String],
     firstOffset: Option[Span],
     stands: Scene = Scene.Empty,
-    form: SightForm = SightForm.Whole
+    form: ImageEncoding = ImageEncoding.Whole
 ):
   import FoxgloveViews.*
 
@@ -24,7 +24,7 @@ private[record] final class FoxgloveViews(
   private val downs   = mutable.Map.empty[String, Double]
   private val decided = mutable.Map.empty[String, Instant]
   private val errors  = mutable.Map.empty[String, Metres]
-  private val lenses  = mutable.Map.empty[Sight, (Long, Long, Option[Radians])]
+  private val lenses  = mutable.Map.empty[ImagingSensor, (Long, Long, Option[Radians])]
 
   /** Before the first row. */
   def opening(at: Instant): Vector[View] =
@@ -88,8 +88,8 @@ private[record] final class FoxgloveViews(
     case cloud: Cloud     =>
       val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
       Vector(View(
-        cloudOf(Sight(cloud.vehicle, cloud.lidar, isLidar = true)),
-        () => SightForm.cloud(cloud, at, form.mostPoints)
+        cloudOf(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true)),
+        () => ImageEncoding.cloud(cloud, at, form.mostPoints)
       ))
     case _ => Vector.empty
 
@@ -99,7 +99,7 @@ private[record] final class FoxgloveViews(
 
   /** An image, where its camera was, and what lens it has where that is new. */
   private def seen(picture: Picture): Vector[View] =
-    val sight = Sight.camera(picture.vehicle, picture.camera, picture.kind)
+    val sight = ImagingSensor.camera(picture.vehicle, picture.camera, picture.kind)
     val at    = picture.validAt + aheadOf(picture.validAt, picture.receivedAt)
     val frame = s"${picture.vehicle}/${picture.camera}"
     val lens  = (picture.width, picture.height, picture.fov)
@@ -242,9 +242,9 @@ private[record] object FoxgloveViews:
   private def planOf(name: String)       = s"/vehicles/$name/plan"
   private val Standing                   = "/scene"
 
-  def imageOf(sight: Sight): String       = s"/vehicles/${sight.vehicle}/${sight.name}/image"
-  def calibrationOf(sight: Sight): String = s"/vehicles/${sight.vehicle}/${sight.name}/calibration"
-  def cloudOf(sight: Sight): String       = s"/vehicles/${sight.vehicle}/${sight.name}/cloud"
+  def imageOf(sight: ImagingSensor): String       = s"/vehicles/${sight.vehicle}/${sight.name}/image"
+  def calibrationOf(sight: ImagingSensor): String = s"/vehicles/${sight.vehicle}/${sight.name}/calibration"
+  def cloudOf(sight: ImagingSensor): String       = s"/vehicles/${sight.vehicle}/${sight.name}/cloud"
 
   /** Every topic with the name of its schema. */
   def topics(vehicles: Vector[String]): Vector[(String, String)] =

@@ -100,14 +100,15 @@ object McapRecording:
   ):
     private val topics   = FlightTopics(vehicles, from, offset, scene)
     private val channels = Channels(mcap)
-    private val sights   = mutable.Set.empty[Sight]
+    private val sights   = mutable.Set.empty[ImagingSensor]
 
     mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
     FlightTopics.all(vehicles).foreach(channels.add)
     topics.opening.foreach(channels.put)
 
     def put(number: Long, record: Record): Unit =
-      for sight <- Sight.of(record) if sights.add(sight) do FlightTopics.of(sight).foreach(channels.add)
+      for sight <- ImagingSensor.of(record) if sights.add(sight) do
+        FlightTopics.of(sight).foreach(channels.add)
       topics.of(number, record).foreach(channels.put)
 
   private final class Channels(mcap: McapWriter):
@@ -212,7 +213,7 @@ object McapRecording:
     topic.endsWith(if table == Table.cloud.name then "/cloud" else "/image")
 
   /** `data`, in both messages. */
-  private val BytesField = SightForm.RawImageData.ensuring(_ == SightForm.PointCloudData)
+  private val BytesField = ImageEncoding.RawImageData.ensuring(_ == ImageEncoding.PointCloudData)
 
   /** @param longest
     *   line, in bytes, about

@@ -158,7 +158,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val topics = FoxgloveViews(names, Some(Span.Zero)).of(Samples.cloud(1))
     assertEquals(topics.map(_.topic), Vector("/vehicles/Evader/Lidar/cloud"))
     def points(most: Int) =
-      Protobuf.bytesOf(Bytes.of(SightForm.cloud(Samples.cloud(1), Instant.Epoch, most)), 6).get.toArray
+      Protobuf.bytesOf(Bytes.of(ImageEncoding.cloud(Samples.cloud(1), Instant.Epoch, most)), 6).get.toArray
     assertEquals(Blob.of(points(3)), Samples.cloud(1).xyz)
     assertEquals(
       points(2).toVector,

@@ -2,7 +2,7 @@ package skein.view
 
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
-import skein.record.{Record, Sight}
+import skein.record.{Record, ImagingSensor}
 
 /** Takes a flight's records to viewers. Bounded, and the newest wins; of the images of a camera, and of the clouds of a
   * lidar, the newest alone waits. `offer` takes no lock: a viewer's thread that the
@@ -16,14 +16,14 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val waiting = AtomicInteger()
   private val dropped = AtomicLong()
 
-  private val seen = ConcurrentHashMap[Sight, Record]()
+  private val seen = ConcurrentHashMap[ImagingSensor, Record]()
 
-  def offer(record: Record): Unit = Sight.of(record) match
+  def offer(record: Record): Unit = ImagingSensor.of(record) match
     case Some(sight) => seen.put(sight, record): Unit
     case None        => enqueue(record)
 
   /** What is newest of a camera or a lidar, if there is anything since this was asked for last. */
-  def poll(sight: Sight): Option[Record] = Option(seen.remove(sight))
+  def poll(sight: ImagingSensor): Option[Record] = Option(seen.remove(sight))
 
   private def enqueue(record: Record): Unit =
     queue.offer(record): Unit

@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{FlightMessage, FlightTopics, RecordingHeader, Sight, Topic}
+import skein.record.{FlightMessage, FlightTopics, RecordingHeader, ImagingSensor, Topic}
 import skein.scene.Scene
 import skein.units.{Instant, Span}
 
@@ -26,13 +26,13 @@ final class LiveShow(
     limits: Limits = Limits(),
     override val controls: Map[Control, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
-    sights: Vector[Sight] = Vector.empty
+    sights: Vector[ImagingSensor] = Vector.empty
 ) extends Show(heading.flight.id, LiveShow.topics(heading, sights) ++ gauges.map(_.topic), limits):
   private val topics = FlightTopics(
     heading.vehicles.map(_.name).toVector,
     heading.flight.startedAt,
     scene = scene,
-    form = SmallSights
+    form = ImagePreviews
   )
   private var number = 0L
   private var asked  = gauges.map(_ => Instant.ofNanos(0))
@@ -68,8 +68,11 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
-  private def topics(heading: RecordingHeader, sights: Vector[Sight]) =
-    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sights.flatMap(FlightTopics.of(_, SmallSights))
+  private def topics(heading: RecordingHeader, sights: Vector[ImagingSensor]) =
+    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sights.flatMap(FlightTopics.of(
+      _,
+      ImagePreviews
+    ))
 
   private val LookEvery = Span.ofMillis(100)
 

@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{Flight, FlightTopics, McapRecording, Record, Sight, Vehicle}
+import skein.record.{Flight, FlightTopics, McapRecording, Record, ImagingSensor, Vehicle}
 import skein.scene.Scene
 import skein.units.Instant
 
@@ -66,14 +66,14 @@ final class RecordedShow(
     next = 0
     topics.opening.foreach(publish)
 
-  private def begun = FlightTopics(vehicles, start, scene = scene, form = SmallSights)
+  private def begun = FlightTopics(vehicles, start, scene = scene, form = ImagePreviews)
 
   /** Of images and clouds that are passed over, the newest alone. */
   private def showUntil(time: Instant): Unit =
     val from = next
     while next < rows.size && times(next) <= time do next += 1
-    val newest = (from until next).flatMap(at => Sight.of(rows(at)._2).map(_ -> at)).toMap
-    for at <- from until next if Sight.of(rows(at)._2).forall(newest(_) == at) do
+    val newest = (from until next).flatMap(at => ImagingSensor.of(rows(at)._2).map(_ -> at)).toMap
+    for at <- from until next if ImagingSensor.of(rows(at)._2).forall(newest(_) == at) do
       topics.of(rows(at)._1, rows(at)._2).foreach(publish)
 
   private def statusAt(now: Instant) =
@@ -91,7 +91,10 @@ final class RecordedShow(
 object RecordedShow:
   private def topics(vehicles: Vector[String], rows: Vector[(Long, Record)]) =
     FlightTopics.all(vehicles) ++
-      rows.flatMap((_, record) => Sight.of(record)).distinct.flatMap(FlightTopics.of(_, SmallSights))
+      rows.flatMap((_, record) => ImagingSensor.of(record)).distinct.flatMap(FlightTopics.of(
+        _,
+        ImagePreviews
+      ))
 
   /** @param rows
     *   of one recording, its heading first

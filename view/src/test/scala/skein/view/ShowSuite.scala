@@ -76,7 +76,7 @@ class ShowSuite extends munit.FunSuite:
       )
 
   private val image = "/vehicles/Pursuer/front_center/image"
-  private val sight = Sight.camera("Pursuer", "front_center", "Scene")
+  private val sight = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
   test("of a camera's images the newest is shown, as a JPEG, ten times a second at most"):
     val feed   = Feed()
@@ -90,7 +90,7 @@ class ShowSuite extends munit.FunSuite:
     // The viewer took nothing meanwhile: of images the newest alone waits.
     val files = told.filter(_.topic == image).map(_.bytes)
     assertEquals(files.size, 1)
-    val jpeg = SmallSightsSuite.jpeg(files.head)
+    val jpeg = ImagePreviewsSuite.jpeg(files.head)
     assertEquals((jpeg.getWidth, jpeg.getHeight), (40, 30))
 
   test("a channel of images says that its messages are of Protocol Buffers, and by which descriptors"):

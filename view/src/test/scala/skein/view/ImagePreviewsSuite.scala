@@ -7,10 +7,10 @@ import javax.imageio.ImageIO
 import skein.record.{Blob, Samples}
 import skein.units.Instant
 
-class SmallSightsSuite extends munit.FunSuite:
-  import SmallSightsSuite.jpeg
+class ImagePreviewsSuite extends munit.FunSuite:
+  import ImagePreviewsSuite.jpeg
 
-  private def shown(width: Int, height: Int, encoding: String, bytes: Array[Byte]) = jpeg(SmallSights.image(
+  private def shown(width: Int, height: Int, encoding: String, bytes: Array[Byte]) = jpeg(ImagePreviews.image(
     Samples.picture(1).copy(width = width, height = height, encoding = encoding, pixels = Blob.of(bytes)),
     Instant.ofNanos(1_500_000_000L),
     "camera"
@@ -40,7 +40,7 @@ class SmallSightsSuite extends munit.FunSuite:
     near(small.getRGB(24, 16), 128, 128, 128)
     near(small.getRGB(50, 16), 0, 0, 0)
 
-object SmallSightsSuite:
+object ImagePreviewsSuite:
   /** Of a `foxglove.CompressedImage`, whatever else is in it: from the JPEG's first bytes on. */
   def jpeg(message: Array[Byte]): BufferedImage =
     val from =

@@ -4,7 +4,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 import java.util.concurrent.ConcurrentHashMap
 import scala.concurrent.ExecutionContext
 import skein.airsim.{Image, Multirotor, Pixels, Scan}
-import skein.record.{Blob, Cloud, Picture, Recorder, Sight}
+import skein.record.{Blob, Cloud, Picture, Recorder, ImagingSensor}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -13,8 +13,12 @@ import skein.units.*
   * @param isWanted
   *   whether anybody wants to have it
   */
-private[skein] final class SightLog(vehicle: Multirotor, recorder: Recorder, isWanted: Sight => Boolean):
-  private val counts = ConcurrentHashMap[Sight, SightLog.Count]()
+private[skein] final class ImageRecorder(
+    vehicle: Multirotor,
+    recorder: Recorder,
+    isWanted: ImagingSensor => Boolean
+):
+  private val counts = ConcurrentHashMap[ImagingSensor, ImageRecorder.Count]()
   private val fovs   = ConcurrentHashMap[String, Radians]()
 
   /** Asks for the camera's field of view, once. */
@@ -27,11 +31,11 @@ private[skein] final class SightLog(vehicle: Multirotor, recorder: Recorder, isW
   def image(frame: Stamped[Image]): Unit =
     val image = frame.value
     val shot  = image.shot
-    val sight = Sight.camera(vehicle.name, shot.camera, shot.kind.toString)
+    val sight = ImagingSensor.camera(vehicle.name, shot.camera, shot.kind.toString)
     if isWanted(sight) then
       val content = image.pixels match
         case Pixels.Bgr(bytes)      => Some(("bgr8", bytes.toArray))
-        case Pixels.Numbers(values) => Some(("32FC1", SightLog.bytes(values)))
+        case Pixels.Numbers(values) => Some(("32FC1", ImageRecorder.bytes(values)))
         case Pixels.Png(_)          => None
       for
         (encoding, bytes) <- content
@@ -56,7 +60,7 @@ private[skein] final class SightLog(vehicle: Multirotor, recorder: Recorder, isW
 
   /** A scan came. */
   def scan(lidar: String, frame: Stamped[Scan]): Unit =
-    val sight = Sight(vehicle.name, lidar, isLidar = true)
+    val sight = ImagingSensor(vehicle.name, lidar, isLidar = true)
     if isWanted(sight) then
       for number <- next(sight, frame.validAt) do
         recorder.offer(Cloud(
@@ -69,21 +73,21 @@ private[skein] final class SightLog(vehicle: Multirotor, recorder: Recorder, isW
           frame.validAt,
           frame.sentAt,
           frame.receivedAt,
-          Blob.of(SightLog.bytes(frame.value.points))
+          Blob.of(ImageRecorder.bytes(frame.value.points))
         ))
 
   /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats itself. */
-  private def next(sight: Sight, validAt: Instant): Option[Long] =
+  private def next(sight: ImagingSensor, validAt: Instant): Option[Long] =
     val now = counts.compute(
       sight,
       (_, before) =>
-        if before == null then SightLog.Count(1, validAt, isNew = true)
+        if before == null then ImageRecorder.Count(1, validAt, isNew = true)
         else if before.validAt == validAt then before.copy(isNew = false)
-        else SightLog.Count(before.number + 1, validAt, isNew = true)
+        else ImageRecorder.Count(before.number + 1, validAt, isNew = true)
     )
     Option.when(now.isNew)(now.number)
 
-private object SightLog:
+private object ImageRecorder:
   private final case class Count(number: Long, validAt: Instant, isNew: Boolean)
 
   private def bytes(numbers: Array[Float]): Array[Byte] =

@@ -9,20 +9,20 @@ import skein.units.*
   * @param name
   *   the lidar's; the camera's, with a slash and what it shows where that is not `Scene`
   */
-final case class Sight(vehicle: String, name: String, isLidar: Boolean)
+final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 
-object Sight:
+object ImagingSensor:
   /** What a record is of. */
-  def of(record: Record): Option[Sight] = record match
+  def of(record: Record): Option[ImagingSensor] = record match
     case picture: Picture => Some(camera(picture.vehicle, picture.camera, picture.kind))
-    case cloud: Cloud     => Some(Sight(cloud.vehicle, cloud.lidar, isLidar = true))
+    case cloud: Cloud     => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
     case _                => None
 
-  def camera(vehicle: String, camera: String, kind: String): Sight =
-    Sight(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)
+  def camera(vehicle: String, camera: String, kind: String): ImagingSensor =
+    ImagingSensor(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)
 
 /** How images and clouds go to viewers: as messages of Protocol Buffers, by Foxglove's schemas. */
-trait SightForm:
+trait ImageEncoding:
   /** Of images, a name of [[FoxgloveSchemas.binary]]. */
   def imageSchema: String
 
@@ -36,10 +36,10 @@ trait SightForm:
   /** Of a cloud, at most. */
   def mostPoints: Int
 
-object SightForm:
+object ImageEncoding:
 
   /** As they were recorded. */
-  object Whole extends SightForm:
+  object Whole extends ImageEncoding:
     val imageSchema = "foxglove.RawImage"
     val mostPoints  = Int.MaxValue
 

@@ -6,19 +6,19 @@ import java.nio.{ByteBuffer, ByteOrder}
 import javax.imageio.stream.MemoryCacheImageOutputStream
 import javax.imageio.{IIOImage, ImageIO, ImageWriteParam}
 import scala.util.Using
-import skein.record.{Picture, SightForm}
+import skein.record.{Picture, ImageEncoding}
 import skein.units.Instant
 
-/** What viewers see of images and clouds while a flight flies: JPEGs of up to [[SmallSights.MostWide]] pixels to a side,
+/** What viewers see of images and clouds while a flight flies: JPEGs of up to [[ImagePreviews.MostWide]] pixels to a side,
   * and a share of the points. Exact ones are in the recording.
   */
-private[view] object SmallSights extends SightForm:
+private[view] object ImagePreviews extends ImageEncoding:
   val MostWide    = 480
   val imageSchema = "foxglove.CompressedImage"
   val mostPoints  = 4096
 
   def image(picture: Picture, at: Instant, frame: String): Array[Byte] =
-    SightForm.compressed(jpeg(small(picture)), "jpeg", at, frame)
+    ImageEncoding.compressed(jpeg(small(picture)), "jpeg", at, frame)
 
   /** Each pixel the mean of a square; a depth as grey, black from [[FarM]] on. */
   private def small(picture: Picture): BufferedImage =
