@@ -46,8 +46,11 @@ object BackgroundThread:
 
   private def compilers: Vector[Int] =
     Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector)
-      .filter(task => CompilerNames.exists(Files.readString(task.resolve("comm")).startsWith))
+      .filter(task => CompilerNames.exists(nameOf(task).startsWith))
       .map(_.getFileName.toString.toInt)
+
+  /** Empty where the thread has ended since it was listed. */
+  private def nameOf(task: Path): String = Try(Files.readString(task.resolve("comm"))).getOrElse("")
 
   /** As HotSpot calls its compiler threads. */
   private val CompilerNames = Vector("C1 Comp", "C2 Comp")
