@@ -185,7 +185,7 @@ final class FlightAssembler(
           SimulatorWatchdog.within(settings.period, FlightAssembler.askTimeout),
           reached.where,
           reached.isOther,
-          () => team.deciding,
+          () => team.underDecision,
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, Yaw}
+import skein.policy.{Action, Fleet, Yaw}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint}
 
@@ -34,6 +34,21 @@ private object Acting:
       Setpoint.anglesThrottle(roll.value, pitch.value, yaw.value, thrust)
     case Action.Hover => Setpoint.velocity(0, 0, 0)
     case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
+
+  /** What a model of the vehicle is told by a move that was sent. */
+  def guidance(fleet: Fleet, move: Move): Guidance =
+    val agent = fleet.agents(move.vehicle)
+    move.action.fold {
+      val velocity = agent.velocityNed(move.headingRad, move.speed)
+      Setpoint.velocityZ(velocity.x, velocity.y, agent.startPositionNed.z)
+    }(guidance)
+
+  /** What a vehicle is told: the action, or for a heading the velocity along it, at the altitude of the start. */
+  def action(fleet: Fleet, decision: Decision): Action =
+    decision.action.getOrElse:
+      val agent    = fleet.agents(decision.vehicle)
+      val velocity = agent.velocityNed(decision.heading.value, decision.speed)
+      Action.VelocityAt(velocity.x, velocity.y, Metres(agent.startPositionNed.z))
 
   private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
     if StrictMath.hypot(northMps, eastMps) < 1e-9 then beforeRad else StrictMath.atan2(eastMps, northMps)

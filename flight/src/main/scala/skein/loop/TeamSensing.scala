@@ -1,0 +1,111 @@
+package skein.loop
+
+import java.util.concurrent.atomic.{AtomicLongArray, AtomicReference}
+import org.apache.pekko.NotUsed
+import org.apache.pekko.stream.scaladsl.Source
+import scala.concurrent.{ExecutionContext, Future}
+import skein.flow.{Metronome, Sense}
+import skein.policy.Fleet
+import skein.port.{VehicleError, VehiclePort}
+import skein.record.EventKind
+import skein.signal.{ClockAlignment, Stamped}
+import skein.units.*
+
+/** Asks a team's vehicles and their sensors, and records what they answer. */
+private final class TeamSensing(
+    fleet: Fleet,
+    ports: Vector[VehiclePort],
+    clock: Clock,
+    settings: LoopSettings,
+    parts: TeamParts,
+    log: TeamLog
+)(using ExecutionContext):
+  private val meters = ports.indices.map(parts.meter("sense", _))
+
+  // `futures` asks one vehicle from several threads at once.
+  private val asked = AtomicLongArray(ports.size)
+
+  // Known as answers come, before anything is made of them.
+  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+
+  /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
+  def read(vehicle: Int): Future[Either[VehicleError, Reading]] =
+    val sequence = asked.getAndIncrement(vehicle)
+    val meter    = meters(vehicle)
+    meter.called()
+    ports(vehicle)
+      .read()
+      .map:
+        case Right(state) =>
+          val _ = clocks.updateAndGet(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+          val reading = Reading(vehicle, sequence, state)
+          meter.answered()
+          meter.pass(ageOf(Some(state.validAt)))
+          log.read(reading)
+          Right(reading)
+        case Left(error) =>
+          meter.answered()
+          log.failed(vehicle, s"reading $sequence", error)
+          Left(error)
+
+  /** Whether one answer tells of a later moment than another, by all that the team's vehicles have told. */
+  def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
+    clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
+
+  private val sensors = ports.indices.toVector.flatMap: vehicle =>
+    fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
+      TeamSensor(vehicle, name, ports(vehicle).sensors(name), log)
+
+  /** What the policies' sensors say: for each an own periodic source, which nobody waits for. The vehicles are asked a
+    * quarter of a period after they were asked where they are.
+    */
+  def sensed(start: Instant): Vector[Source[LoopEvent, NotUsed]] = sensors.map: sensor =>
+    Sense
+      .at[VehicleError, SensorReading, NotUsed](
+        ticks(start + settings.period / 4),
+        settings.window,
+        isNewer = (answered, held) => isNewer(answered.values, held.values)
+      )(() => sensor.read())(
+        onSkip = _.foreach(reading =>
+          log.note(
+            EventKind.Dropped,
+            Some(sensor.vehicle),
+            s"${sensor.name} ${reading.sequence} overtaken"
+          )
+        ),
+        onMissed = ticks =>
+          log.note(
+            EventKind.Skipped,
+            Some(sensor.vehicle),
+            s"$ticks ticks of ${sensor.name} missed: window full"
+          )
+      )
+      .map(LoopEvent.Measured(_))
+
+  /** Asks every sensor that a policy reads, one after the other; ends at the first error. */
+  def senseAll(): Future[Either[VehicleError, Vector[SensorReading]]] =
+    sensors.foldLeft(Future.successful[Either[VehicleError, Vector[SensorReading]]](Right(Vector.empty))):
+      (soFar, sensor) =>
+        soFar.flatMap:
+          case Right(readings) => sensor.read().map(_.map(readings :+ _))
+          case error           => Future.successful(error)
+
+  /** Asks all vehicles one after the other, in the scenario's order; ends at the first error. */
+  def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
+    ports.indices.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
+      (soFar, vehicle) =>
+        soFar.flatMap:
+          case Right(readings) => read(vehicle).map(_.map(readings :+ _))
+          case error           => Future.successful(error)
+
+  /** Once a period from an instant on: how many ticks were due since the last. */
+  def ticks(first: Instant): Source[Int, NotUsed] =
+    Source.fromGraph(Metronome(first, settings.period, clock))
+
+  /** How old a moment of the vehicles' clock is now; absent as long as nothing is known of that clock. */
+  def ageOf(validAt: Option[Instant]): Option[Span] =
+    clocks.get.zip(validAt).map((known, valid) => clock.now().since(known.toController(valid)))
+
+  /** How old the oldest reading of a view is now. */
+  def ageOf(view: TeamView): Option[Span] =
+    ageOf(view.readings.flatten.map(_.state.validAt).minOption)

@@ -1,0 +1,172 @@
+package skein.loop
+
+import java.util.concurrent.atomic.AtomicReferenceArray
+import org.apache.pekko.NotUsed
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.{Graph, UniformFanInShape, UniformFanOutShape}
+import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, Merge, Sink}
+import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success}
+import skein.flow.*
+import skein.forecast.Evidence
+import skein.policy.Fleet
+import skein.port.{VehicleError, VehiclePort}
+import skein.record.EventKind
+import skein.units.*
+
+/** Commands a team's vehicles, records what became of it, and tells the loop. */
+private final class TeamSteering(
+    fleet: Fleet,
+    ports: Vector[VehiclePort],
+    clock: Clock,
+    settings: LoopSettings,
+    hold: Hold,
+    sensing: TeamSensing,
+    parts: TeamParts,
+    log: TeamLog
+)(using ExecutionContext):
+  // The newest moves of each vehicle, oldest first: as many as may be unanswered.
+  private val moves = AtomicReferenceArray(Array.fill(ports.size)(Vector.empty[Future[Any]]))
+
+  /** Paces one vehicle: the newest element, at least an interval after the last. */
+  def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
+    Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
+      log.note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
+    )).addAttributes(parts.named("pace", vehicle))
+
+  /** Keeps the newest decision for a vehicle that cannot be commanded yet. */
+  def newest(vehicle: Int): Flow[Decision, Decision, NotUsed] =
+    Newest[Decision](decision =>
+      log.note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
+    ).addAttributes(parts.named("newest", vehicle))
+
+  /** Commands one vehicle; emits what is sent and how it ended.
+    *
+    * '''Emits when''' a command is sent or has ended. '''Backpressures when''' [[Steer]] does. '''Completes when'''
+    * upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels when''' downstream
+    * cancels.
+    */
+  def steer(vehicle: Int): Flow[Decision, Steering, NotUsed] =
+    val meter = parts.meter("steer", vehicle)
+    Flow
+      .fromGraph(
+        Steer[Decision, Either[VehicleError, Boolean]](
+          settings.minCommandInterval,
+          clock,
+          settings.movesInFlight
+        )(
+          move(_),
+          () => ports(vehicle).hover(),
+          TeamSteering.isCertain,
+          decision =>
+            log.note(
+              EventKind.Dropped,
+              Some(vehicle),
+              s"command ${decision.sequence} not sent ${
+                  if hold.isHeld then "while the flight is paused" else "before the end"
+                }"
+            ),
+          hold
+        )
+      )
+      .map: event =>
+        count(meter, event)
+        Steering(vehicle, event)
+      .addAttributes(parts.named("steer", vehicle))
+
+  private def count(steering: StageMeter, event: Steered[Decision, Either[VehicleError, Boolean]]): Unit =
+    event match
+      case Steered.Sent(decision, _) =>
+        steering.called()
+        steering.pass(sensing.ageOf(decision.view))
+      case Steered.Ended(_, _, _) =>
+        steering.answered()
+        steering.pass()
+
+  /** Takes down every command and how it ended. Never backpressures. */
+  def record: Sink[Steering, ?] = Sink.foreach(log.steered).addAttributes(parts.named("record"))
+
+  /** The moves sent. */
+  def sent: Flow[Steering, Move, NotUsed] =
+    val meter = parts.meter("sent")
+    Flow[Steering]
+      .collect:
+        case Steering(_, Steered.Sent(decision, at)) =>
+          meter.pass()
+          decision.move(at)
+      .addAttributes(parts.named("sent"))
+
+  /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
+  def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
+    case Steering(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
+    case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
+      Some(LoopEvent.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
+    case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
+    case Steering(vehicle, Steered.Ended(decision, _, _))       =>
+      Some(LoopEvent.Heard(Evidence.Failed(vehicle, decision.sequence))))
+
+  /** Carries the newest move of each vehicle back into the view. */
+  def feedBack: Flow[Move, LoopEvent, NotUsed] =
+    Flow[Move]
+      .map(move => (move.vehicle, move))
+      .via(FeedBack.newest)
+      .map((_, move) => LoopEvent.Moved(move))
+      .addAttributes(parts.named("feed back"))
+
+  /** Carries events back into the view, the newest of each vehicle and kind. */
+  def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
+    Flow[LoopEvent]
+      .map:
+        case event @ LoopEvent.Moved(move)     => ((event.ordinal, move.vehicle), event)
+        case event @ LoopEvent.Heard(evidence) => ((event.ordinal, evidence.vehicle), event)
+        case event                             => ((event.ordinal, -1), event)
+      .via(FeedBack.newest)
+      .map(_._2)
+      .addAttributes(parts.named("feed back"))
+
+  /** Sends what was decided; the answer comes when the move ends. */
+  def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
+    import decision.vehicle
+    val answer = ports(vehicle).act(Acting.action(fleet, decision), settings.moveDuration)
+    val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
+    answer
+
+  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one that never
+    * says that it does is noted. Ends when every move has been answered, too.
+    */
+  def hoverAll()(using ActorSystem): Future[Unit] =
+    Future.traverse(ports.indices.toVector)(hover).map(_ => ())
+
+  private def hover(vehicle: Int)(using ActorSystem): Future[Unit] =
+    val sent = moves.get(vehicle)
+    for
+      // To hover is a command, too, and must not be a third one outstanding.
+      _      <- allEnded(sent.dropRight(1))
+      answer <- UntilCertain(ports(vehicle).hover())(TeamSteering.isHovering).transform(Success(_))
+      _      <- allEnded(sent)
+    yield answer match
+      case Success(Left(error)) if !TeamSteering.isHovering(Left(error)) =>
+        log.failed(vehicle, "not known to hover", error)
+      case Success(_)     => ()
+      case Failure(error) => log.note(EventKind.Aborted, Some(vehicle), s"not known to hover: $error")
+
+  private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
+    Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
+
+  /** What became of all vehicles' commands. */
+  def steered: Graph[UniformFanInShape[Steering, Steering], NotUsed] =
+    Merge[Steering](ports.size).addAttributes(parts.named("steered"))
+
+  /** To the recording, back into the loop, and to its end. */
+  def fan: Graph[UniformFanOutShape[Steering, Steering], NotUsed] =
+    Broadcast[Steering](3).addAttributes(parts.named("fan"))
+
+private object TeamSteering:
+
+  /** Whether a call's result says that the call neither runs nor is on its way. */
+  private def isCertain(result: Either[VehicleError, Boolean]): Boolean = result.fold(_.isCertain, _ => true)
+
+  /** Whether a vehicle took the command to hover, or refused it. */
+  private def isHovering(result: Either[VehicleError, Boolean]): Boolean = result match
+    case Right(_) | Left(_: VehicleError.Refused) => true
+    case Left(_)                                  => false

@@ -1,0 +1,78 @@
+package skein.loop
+
+import org.apache.pekko.NotUsed
+import org.apache.pekko.stream.{Graph, UniformFanOutShape}
+import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
+import skein.flow.Hold
+import skein.forecast.{Commanded, Evidence, Forecast}
+import skein.policy.Fleet
+import skein.record.EventKind
+import skein.units.*
+
+/** Joins what a loop is told to views of the team, and says who shall decide upon them. */
+private final class TeamViewing(
+    fleet: Fleet,
+    settings: LoopSettings,
+    hold: Hold,
+    sensing: TeamSensing,
+    parts: TeamParts,
+    log: TeamLog
+):
+  private val vehicles = fleet.agents.indices
+
+  /** Events of several sources; before them what was commanded, which ends the loop where it ends. */
+  def events(sources: Int): Graph[MergePreferred.MergePreferredShape[LoopEvent], NotUsed] =
+    MergePreferred[LoopEvent](sources, eagerComplete = true).addAttributes(parts.named("events"))
+
+  /** Gives every request to all that decide. */
+  def cast(deciders: Int =
+    vehicles.size): Graph[UniformFanOutShape[DecisionRequest, DecisionRequest], NotUsed] =
+    Broadcast[DecisionRequest](deciders).addAttributes(parts.named("cast"))
+
+  /** Joins events to views; emits those on which somebody shall decide. */
+  def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(TeamView.empty(fleet.agents.size))
+
+  /** The same, with all that a forecast needs. */
+  def viewWithForecast: Flow[LoopEvent, DecisionRequest, NotUsed] =
+    viewFrom(
+      TeamView.empty(fleet.agents.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+    )
+
+  private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
+    val meter = parts.meter("view")
+    Flow[LoopEvent]
+      .statefulMap(() => start)(
+        (view, event) =>
+          event match
+            case LoopEvent.Seen(readings, deciders) =>
+              val seen =
+                readings.foldLeft(view)(_.withReading(_))
+              (seen, request(seen, deciders))
+            case LoopEvent.Read(reading) if view.isNews(reading) => (view.withReading(reading), None)
+            case LoopEvent.Read(reading)                         =>
+              log.note(EventKind.Dropped, Some(reading.vehicle), s"reading ${reading.sequence} is stale")
+              (view, None)
+            case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
+            case LoopEvent.Moved(move)       =>
+              val command = Commanded(move.decision, Acting.guidance(fleet, move), move.sentAt)
+              (view.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
+            case LoopEvent.Due(deciders) =>
+              (view, request(view, deciders))
+            case LoopEvent.Heard(evidence) => (view.withEvidence(evidence), None)
+        ,
+        _ => None
+      )
+      .collect:
+        case Some(request) =>
+          meter.pass(sensing.ageOf(request.view))
+          request
+      .addAttributes(parts.named("view"))
+
+  private def request(view: TeamView, deciders: Set[Int]) =
+    Option.when(view.isComplete && !hold.isHeld)(DecisionRequest(view, deciders))
+
+  /** Once a period, in the middle between two questions, everybody is due to decide. */
+  def due(start: Instant): Source[LoopEvent, NotUsed] =
+    sensing.ticks(
+      start + settings.period / 2
+    ).map(_ => LoopEvent.Due(vehicles.toSet)).addAttributes(parts.named("due"))
