@@ -67,7 +67,7 @@ object WarmUp:
     * then too. Afterwards the compiler gives way to what is flown.
     *
     * @return
-    *   how many decisions were made, or why a loop could not be flown
+    *   how many decisions were made, or why a loop could not be started
     */
   def rehearse(settings: FlySettings, transport: Transport, clock: Clock)(using
       system: ActorSystem
@@ -94,11 +94,9 @@ object WarmUp:
         assembler
           .start(plan, recorder)
           .flatMap:
-            case Left(reason)    => Future.successful(Left(reason))
-            case Right(assembly) => assembly.landed.map(_.outcome).map:
-                case Outcome.Failed(reason) => Left(reason)
-                case _                      => Right(recorder.recording.decisions.size)
-          .map(_.left.map(reason => s"${plan.id}, to warm up: $reason"))
+            case Left(reason) => Future.successful(Left(s"${plan.id}, to warm up: $reason"))
+            // However it ends: a busy machine may fall silent here, before anything counts.
+            case Right(assembly) => assembly.landed.map(_ => Right(recorder.recording.decisions.size))
       .map: flown =>
         val _ = BackgroundThread.compilersGiveWay()
         flown.collectFirst { case Left(reason) => reason }.toLeft(flown.flatMap(_.toOption).sum)
