@@ -42,5 +42,18 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
   /** A vector of the world, in the body. */
   def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
 
+  /** First `inner`, then this: what is turned by `inner` against a body that is turned by this. */
+  def *(inner: Quaternion): Quaternion = Quaternion(
+    w * inner.w - x * inner.x - y * inner.y - z * inner.z,
+    w * inner.x + x * inner.w + y * inner.z - z * inner.y,
+    w * inner.y - x * inner.z + y * inner.w + z * inner.x,
+    w * inner.z + x * inner.y - y * inner.x + z * inner.w
+  )
+
+  /** The unit quaternion of this direction; that of zero length is no rotation. */
+  def normalized: Quaternion =
+    val length = math.sqrt(w * w + x * x + y * y + z * z)
+    if length == 0 then Quaternion.Identity else Quaternion(w / length, x / length, y / length, z / length)
+
 object Quaternion:
   val Identity: Quaternion = Quaternion(1, 0, 0, 0)

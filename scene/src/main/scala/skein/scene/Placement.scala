@@ -29,16 +29,7 @@ final class Placement(val position: Vector3, val orientation: Quaternion = Quate
 
   /** What is placed in this frame, outside. */
   def outside(inner: Placement): Placement =
-    val q = inner.orientation
-    Placement(
-      outside(inner.position),
-      Quaternion(
-        w * q.w - x * q.x - y * q.y - z * q.z,
-        w * q.x + x * q.w + y * q.z - z * q.y,
-        w * q.y - x * q.z + y * q.w + z * q.x,
-        w * q.z + x * q.y - y * q.x + z * q.w
-      )
-    )
+    Placement(outside(inner.position), orientation * inner.orientation)
 
 object Placement:
   /** Turned by roll, then pitch, then yaw, degrees: the order of AirSim's settings. */

@@ -41,8 +41,8 @@ final private[simulator] case class Camera(
   /** As AirSim tells it, carried by a vehicle at this place. */
   def info(vehicle: Vector3, attitude: Quaternion): CameraInfo = CameraInfo(
     Pose(
-      Vector3r(vehicle + FrameRotations.intoWorld(position, attitude)),
-      Quaternionr(FrameRotations.composed(attitude, orientation))
+      Vector3r(vehicle + attitude.toWorld(position)),
+      Quaternionr(attitude * orientation)
     ),
     fovDeg,
     ProjectionMatrix(projection)
@@ -94,9 +94,11 @@ private[simulator] object Camera:
     val pitch = math.toRadians(pitchDeg) / 2
     Camera(
       position,
-      FrameRotations.composed(
-        Quaternion(StrictMath.cos(yaw), 0, 0, StrictMath.sin(yaw)),
-        Quaternion(StrictMath.cos(pitch), 0, StrictMath.sin(pitch), 0)
+      Quaternion(StrictMath.cos(yaw), 0, 0, StrictMath.sin(yaw)) * Quaternion(
+        StrictMath.cos(pitch),
+        0,
+        StrictMath.sin(pitch),
+        0
       )
     )
 

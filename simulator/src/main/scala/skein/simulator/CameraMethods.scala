@@ -28,7 +28,7 @@ private[simulator] object CameraMethods:
         change(simulation, camera, name, external): camera =>
           camera.copy(
             position = pose.position.toVector,
-            orientation = FrameRotations.normalized(pose.orientation.toQuaternion)
+            orientation = pose.orientation.toQuaternion.normalized
           )
     ,
     many[(String, Float, String, Boolean)]("simSetCameraFov"):

@@ -27,7 +27,7 @@ final private[simulator] class ManualMove private (
 
   private def towards(sticks: RcData, z: Double): Setpoint =
     val wanted   = Vector3(sticks.pitch * speedY / FullStick, sticks.roll * speedX / FullStick, 0)
-    val velocity = FrameRotations.intoBody(wanted, start)
+    val velocity = start.toBody(wanted)
     val turned   = yaw.copy(yaw_or_rate = yaw.yaw_or_rate + sticks.yaw * 100 / FullStick)
     Move.withYaw(
       Setpoint.velocityZ(velocity.x, velocity.y, z + sticks.throttle / FullStick * down),

@@ -48,7 +48,7 @@ private[simulator] object SceneMethods:
         for index <- thing do
           simulation.world.scene = simulation.world.scene.moved(
             index,
-            Placement(pose.position.toVector, FrameRotations.normalized(pose.orientation.toQuaternion))
+            Placement(pose.position.toVector, pose.orientation.toQuaternion.normalized)
           )
         answer(vehicle.nonEmpty || thing.nonEmpty)
     ,
@@ -121,7 +121,7 @@ private[simulator] object SceneMethods:
     else
       val known = kind.equalsIgnoreCase(WorldSettings.SimpleFlight) && !simulation.objects.exists(name)
       if known then
-        val q   = FrameRotations.normalized(pose.orientation.toQuaternion)
+        val q   = pose.orientation.toQuaternion.normalized
         val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
         simulation.addVehicle(VehicleSettings(name, start, Radians(yaw)))
       answer(known)

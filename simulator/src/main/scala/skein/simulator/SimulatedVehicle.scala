@@ -161,7 +161,7 @@ final private[simulator] class SimulatedVehicle(
   /** Puts it elsewhere, in its own frame; its motion, its goal and its rotors stay as they are, and it stands on nothing. */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     val sinceSample = positionAt(at) - state.positionNed
-    state.place(positionNed - sinceSample, FrameRotations.normalized(orientation))
+    state.place(positionNed - sinceSample, orientation.normalized)
     state.grounded = false
 
   /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground and under api
@@ -198,7 +198,7 @@ final private[simulator] class SimulatedVehicle(
     val s        = sinceSample(at)
     val velocity = kinematics.linear_velocity.toVector - acceleration * s
     val position = kinematics.position.toVector - velocity * s - acceleration * (s * s / 2)
-    state.place(position, FrameRotations.normalized(kinematics.orientation.toQuaternion))
+    state.place(position, kinematics.orientation.toQuaternion.normalized)
     state.vx = velocity.x; state.vy = velocity.y; state.vz = velocity.z
     state.ax = acceleration.x; state.ay = acceleration.y; state.az = acceleration.z
     state.wx = angularVelocity.x; state.wy = angularVelocity.y; state.wz = angularVelocity.z

@@ -172,7 +172,7 @@ private[simulator] object VehicleMethods:
       at,
       Quaternionr(vehicle.state.orientation),
       Vector3r(vehicle.state.angularVelocityFrd),
-      Vector3r(FrameRotations.intoBody(force, vehicle.state.orientation))
+      Vector3r(vehicle.state.orientation.toBody(force))
     )
 
   private def barometer(vehicle: SimulatedVehicle, at: Instant) =
@@ -186,7 +186,7 @@ private[simulator] object VehicleMethods:
 
   private def magnetometer(vehicle: SimulatedVehicle, at: Instant) =
     val field =
-      FrameRotations.intoBody(Globe.magneticFieldNed(vehicle.locationAt(at)), vehicle.state.orientation)
+      vehicle.state.orientation.toBody(Globe.magneticFieldNed(vehicle.locationAt(at)))
     MagnetometerData(at, Vector3r(field), Seq.empty)
 
   private def environment(vehicle: SimulatedVehicle, at: Instant) =

@@ -12,13 +12,10 @@ class CameraMethodsSuite extends munit.FunSuite:
 
   private def turned(yawDeg: Double, pitchDeg: Double = 0): Quaternion =
     val (yaw, pitch) = (math.toRadians(yawDeg) / 2, math.toRadians(pitchDeg) / 2)
-    FrameRotations.composed(
-      Quaternion(math.cos(yaw), 0, 0, math.sin(yaw)),
-      Quaternion(math.cos(pitch), 0, math.sin(pitch), 0)
-    )
+    Quaternion(math.cos(yaw), 0, 0, math.sin(yaw)) * Quaternion(math.cos(pitch), 0, math.sin(pitch), 0)
 
   private def forward(pose: Pose): Vector3 =
-    FrameRotations.intoWorld(Vector3(1, 0, 0), pose.orientation.toQuaternion)
+    pose.orientation.toQuaternion.toWorld(Vector3(1, 0, 0))
 
   private def near(a: Vector3, b: Vector3): Unit = assert((a - b).norm < 1e-5, s"$a, expected $b")
 
