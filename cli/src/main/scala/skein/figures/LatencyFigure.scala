@@ -1,8 +1,9 @@
 package skein.figures
 
-import skein.measure.{Distribution, FlightSet, Numbers}
+import skein.measure.{Distribution, FlightSet}
 import skein.plot.*
 import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.units.Decimals.fixed
 
 /** The paper's Figure 3: histograms of round trips, one panel per link, with the density and the quantiles of the
   * link's profile, which for `direct` and `vpn` are the paper's own samples.
@@ -25,6 +26,8 @@ object LatencyFigure:
       for
         link    <- set.links
         samples <- Distribution.of(set.over(link).flatMap(_.roundTripsMs).flatMap(_.sorted))
+        // Virtual flights without a network have but one round trip.
+        if samples.sorted.head < samples.sorted.last
       yield (link, samples)
 
   private def panel(link: String, samples: Distribution): Drawing =
@@ -56,7 +59,7 @@ object LatencyFigure:
     val lines = Vector(density -> profileLine, halves -> halvesLine).collect:
       case (points, stroke) if points.nonEmpty => panel.curve(points, stroke)
     val marks              = profile.toVector.flatMap(quantileMarks(panel, _))
-    def figure(ms: Double) = Numbers.fixed(ms, if most < 10 then 2 else 1)
+    def figure(ms: Double) = ms.fixed(if most < 10 then 2 else 1)
     val facts              = s"n ${samples.count}, mean ${figure(samples.mean)}, sd ${figure(samples.sd)}, " +
       s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
     val titles = Vector(

@@ -1,9 +1,11 @@
 package skein.cli
 
+import java.lang.management.{ManagementFactory, MemoryType}
 import java.net.Socket
 import java.nio.charset.StandardCharsets.US_ASCII
 import java.nio.file.{Files, Path}
 import java.util.concurrent.atomic.AtomicLong
+import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.record.{FlightTopics, RecordingReader}
 import skein.report.DuelReport
@@ -83,8 +85,12 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
     val bytes = Using.resource(Viewers(flying.port, viewers)): watching =>
       flying.land()
       watching.bytes.get
+    val heap = ManagementFactory.getMemoryPoolMXBeans.asScala
+      .filter(pool => pool.getType == MemoryType.HEAP && pool.getCollectionUsage != null)
+      .map(_.getCollectionUsage.getUsed)
+      .sum
     val late = Lateness.of(out.resolve("predictive-none.duckdb"))
     println(
       f"$viewers%2d viewers: ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
-        f"$bytes%,d bytes seen"
+        f"$bytes%,d bytes seen; heap ${heap >> 20} MiB after its last collection"
     )

@@ -1,0 +1,42 @@
+package skein.cli
+
+import java.nio.file.{Files, Path}
+import skein.record.{EventKind, RecordingReader}
+import skein.report.DuelReport
+import skein.scenario.Scenarios
+
+/** The same flight with a policy that was learned, which learns on beside it or does not, in turns:
+  * `cli/Test/runMain skein.cli.learningFlights 60 3`. The network is the usual one, and so is what it learns from each
+  * decision.
+  */
+@main def learningFlights(seconds: Int, rounds: Int): Unit =
+  given Scenarios = DuelReport.scenarios
+  val folder      = Files.createTempDirectory("learning")
+  val learned     = folder.resolve("learned")
+  val teaching    = "--steps 20000 --lesson 10s --episodes 2 --fresh 4 --flights 1 --duration 12s".split(' ')
+  require(
+    LearnCommand("skein").run(teaching.toSeq ++ Seq("--out", learned.toString)) == 0,
+    "nothing was learned"
+  )
+  val policy = learned.resolve("policy.conf").toString
+  for
+    round           <- 1 to rounds
+    (what, options) <-
+      Seq("flies" -> Seq("--policy", policy), "learns on" -> Seq("--learn", learned.toString))
+  do
+    val out    = folder.resolve(s"$round-${options.head}")
+    val fixed  = Seq("--loop", "stream", "--link", "none", "--duration", s"${seconds}s")
+    val flying = ViewLiveSuite.Flying.start(out, fixed ++ options*)
+    flying.land()
+    val file = flownIn(out)
+    val late = Lateness.of(file)
+    val told = RecordingReader.read(file).fold(error => sys.error(error.message), _.events)
+    val news = told.count(_.kind == EventKind.Learned)
+    println(
+      f"$what%-9s ${late.questions}%,d questions, late p50 ${late.p50Ms}%.2f, p99 ${late.p99Ms}%.2f, most ${late.mostMs}%.2f ms; " +
+        f"$news versions, ${told.size - news} other events; load ${load()}"
+    )
+
+private def flownIn(out: Path): Path =
+  import scala.jdk.CollectionConverters.*
+  scala.util.Using.resource(Files.list(out))(_.iterator.asScala.find(_.toString.endsWith(".duckdb")).get)
