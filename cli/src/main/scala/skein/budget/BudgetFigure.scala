@@ -1,6 +1,7 @@
 package skein.budget
 
 import skein.plot.*
+import skein.units.Decimals.significant
 
 /** How far the objective is off the truth, by latency and jitter, one panel per period: the contour where it leaves the
   * tolerance, and the marked links.
@@ -80,7 +81,7 @@ object BudgetFigure:
       panel.bottom + 44,
       Vector(
         panel.title(
-          s"${map.loop} every ${brief(map.periodMs)} ms, truth ${brief(budget.truth)} ${map.unit}".trim
+          s"${map.loop} every ${map.periodMs.significant(4)} ms, truth ${budget.truth.significant(4)} ${map.unit}".trim
         ),
         Shape.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++
@@ -102,5 +103,3 @@ object BudgetFigure:
         off <- map.budget.deviation(i, j) if off.isFinite
       yield off.abs * factor
     sizes.sorted.lift((sizes.size * 0.97).toInt).getOrElse(1.0).max(2 * map.tolerance.value * factor)
-
-  private def brief(value: Double): String = skein.settings.PolicyFile.brief(value)

@@ -1,9 +1,9 @@
 package skein.budget
 
-import java.util.Locale
 import skein.optimise.LatencyBudget.Bound
 import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
+import skein.units.Decimals.{fixed, signed, significant}
 import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with what is said of it.
@@ -31,9 +31,9 @@ final case class BudgetMap(
   def sentence(atJitterMs: Double): String =
     val row    = budget.jittersMs.indices.minBy(i => (budget.jittersMs(i) - atJitterMs).abs)
     val jitter = s"${ms(budget.jittersMs(row))} ms jitter"
-    val truth  = s"the truth, ${number(budget.truth)}${if unit.isEmpty then "" else s" $unit"},"
+    val truth  = s"the truth, ${budget.truth.significant(4)}${if unit.isEmpty then "" else s" $unit"},"
     val within = s"within ${tolerance.text(unit)} of $truth"
-    val end    = s"(${legs.text}; $loop every ${number(periodMs)} ms)"
+    val end    = s"(${legs.text}; $loop every ${periodMs.significant(4)} ms)"
     budget.holdsUpTo(row, tolerance.value) match
       case Bound.At(mean)     => s"holds $within up to ${ms(mean)} ms mean at $jitter $end"
       case Bound.Beyond(mean) => s"holds $within as far as the map goes, ${ms(mean)} ms mean, at $jitter $end"
@@ -45,9 +45,9 @@ final case class BudgetMap(
     val (factor, offUnit)                = tolerance.shown(unit)
     val off                              = factor * (mark.tally.mean - budget.truth) / budget.per
     def told(text: String, unit: String) = s"$text $unit".trim
-    val value                            = s"${number(mark.tally.mean)} ± ${number(mark.tally.halfWidth95)}"
+    val value = s"${mark.tally.mean.significant(4)} ± ${mark.tally.halfWidth95.significant(4)}"
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
-      s"$objective = ${told(value, unit)}, ${told(signed(off), offUnit)} off the truth"
+      s"$objective = ${told(value, unit)}, ${told(off.signed(1), offUnit)} off the truth"
 
   /** One row per cell. */
   def csvRows: Vector[String] =
@@ -66,9 +66,7 @@ final case class BudgetMap(
     ).mkString(",")
 
   private def ms(roundTripMs: Double): String =
-    String.format(Locale.ROOT, "%.0f", roundTripMs / legs.perRoundTrip)
-  private def number(value: Double): String = skein.settings.PolicyFile.brief(value)
-  private def signed(value: Double): String = String.format(Locale.ROOT, "%+.1f", value)
+    (roundTripMs / legs.perRoundTrip).fixed(0)
 
 /** A link by name, and what the policy came to over it. */
 final case class BudgetMark(name: String, roundTrip: LatencyDistribution, tally: RunningStats)

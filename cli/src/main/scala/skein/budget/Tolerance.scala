@@ -1,6 +1,6 @@
 package skein.budget
 
-import skein.settings.PolicyFile
+import skein.units.Decimals.significant
 
 /** How far off the truth still counts as holding. */
 enum Tolerance:
@@ -32,4 +32,4 @@ enum Tolerance:
 
   def text(unit: String): String =
     val (factor, shownUnit) = shown(unit)
-    s"${PolicyFile.brief(value * factor)} $shownUnit".trim
+    s"${(value * factor).significant(4)} $shownUnit".trim

@@ -9,6 +9,7 @@ import skein.scenario.Scenarios
 import skein.search.TeamQuestion
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
+import skein.units.Decimals.significant
 import skein.units.Span
 import skein.view.{Shows, TaskShow}
 
@@ -226,14 +227,14 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           maps <- before
           sweep = BudgetSweep(swept, axes, tolerance, options.episodes)
           _     = shown.say(
-            s"${swept.loop} every ${PolicyFile.brief(swept.periodMs)} ms, ${swept.vehicles}\n" +
-              s"${sweep.episodes} episodes of ${PolicyFile.brief(swept.durationS)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
+            s"${swept.loop} every ${swept.periodMs.significant(4)} ms, ${swept.vehicles}\n" +
+              s"${sweep.episodes} episodes of ${swept.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
           )
           startedAt = System.nanoTime()
           line      = ProgressLine(sweep.expected, Console.err)
           onShow    = BudgetOnShow(
             task,
-            s"${swept.loop} every ${PolicyFile.brief(swept.periodMs)} ms",
+            s"${swept.loop} every ${swept.periodMs.significant(4)} ms",
             sweep.expected,
             axes,
             WeightedSum.withUnit(swept.formula, swept.unit)

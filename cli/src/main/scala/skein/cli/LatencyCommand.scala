@@ -8,10 +8,11 @@ import scala.util.{Failure, Success, Try}
 import skein.airsim.AirSimClient
 import skein.figures.LatencyFigure
 import skein.link.*
-import skein.measure.{Distribution, Numbers}
+import skein.measure.Distribution
 import skein.report.{Section, TextHistogram, TextTable}
 import skein.rpc.RpcClient
 import skein.signal.LatencyProfile
+import skein.units.Decimals.fixed
 import skein.units.{Clock, Span}
 
 /** Options of `./skein latency`. */
@@ -110,7 +111,7 @@ object LatencyCommand
 
   private def text(table: TextTable, samples: Distribution, failures: Seq[String]): String =
     val lines = Vector(
-      s"${samples.count} round trips: mean ${fixed(samples.mean)} ms, standard deviation ${fixed(samples.sd)} ms",
+      s"${samples.count} round trips: mean ${shown(samples.mean)} ms, standard deviation ${shown(samples.sd)} ms",
       "",
       table.render
     ) ++ Option.when(table.rows.size > 1)(
@@ -119,6 +120,6 @@ object LatencyCommand
       failures.headOption.map(first => s"\n${failures.size} pings failed, the first: $first")
     lines.mkString("\n")
 
-  private def quantiles(at: Double => Double): Vector[String] = probabilities.map(p => fixed(at(p / 100.0)))
+  private def quantiles(at: Double => Double): Vector[String] = probabilities.map(p => shown(at(p / 100.0)))
 
-  private def fixed(ms: Double): String = Numbers.fixed(ms, if ms < 10 then 2 else 1)
+  private def shown(ms: Double): String = ms.fixed(if ms < 10 then 2 else 1)

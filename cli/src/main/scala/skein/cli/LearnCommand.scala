@@ -11,6 +11,7 @@ import skein.scenario.Scenarios
 import skein.search.{ClusterEvaluator, Effort, Judge}
 import skein.settings.PolicyFile
 import skein.training.*
+import skein.units.Decimals.significant
 import skein.units.Span
 import skein.view.{Shows, TaskShow}
 
@@ -159,8 +160,8 @@ final class LearnCommand(program: String)(using Scenarios)
     val batch = setup.batch(threads)
     shown.say(
       s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} against ${setup.opponent.label}
-         |loop ${question.conditions.loop} every ${PolicyFile.brief(
-          question.conditions.periodMs
+         |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
+          4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
          |${question.environments} environments, ${setup.rounds * setup.stepsOfRound} steps""".stripMargin
     )
@@ -187,7 +188,7 @@ final class LearnCommand(program: String)(using Scenarios)
   private def progress(setup: LearnSetup, state: LearnState): String =
     val unit = setup.objective.unit
     state.best.fold("not judged yet"): best =>
-      s"now ${PolicyFile.brief(state.scores.last.mean)} $unit, best ${PolicyFile.brief(best.mean)} $unit"
+      s"now ${state.scores.last.mean.significant(4)} $unit, best ${best.mean.significant(4)} $unit"
 
   /** Measures the best policy and writes it and the curve. */
   private def conclude(

@@ -9,6 +9,7 @@ import skein.policy.LearnedPolicy
 import skein.scenario.Scenarios
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.training.LearnFile
+import skein.units.Decimals.significant
 
 /** Whether a policy learns while it flies. */
 final case class LearnInFlight(
@@ -98,5 +99,5 @@ object LearnInFlight:
     Either.cond(
       value >= least && value <= most,
       (),
-      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}, came $value"
+      s"$option: expected ${least.significant(4)} to ${most.significant(4)}, came $value"
     )

@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import skein.optimise.SearchState
 import skein.search.*
-import skein.settings.PolicyFile.brief
+import skein.units.Decimals.significant
 import skein.view.TaskShow
 
 /** A search in a terminal, to its end or until it is stopped. */
@@ -48,12 +48,14 @@ private[cli] final class SearchJob(
 
   private def introduction: String =
     val shownAxes =
-      ready.space.axes.take(MostAxes).map(axis => s"${axis.name} ${brief(axis.least)} … ${brief(axis.most)}")
+      ready.space.axes.take(MostAxes).map(axis =>
+        s"${axis.name} ${axis.least.significant(4)} … ${axis.most.significant(4)}"
+      )
     val more = ready.space.dimension - shownAxes.size
     val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
     s"""${ready.text}: ${ready.subject(axes)}
-       |loop ${ready.under}, every ${brief(
-        ready.conditions.timing.periodS * 1000
+       |loop ${ready.under}, every ${(ready.conditions.timing.periodS * 1000).significant(
+        4
       )} ms; ${ready.conditions.vehicle.description}
        |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engine(
         threads
@@ -61,7 +63,7 @@ private[cli] final class SearchJob(
 
   private def progress(state: SearchState): String =
     state.best.fold("no candidate measured yet"): best =>
-      s"best ${brief(best.tally.mean)} ${ready.unit} with ${ready.label(best.candidate)}"
+      s"best ${best.tally.mean.significant(4)} ${ready.unit} with ${ready.label(best.candidate)}"
 
   /** Measures the winner on fresh episodes and writes it with pictures. */
   private def conclude(state: SearchState): Either[String, Unit] =

@@ -1,8 +1,9 @@
 package skein.figures
 
-import skein.measure.{Deviation, Numbers}
+import skein.measure.Deviation
 import skein.plot.*
 import skein.record.ClockKind
+import skein.units.Decimals.signed
 
 /** Deviations from the paused truth by link and loop: discs are means, thick lines reach one standard deviation to either
   * side, thin ones from the least to the most. Live flights have a ring around the disc.
@@ -79,7 +80,7 @@ object DeviationFigure:
       ),
       Shape.Text(
         Point(x, panel.bottom + 24),
-        s"${Numbers.signed(100 * share.mean)} %",
+        s"${(100 * share.mean).signed(1)} %",
         Theme.tickSize - 1,
         Theme.tickColour,
         Anchor.Middle

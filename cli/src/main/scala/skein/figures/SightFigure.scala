@@ -1,12 +1,13 @@
 package skein.figures
 
-import skein.measure.{FlightSet, FlightSummary, Numbers, SeeingSummary, Sight}
+import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Sight}
 import skein.plot.*
 import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
 import skein.scene.render.{Kind, Picture, Png as PictureFile, Renderer, View}
 import skein.settings.NamedScene
 import skein.simulator.VehicleBody
+import skein.units.Decimals.fixed
 import skein.vehicle.Quadrotor
 
 /** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the camera was at the
@@ -76,8 +77,8 @@ object SightFigure:
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))
 
   private def told(name: String, sight: Sight): Vector[String] =
-    val used = sight.firstUsedMs.fold("never used")(ms => s"used ${Numbers.fixed(ms, 0)} ms old")
+    val used = sight.firstUsedMs.fold("never used")(ms => s"used ${ms.fixed(0)} ms old")
     Vector(
-      s"$name: ${Numbers.fixed(sight.sinceStartS.max(0), 1)} s, ${Numbers.fixed(sight.rangeM, 1)} m away",
-      s"recognised in ${Numbers.fixed(sight.tookMs, 0)} ms, $used; believed ${Numbers.fixed(sight.errorM, 2)} m off"
+      s"$name: ${sight.sinceStartS.max(0).fixed(1)} s, ${sight.rangeM.fixed(1)} m away",
+      s"recognised in ${sight.tookMs.fixed(0)} ms, $used; believed ${sight.errorM.fixed(2)} m off"
     )

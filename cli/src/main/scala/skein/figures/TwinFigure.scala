@@ -1,7 +1,8 @@
 package skein.figures
 
-import skein.measure.{Compared, Distribution, FlightSet, Numbers, Twin}
+import skein.measure.{Compared, Distribution, FlightSet, Twin}
 import skein.plot.*
+import skein.units.Decimals.{fixed, signed}
 
 /** Cumulative distributions in live flights and in their virtual twins, one line of panels per live flight: what the
   * decisions for evader and pursuer were made on.
@@ -21,8 +22,8 @@ object TwinFigure:
   private def line(twin: Twin): Drawing =
     val flight   = twin.live.flight
     val distance = twin.converged.zip(twin.difference).map: (converged, difference) =>
-      s": last 10 s ${Numbers.fixed(converged._1, 2)} m live, ${Numbers.fixed(converged._2, 2)} m virtual " +
-        s"(${Numbers.signed(100 * difference)} %)"
+      s": last 10 s ${converged._1.fixed(2)} m live, ${converged._2.fixed(2)} m virtual " +
+        s"(${(100 * difference).signed(1)} %)"
     val title = Shape.Text(
       Point(46, 16),
       s"${twin.live.name}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
@@ -45,7 +46,7 @@ object TwinFigure:
     )
     val title = Shape.Text(
       Point(panel.left, panel.top - 6),
-      s"${compared.role}: KS ${Numbers.fixed(compared.distance, 2)}",
+      s"${compared.role}: KS ${compared.distance.fixed(2)}",
       Theme.labelSize,
       Theme.labelColour
     )

@@ -1,6 +1,7 @@
 package skein.report
 
-import skein.measure.{Deviation, Numbers}
+import skein.measure.Deviation
+import skein.units.Decimals.{fixed, signed}
 
 /** How far from the paused truth the loops ended, as a table. */
 object DeviationTable:
@@ -9,14 +10,14 @@ object DeviationTable:
     TextTable(
       Vector("<loop", "<link", "<clock", "flights", "mean %", "sd %", "least %", "most %"),
       deviations.map: one =>
-        def percent(share: Double) = Numbers.signed(100 * share)
+        def percent(share: Double) = (100 * share).signed(1)
         Vector(
           one.name,
           one.link,
           one.clock,
           one.share.count.toString,
           percent(one.share.mean),
-          if one.share.count == 1 then "" else Numbers.fixed(100 * one.share.sd, 1),
+          if one.share.count == 1 then "" else (100 * one.share.sd).fixed(1),
           percent(one.share.least),
           percent(one.share.most)
         )

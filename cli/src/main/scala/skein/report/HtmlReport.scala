@@ -4,10 +4,11 @@ import scalatags.Text.TypedTag
 import scalatags.Text.all.*
 import scalatags.Text.tags2.{section, title as pageTitle}
 import skein.figures.Figure
-import skein.measure.{FlightSet, FlightSummary, Numbers}
+import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Svg
 import skein.record.Flight
 import skein.scenario.Scenarios
+import skein.units.Decimals.brief
 
 /** The report as one page that needs nothing beside itself: no script, no font, no link to anywhere. */
 object HtmlReport:
@@ -40,7 +41,7 @@ object HtmlReport:
     def named(values: Flight => String) =
       set.flights.map(summary => values(summary.flight)).distinct.mkString(", ")
     s"Loops ${named(_.loop)}; links ${named(_.link)}; one decision per vehicle every " +
-      s"${named(flight => Numbers.brief(flight.period.toMillis))} ms; simulator ${named(_.simulator)}; " +
+      s"${named(flight => flight.period.toMillis.brief)} ms; simulator ${named(_.simulator)}; " +
       s"${named(_.clock)} clock."
 
   /** What many flights of each loop over each link come to, as a page. */
@@ -100,8 +101,8 @@ object HtmlReport:
           flight.loop,
           flight.link,
           flight.seed.toString,
-          Numbers.brief(flight.period.toMillis),
-          Numbers.brief(flight.duration.toSeconds),
+          flight.period.toMillis.brief,
+          flight.duration.toSeconds.brief,
           flight.clock,
           flight.simulator,
           flight.scenario,

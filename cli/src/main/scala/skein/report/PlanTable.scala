@@ -1,6 +1,7 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, FlightSet, Numbers}
+import skein.measure.{DistanceCurve, FlightSet}
+import skein.units.Decimals.{brief, fixed}
 
 /** How plans were made, and what came of them. */
 object PlanTable:
@@ -22,11 +23,11 @@ object PlanTable:
         summary.flight.loop,
         summary.flight.link,
         planning.candidates.count.toString,
-        Numbers.fixed(planning.candidates.mean, 0),
-        Numbers.fixed(planning.candidates.least, 0),
-        Numbers.fixed(planning.slices.mean, 1),
-        Numbers.brief(planning.tookMs.mean),
-        Numbers.brief(planning.tookMs.p99),
+        planning.candidates.mean.fixed(0),
+        planning.candidates.least.fixed(0),
+        planning.slices.mean.fixed(1),
+        planning.tookMs.mean.brief,
+        planning.tookMs.p99.brief,
         planning.missed.toString,
         planning.breached.toString
       ) ++ (if duels then summary.distance.fold(Vector("", ""))(caught) else Vector.empty)
@@ -35,8 +36,8 @@ object PlanTable:
   private def caught(distance: DistanceCurve): Vector[String] =
     val below = distance.points.filter(_._2 < CaptureM)
     Vector(
-      below.headOption.fold("never")(first => Numbers.fixed(first._1, 1)),
-      s"${Numbers.fixed(100.0 * below.size / distance.points.size, 1)} %"
+      below.headOption.fold("never")(first => first._1.fixed(1)),
+      s"${(100.0 * below.size / distance.points.size).fixed(1)} %"
     )
 
   private def hasDuels(set: FlightSet): Boolean =

@@ -1,6 +1,7 @@
 package skein.report
 
-import skein.measure.{Distribution, Numbers, PredictionGroup}
+import skein.measure.{Distribution, PredictionGroup}
+import skein.units.Decimals.{brief, fixed}
 
 /** How far predictions were off, as a table. */
 object PredictionTable:
@@ -23,9 +24,9 @@ object PredictionTable:
         (whose, errors) <- Vector("own vehicle" -> group.own, "others" -> group.others)
         if errors.made > 0
       yield Vector(group.name, group.link, whose, errors.made.toString, errors.unverified.toString) ++ Vector(
-        Distribution.of(errors.samples.map(_._1)).map(_.median).fold("")(Numbers.brief),
-        errors.errors.fold("")(all => Numbers.fixed(1000 * all.median, 1)),
-        errors.errors.fold("")(all => Numbers.fixed(1000 * all.quantile(0.95), 1)),
-        errors.around(100).fold("")(all => Numbers.fixed(1000 * all.quantile(0.95), 1))
+        Distribution.of(errors.samples.map(_._1)).map(_.median).fold("")(_.brief),
+        errors.errors.fold("")(all => (1000 * all.median).fixed(1)),
+        errors.errors.fold("")(all => (1000 * all.quantile(0.95)).fixed(1)),
+        errors.around(100).fold("")(all => (1000 * all.quantile(0.95)).fixed(1))
       )
     )

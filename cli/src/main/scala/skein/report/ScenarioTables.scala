@@ -1,9 +1,10 @@
 package skein.report
 
-import skein.measure.{Distribution, Numbers, ScenarioFlights}
+import skein.measure.{Distribution, ScenarioFlights}
 import skein.record.EventKind
 import skein.scenario.{Measured, Scenario}
 import skein.settings.NamedScene
+import skein.units.Decimals.{fixed, signed}
 
 /** Tables of a scenario's flights. */
 object ScenarioTables:
@@ -21,13 +22,13 @@ object ScenarioTables:
         Vector(
           flight.summary.name,
           flight.summary.flight.link,
-          Numbers.fixed(flight.summary.flownS, 1)
+          flight.summary.flownS.fixed(1)
         ) ++ withPaused(
           cells,
-          flown.deviation(flight).fold("")(share => s"${Numbers.signed(share * 100)} %")
+          flown.deviation(flight).fold("")(share => s"${(share * 100).signed(1)} %")
         ) ++ contactsTitle(
           flown
-        ).map(_ => contacts(flight).toString) :+ flown.offTruthM(flight).fold("")(Numbers.fixed(_, 2))
+        ).map(_ => contacts(flight).toString) :+ flown.offTruthM(flight).fold("")(_.fixed(2))
     )
 
   /** Where there is something to touch. */
@@ -60,10 +61,10 @@ object ScenarioTables:
         if first then limit.text else "",
         if first then broken.size.toString else "",
         one.vehicles.map(flown.scenario.agents(_).name).mkString(", "),
-        Numbers.fixed(one.fromS, 2),
-        Numbers.fixed(one.toS, 2),
-        Numbers.fixed(one.worst, 2),
-        Numbers.fixed(one.worstAtS, 2)
+        one.fromS.fixed(2),
+        one.toS.fixed(2),
+        one.worst.fixed(2),
+        one.worstAtS.fixed(2)
       )
   )
 
@@ -99,18 +100,18 @@ object ScenarioTables:
       spreadText(values) + (if missing > 0 then s", $missing never" else "")
 
   private def inFlights(counts: Vector[Double]): String =
-    s"${Numbers.fixed(counts.sum, 0)} in ${counts.count(_ > 0)} flights"
+    s"${counts.sum.fixed(0)} in ${counts.count(_ > 0)} flights"
 
   private def spreadText(values: Vector[Double]): String =
-    def two(value: Double) = Numbers.fixed(value, 2)
+    def two(value: Double) = value.fixed(2)
     Distribution.of(values).fold("")(all =>
       s"${two(all.mean)} ± ${two(all.sd)}, ${two(all.least)} … ${two(all.most)}"
     )
 
   private def text(measured: Measured): String = measured.value match
     case None                                    => "never"
-    case Some(value) if measured.measure.isCount => Numbers.fixed(value, 0)
-    case Some(value)                             => Numbers.fixed(value, 2)
+    case Some(value) if measured.measure.isCount => value.fixed(0)
+    case Some(value)                             => value.fixed(2)
 
   /** What a table's columns mean. */
   def note(scenario: Scenario): String =

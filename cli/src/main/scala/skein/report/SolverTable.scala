@@ -1,6 +1,7 @@
 package skein.report
 
-import skein.measure.{Distribution, FlightSet, FlightSummary, Numbers}
+import skein.measure.{Distribution, FlightSet, FlightSummary}
+import skein.units.Decimals.{brief, fixed, signed}
 
 /** What decisions in another process cost, beside the same loop that decides in its own. */
 object SolverTable:
@@ -20,18 +21,18 @@ object SolverTable:
         val here = beside(set, summary)
         Vector(summary.flight.loop, summary.flight.link, solver.at, solver.answers.toString) ++
           spread(solver.roundTripsMs) ++
-          Vector(solver.thinkingMs.fold("")(ms => Numbers.brief(ms.median))) ++
+          Vector(solver.thinkingMs.fold("")(ms => ms.median.brief)) ++
           spread(summary.commandAgesMs) ++ spread(here.flatMap(_.commandAgesMs)) ++
           Vector(solver.missed, solver.late, solver.repeated, solver.left, solver.lost).map(_.toString) ++
           Vector(
-            summary.headline.fold("")(Numbers.fixed(_, 2)),
-            here.flatMap(_.headline).fold("")(Numbers.fixed(_, 2)),
+            summary.headline.fold("")(_.fixed(2)),
+            here.flatMap(_.headline).fold("")(_.fixed(2)),
             difference(summary, here)
           )
     )
 
   private def spread(ms: Option[Distribution]): Vector[String] =
-    ms.fold(Vector("", ""))(all => Vector(Numbers.fixed(all.median, 1), Numbers.fixed(all.p99, 1)))
+    ms.fold(Vector("", ""))(all => Vector(all.median.fixed(1), all.p99.fixed(1)))
 
   /** The same loop over the same link by the same policy, decided in the flight's own process. */
   private def beside(set: FlightSet, flight: FlightSummary): Option[FlightSummary] =
@@ -43,7 +44,7 @@ object SolverTable:
     flight.headline
       .zip(here.flatMap(_.headline))
       .filter(_._2 != 0)
-      .fold("")((there, own) => s"${Numbers.signed((there / own - 1) * 100)} %")
+      .fold("")((there, own) => s"${((there / own - 1) * 100).signed(1)} %")
 
   val note: String =
     "Beside the same loop that decides in its own process (here). Added: ms from question to answer, of answers that were used, of which " +

@@ -1,6 +1,7 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers}
+import skein.measure.{DistanceCurve, Distribution, FlightSummary}
+import skein.units.Decimals.fixed
 
 /** How much a loop's result varies from flight to flight. */
 object SpreadTable:
@@ -38,7 +39,7 @@ object SpreadTable:
         val closest = distribution(groups(group), curve => Some(curve.closest._2))
 
         def metres(of: Option[Distribution], value: Distribution => Double) =
-          of.fold("")(distances => Numbers.fixed(value(distances), 2))
+          of.fold("")(distances => value(distances).fixed(2))
         Vector(
           group._1,
           group._2,

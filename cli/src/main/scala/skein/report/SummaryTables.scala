@@ -2,8 +2,8 @@ package skein.report
 
 import java.util.Locale
 import skein.measure.{Distribution, FlightSet, FlightSummary, Published, TimingObservation, Twin}
-import skein.measure.Numbers.*
 import skein.record.EventKind
+import skein.units.Decimals.{brief, fixed, signed}
 
 /** The tables of a report, for the terminal and for the page alike. */
 object SummaryTables:
@@ -19,24 +19,24 @@ object SummaryTables:
           case Some(curve) =>
             val last = curve.lastTenSeconds.fold(Vector("< 10 s", "", "")): last =>
               Vector(
-                fixed(last.mean, 2),
-                fixed(last.sd, 2),
-                s"${fixed(last.least, 1)} … ${fixed(last.most, 1)}"
+                last.mean.fixed(2),
+                last.sd.fixed(2),
+                s"${last.least.fixed(1)} … ${last.most.fixed(1)}"
               )
             Vector(
-              fixed(summary.flownS, 1),
-              fixed(curve.closest._2, 2),
-              fixed(curve.closest._1, 1)
+              summary.flownS.fixed(1),
+              curve.closest._2.fixed(2),
+              curve.closest._1.fixed(1)
             ) ++ last :+
-              set.deviation(summary).fold("")(share => s"${signed(share * 100)} %")
+              set.deviation(summary).fold("")(share => s"${(share * 100).signed(1)} %")
           case None => Vector("0", "", "", "", "", "", "")
         val hasTenSeconds = summary.distance.exists(_.lastTenSeconds.isDefined)
         val paper         = summary.published.filter(_ => hasTenSeconds).flatMap(_.distance) match
           case Some(published) =>
             Vector(
-              fixed(published.mean, 2),
-              s"${fixed(published.least, 1)} … ${fixed(published.most, 1)}",
-              fixed(published.closest, 2)
+              published.mean.fixed(2),
+              s"${published.least.fixed(1)} … ${published.most.fixed(1)}",
+              published.closest.fixed(2)
             )
           case None => Vector("", "", "")
         Vector(summary.name, summary.flight.link) ++ ours ++ paper
@@ -58,11 +58,11 @@ object SummaryTables:
         val observed  = TimingObservation.values.toVector.flatMap: observation =>
           Vector(
             role.observedMs.get(observation).fold(""): ms =>
-              s"${brief(ms.mean)}/${brief(ms.median)}/${brief(ms.p99)}",
-            published.fold("")(means => brief(Published.ofRole(means(observation), role.role)))
+              s"${ms.mean.brief}/${ms.median.brief}/${ms.p99.brief}",
+            published.fold("")(means => Published.ofRole(means(observation), role.role).brief)
           )
         Vector(summary.name, summary.flight.link, role.role) ++ observed ++
-          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => brief(age.mean)))
+          Vector(role.ownTrueAgeMs, role.opponentTrueAgeMs).map(_.fold("")(age => age.mean.brief))
     )
 
   /** How much was done, and what did not go as wished; of the rarer kinds of events those that occurred. */
@@ -83,7 +83,7 @@ object SummaryTables:
     */
   def seen(flights: Seq[FlightSummary]): TextTable =
     def spread(values: Option[Distribution], digits: Int) =
-      values.fold(Vector("", ""))(all => Vector(fixed(all.median, digits), fixed(all.p99, digits)))
+      values.fold(Vector("", ""))(all => Vector(all.median.fixed(digits), all.p99.fixed(digits)))
     TextTable(
       Vector("<loop", "<link", "<vehicle", "<looks for", "images", "found") ++
         Vector("took ms p50", "p99", "age ms p50", "p99", "off m p50", "p99"),
@@ -118,10 +118,13 @@ object SummaryTables:
         val flight = twin.live.flight
         Vector(twin.live.name, flight.link, flight.seed.toString, twin.seeds) ++
           columns.map((role, quantity, _) =>
-            twin.find(role, quantity).fold("")(one => fixed(one.distance, 2))
+            twin.find(role, quantity).fold("")(one => one.distance.fixed(2))
           ) ++
-          twin.converged.fold(Vector("", ""))((live, virtual) => Vector(fixed(live, 2), fixed(virtual, 2))) ++
-          Vector(twin.difference.fold("")(share => s"${signed(share * 100)} %"), twin.unlike.mkString("; "))
+          twin.converged.fold(Vector("", ""))((live, virtual) => Vector(live.fixed(2), virtual.fixed(2))) ++
+          Vector(
+            twin.difference.fold("")(share => s"${(share * 100).signed(1)} %"),
+            twin.unlike.mkString("; ")
+          )
     )
 
   /** A line for each flight that ended before its time. */
@@ -130,7 +133,7 @@ object SummaryTables:
       summary <- set.all
       reason  <- summary.cutShort
     yield
-      val flown = s"${fixed(summary.flownS, 1)} of ${brief(summary.flight.duration.toSeconds)} s"
+      val flown = s"${summary.flownS.fixed(1)} of ${summary.flight.duration.toSeconds.brief} s"
       s"${summary.flight.id} was cut short, after $flown: $reason"
 
   /** A line for each flight that somebody paused. */
@@ -138,7 +141,7 @@ object SummaryTables:
     for
       summary <- set.all
       span    <- summary.paused
-    yield s"${summary.flight.id} was paused for ${fixed(span.toSeconds, 1)} s: its vehicles hovered and nothing was decided, " +
+    yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and nothing was decided, " +
       "which its times and distances include; it stands beside no other flight"
 
   /** How to read [[twins]]. */

@@ -1,7 +1,8 @@
 package skein.report
 
-import skein.measure.{Deviation, Numbers}
+import skein.measure.Deviation
 import skein.record.ClockKind
+import skein.units.Decimals.fixed
 
 /** What the flights come to, in a sentence for each link: how far each loop was off the paused truth. */
 object Verdict:
@@ -18,6 +19,6 @@ object Verdict:
         val (link, clock) = key
         val shares        = group
           .sortBy(-_.share.mean.abs)
-          .map(one => s"${one.name} ${Numbers.fixed(100 * one.share.mean.abs, 1)} %")
+          .map(one => s"${one.name} ${(100 * one.share.mean.abs).fixed(1)} %")
         val flown = if isVirtual(clock) then " in virtual time" else ""
         s"Over $link$flown, off the truth by: ${shares.mkString(", ")}."

@@ -1,6 +1,7 @@
 package skein.search
 
 import skein.plot.*
+import skein.units.Decimals.significant
 
 /** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found candidate
   * marked, and the defaults.
@@ -43,8 +44,8 @@ object LandscapeFigure:
       panel.left,
       Legend.line("mean", Stroke(line, 2)),
       Legend.box("± one standard deviation of the episodes", line.tinted(0.25)),
-      Legend.line(s"found, ${short(landscape.best.head)}", Stroke(found, 1.6, Vector(5, 3))),
-      Legend.line(s"default, ${short(axis.default)}", Stroke(plain, 1.6, Vector(5, 3)))
+      Legend.line(s"found, ${landscape.best.head.significant(4)}", Stroke(found, 1.6, Vector(5, 3))),
+      Legend.line(s"default, ${axis.default.significant(4)}", Stroke(plain, 1.6, Vector(5, 3)))
     )
     Drawing(
       panel.right + 40,
@@ -86,5 +87,3 @@ object LandscapeFigure:
         ColourScale.viridis(scale._1, scale._2).bar(panel.right + 24, panel.top, panel.bottom, value) ++
         panel.xAxis ++ panel.yAxis ++ Vector(paper, best)
     )
-
-  private def short(value: Double): String = skein.settings.PolicyFile.brief(value)

@@ -15,7 +15,7 @@ import skein.optimise.{
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
-import skein.settings.PolicyFile.brief
+import skein.units.Decimals.significant
 import upickle.default.ReadWriter
 
 /** A setting that is searched between two bounds, by its key. */
@@ -208,7 +208,7 @@ final case class TeamSetup(
   def loop: String                             = question.conditions.loop
   def link: String                             = question.link
   def fresh: Option[Int]                       = Some(question.fresh)
-  def label(candidate: Vector[Double]): String = told(candidate, " ")(brief)
+  def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
   def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
 
   /** The scenario as it is unless told otherwise. */

@@ -9,6 +9,7 @@ import skein.policy.{LearnedPolicy, PolicyFamily, Role}
 import skein.search.Conditions
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.units.Decimals.significant
 import upickle.default.ReadWriter
 
 /** What is to be learned, in the words of the user; enough to go on with it, or to learn it again.
@@ -97,7 +98,7 @@ object LearnQuestion:
     Either.cond(
       value >= least && value <= most,
       (),
-      s"$option: expected ${PolicyFile.brief(least)} to ${PolicyFile.brief(most)}$unit, came ${PolicyFile.brief(value)}$unit"
+      s"$option: expected ${least.significant(4)} to ${most.significant(4)}$unit, came ${value.significant(4)}$unit"
     )
 
   /** `learning rate: …` as `--learning-rate: …`. */

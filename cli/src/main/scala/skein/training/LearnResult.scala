@@ -5,6 +5,7 @@ import skein.plot.Drawing
 import skein.report.{Section, TextTable}
 import skein.search.{Judge, SearchResult}
 import skein.settings.PolicyFile
+import skein.units.Decimals.significant
 
 /** What was learned, measured on episodes that learning never met.
   *
@@ -29,8 +30,8 @@ final case class LearnResult(
       Vector(
         policy,
         where,
-        PolicyFile.brief(tally.mean),
-        PolicyFile.brief(tally.halfWidth95),
+        tally.mean.significant(4),
+        tally.halfWidth95.significant(4),
         tally.count.toString,
         unit
       )

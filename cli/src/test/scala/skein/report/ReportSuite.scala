@@ -3,10 +3,10 @@ package skein.report
 import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
-import skein.measure.Numbers
 import skein.record.{MemoryRecorder, RecordError, Recording}
 import skein.scenario.Scenarios
 import skein.testing.TemporaryFolders
+import skein.units.Decimals.fixed
 
 class ReportSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
@@ -71,7 +71,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders:
   test("the tables have our values beside the paper's"):
     val stream = SummaryTables.distances(set).rows.find(row => row(0) == "stream" && row(1) == "vpn").get
     val ours   = set.flights.find(_.flight.id == "stream-vpn").flatMap(_.distance).get.lastTenSeconds.get.mean
-    assert(stream.contains(Numbers.fixed(ours, 2)), stream)
+    assert(stream.contains(ours.fixed(2)), stream)
     assert(stream.contains("8.50"), stream)
 
   test("columns of a text table stand below their names"):

@@ -1,10 +1,11 @@
 package skein.report
 
-import skein.measure.{DistanceCurve, Distribution, FlightSummary, Numbers, Published, TimingObservation}
+import skein.measure.{DistanceCurve, Distribution, FlightSummary, Published, TimingObservation}
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
+import skein.units.Decimals.brief
 
 class SummarySuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
@@ -115,9 +116,9 @@ class SummarySuite extends munit.FunSuite:
       val below = place.toInt
       ages(below) + (place - below) * (ages((below + 1).min(ages.size - 1)) - ages(below))
     val expected =
-      Vector(ages.sum / ages.size, quantile(0.5), quantile(0.99)).map(Numbers.brief).mkString("/")
+      Vector(ages.sum / ages.size, quantile(0.5), quantile(0.99)).map(_.brief).mkString("/")
     assertEquals(table.rows.head.take(4), Vector("stream", "direct", "evader", expected))
-    assertNotEquals(Numbers.brief(quantile(0.99)), Numbers.brief(quantile(0.95)))
+    assertNotEquals(quantile(0.99).brief, quantile(0.95).brief)
 
   test("the deviation from the truth is relative to the paused flight of the same set"):
     val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)

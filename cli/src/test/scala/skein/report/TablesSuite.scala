@@ -4,7 +4,6 @@ import skein.measure.{
   Deviation,
   Distribution,
   FlightSet,
-  Numbers,
   TimingObservation,
   PredictionErrors,
   PredictionGroup
@@ -12,6 +11,7 @@ import skein.measure.{
 import skein.record.{Event, EventKind, Planned, Recording}
 import skein.scenario.Scenarios
 import skein.units.*
+import skein.units.Decimals.{brief, fixed}
 
 /** What the tables say, held against the flights that they are about. */
 class TablesSuite extends munit.FunSuite:
@@ -35,12 +35,12 @@ class TablesSuite extends munit.FunSuite:
     val stream = row(table, "stream")
     val flown  = means.tail
     val mean   = flown.sum / 3
-    assertEquals(stream("last 10 s m"), Numbers.fixed(mean, 2))
-    assertEquals(stream("least"), Numbers.fixed(flown.min, 2))
-    assertEquals(stream("most"), Numbers.fixed(flown.max, 2))
-    assertEquals(stream("sd"), Numbers.fixed(math.sqrt(flown.map(m => (m - mean) * (m - mean)).sum / 3), 2))
+    assertEquals(stream("last 10 s m"), mean.fixed(2))
+    assertEquals(stream("least"), flown.min.fixed(2))
+    assertEquals(stream("most"), flown.max.fixed(2))
+    assertEquals(stream("sd"), math.sqrt(flown.map(m => (m - mean) * (m - mean)).sum / 3).fixed(2))
     val percent = 100 * (mean / means.head - 1)
-    assertEquals(stream("vs paused"), (if percent < 0 then "" else "+") + Numbers.fixed(percent, 1) + " %")
+    assertEquals(stream("vs paused"), (if percent < 0 then "" else "+") + percent.fixed(1) + " %")
     assertEquals(row(table, "paused")("vs paused"), "+0.0 %")
 
   test("without a paused flight nothing is said of the truth, and captures are counted"):
@@ -48,7 +48,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(stream("vs paused"), "")
     val closest = set.flights.tail.map(_.distance.get.closest._2)
     assertEquals(stream("captured"), closest.count(_ < 1.5).toString)
-    assertEquals(stream("closest m"), Numbers.fixed(closest.sum / 3, 2))
+    assertEquals(stream("closest m"), (closest.sum / 3).fixed(2))
 
   test("a deviation of several flights has a spread, one of a single flight has none"):
     def deviation(shares: Double*) =
@@ -200,7 +200,7 @@ class TablesSuite extends munit.FunSuite:
     )
     for (role, row) <- Seq("Evader", "Pursuer").zip(table.rows) do
       val ages                   = recording.decisions.filter(_.vehicle == role).flatMap(_.trueAge)
-      def mean(of: Vector[Span]) = Numbers.brief(of.map(_.toMillis).sum / of.size)
+      def mean(of: Vector[Span]) = (of.map(_.toMillis).sum / of.size).brief
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(TimingObservation.values.size, paper.size)
 

@@ -4,6 +4,7 @@ import skein.policy.{Policy, Role}
 import skein.record.*
 import skein.scenario.{Result, Scenario, Scenarios, Track, Tracks}
 import skein.units.*
+import skein.units.Decimals.fixed
 
 /** What one recording comes to.
   *
@@ -162,7 +163,7 @@ object FlightSummary:
         .find(_.kind == EventKind.Aborted)
         .map(_.detail)
         .orElse(Option.when(seen + Margin < recording.flight.duration)(
-          s"the recording breaks off after ${Numbers.fixed(seen.toSeconds, 1)} of ${Numbers.fixed(recording.flight.duration.toSeconds, 1)} s"
+          s"the recording breaks off after ${seen.toSeconds.fixed(1)} of ${recording.flight.duration.toSeconds.fixed(1)} s"
         ))
 
   private def paused(recording: Recording): Option[Span] =

@@ -1,6 +1,7 @@
 package skein.measure
 
 import skein.record.Flight
+import skein.units.Decimals.brief
 
 /** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
   *
@@ -47,8 +48,8 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
         s"$what ${show(of(live.flight))} live, ${theirs.map(show).mkString(", ")} virtual"
       )
     Vector(
-      names("duration", _.duration)(span => s"${Numbers.brief(span.toSeconds)} s"),
-      names("period", _.period)(span => s"${Numbers.brief(span.toMillis)} ms"),
+      names("duration", _.duration)(span => s"${span.toSeconds.brief} s"),
+      names("period", _.period)(span => s"${span.toMillis.brief} ms"),
       names("scenario", _.scenario)(identity),
       names("simulator", _.simulator)(identity)
     ).flatten

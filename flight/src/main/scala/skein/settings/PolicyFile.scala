@@ -7,6 +7,7 @@ import scala.util.Try
 import skein.onnx.OnnxPolicy
 import skein.policy.{Fleet, Policy, PolicyFamily, Role}
 import skein.scenario.Scenarios
+import skein.units.Decimals.significant
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
   * how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
@@ -35,7 +36,7 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
   /** The same with fewer digits. */
   def label: String =
     val shown = family.space.axes.zip(parameters).take(PolicyFile.MostShown).map: (axis, value) =>
-      s"${axis.name}=${PolicyFile.brief(value)}"
+      s"${axis.name}=${value.significant(4)}"
     val more = family.space.dimension - shown.size
     (name +: shown).mkString(" ") + (if more > 0 then s" and $more more" else "")
 
@@ -68,11 +69,6 @@ object PolicyFile:
 
   /** The paper's policy of a role of the duel. */
   def paperOf(role: Role): PolicyFile = ofDefaults(role, PolicyFamily.paperOf(role))
-
-  /** Four significant digits. */
-  def brief(value: Double): String =
-    if value == 0 || !value.isFinite then value.toString
-    else java.math.BigDecimal(value).round(java.math.MathContext(4)).stripTrailingZeros.toPlainString
 
   /** The role that a family is for, if it is for one alone, or the role asked for.
     *
