@@ -104,7 +104,7 @@ def fly(
     clock : str
         ``virtual`` (many times faster) or ``real``.
     scenario : str, optional
-        The paper's duel unless named; ``surround``, ``formation``, ``crossing``.
+        The paper's duel unless named; ``surround``, ``formation``, ``crossing``, ``forest``, ``convoy``, ``blind-pursuit``.
     settings : mapping, optional
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional

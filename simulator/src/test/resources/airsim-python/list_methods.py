@@ -1,4 +1,4 @@
-"""Prints every function that the official multirotor client calls, with its number of arguments: `name arity`.
+"""Prints every function that the official clients of multirotors and cars call, with its number of arguments: `name arity`.
 
 The client's methods are called one after another on a connection that only writes down what it is asked for.
 """
@@ -26,9 +26,11 @@ class Notebook:
     call_async = call
 
 
-client = object.__new__(airsim.MultirotorClient)
-client.client = Notebook()
-for name, method in inspect.getmembers(client, inspect.ismethod):
+notebook = Notebook()
+clients = [object.__new__(airsim.MultirotorClient), object.__new__(airsim.CarClient)]
+for client in clients:
+    client.client = notebook
+for name, method in (member for client in clients for member in inspect.getmembers(client, inspect.ismethod)):
     wanted = [p for p in inspect.signature(method).parameters.values() if p.default is p.empty]
     arguments = [{"K1": 0.0} if p.name == "distortion_params" else 1 for p in wanted]
     if not name.startswith("_"):
@@ -37,6 +39,6 @@ for name, method in inspect.getmembers(client, inspect.ismethod):
         except Called:
             pass
 
-for function, arities in sorted(client.client.functions.items()):
+for function, arities in sorted(notebook.functions.items()):
     (arity,) = arities
     print(function, arity)

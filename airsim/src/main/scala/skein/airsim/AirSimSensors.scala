@@ -6,10 +6,10 @@ import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
-/** A multirotor's first sensor of each kind, as numbers. */
+/** A vehicle's first sensor of each kind, as numbers. */
 private object AirSimSensors:
 
-  def of(vehicle: Multirotor): Map[String, Sensor] = Map(
+  def of(vehicle: VehicleClient): Map[String, Sensor] = Map(
     "imu" -> sensor(vectors("angularVelocityFrd", "RadPerS") ++ vectors("specificForceFrd", "Mps2"))(
       vehicle.imu(),
       imu => numbers(imu.angularVelocityFrd) ++ numbers(imu.specificForceFrd)

@@ -1,42 +1,32 @@
 package skein.airsim
 
+import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.rpc.{CallOptions, Channel, RpcError}
+import skein.port.VehiclePort
+import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
-import upack.{Bool, Float32, Float64, Int32, Msg, Str}
-import upickle.default.{Reader, writeMsg}
+import upack.{Bool, Float64, Int32, Msg}
+import upickle.default.writeMsg
 
 /** One multirotor of a simulator. Positions are world NED in m, velocities NED in m/s.
   *
   * A move answers when it has ended: true if it was flown to its end, false if a newer one replaced it or its time was
   * over. All moves of one vehicle share a connection, so that none overtakes another. AirSim holds a worker for each
   * move until it ends: have at most one under way and the one that replaces it.
-  *
-  * @param originNed
-  *   where the vehicle's own frame has its origin: its start
-  * @param connectionKey
-  *   vehicles with different keys are spread over the connections
   */
 final class Multirotor(
     client: AirSimClient,
-    val name: String,
-    val originNed: Vector3 = Vector3.Zero,
+    name: String,
+    originNed: Vector3 = Vector3.Zero,
     connectionKey: Int = 0
-) extends AttitudeMoves:
+) extends VehicleClient(client, name, originNed, connectionKey),
+      AttitudeMoves:
   private given ExecutionContext = ExecutionContext.parasitic
-
-  private val once   = CallOptions(client.timeout)
-  private val getter = once.copy(idempotent = true)
-  private val sensor = getter.copy(channel = Channel.Sensors)
-
-  /** Its cameras and LIDARs. */
-  val eyes: Eyes = Eyes(client, name, originNed)
 
   // ---- state
 
-  /** Where the vehicle is and how it moves, by its own estimate, with the three times known so far. */
   def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]] = status().map(_.map(_.map(_.kinematics)))
 
   def status(): Future[Either[RpcError, Stamped[MultirotorStatus]]] =
@@ -50,60 +40,10 @@ final class Multirotor(
       RpcError.Malformed("getMultirotorState", "expected finite numbers in kinematics_estimated")
     ))
 
-  /** The truth; AirSim does not say when it was valid. */
-  def groundTruth(): Future[Either[RpcError, Kinematics]] =
-    get[KinematicsState]("simGetGroundTruthKinematics").map(_.map(inWorld))
-
-  def pose(): Future[Either[RpcError, VehiclePose]] =
-    get[Pose]("simGetVehiclePose").map(_.map(pose =>
-      VehiclePose(pose.position.toVector + originNed, pose.orientation.toQuaternion)
-    ))
-
-  /** Puts the vehicle elsewhere. It keeps its velocity and its goal: one that holds a position flies back there, one that
-    * stood on the ground falls.
-    */
-  def setPose(pose: VehiclePose): Future[Either[RpcError, Unit]] =
-    tell("simSetVehiclePose", own(pose), Bool(true))
-
   /** Lets the vehicle hover at a place above the ground, level and at rest, as if it had long done so; it must be under api
     * control. The built-in simulator alone can do that.
     */
   def hoverAt(pose: VehiclePose): Future[Either[RpcError, Unit]] = tell("skeinHoverAt", own(pose))
-
-  /** What was touched since the last call, if anything was. */
-  def collision(): Future[Either[RpcError, Option[Collision]]] =
-    call[CollisionInfo]("simGetCollisionInfo", Seq(), once).map(_.map: info =>
-      Option.when(info.has_collided)(
-        Collision(info.time_stamp, info.position.toVector + originNed, info.normal.toVector, info.object_name)
-      ))
-
-  /** The start of the vehicle on the globe. */
-  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(located))
-
-  // ---- sensors; an empty name means the first of its kind
-
-  def imu(sensor: String = ""): Future[Either[RpcError, Stamped[ImuReading]]] =
-    measured("getImuData", Str(sensor)): (data: ImuData) =>
-      val reading = ImuReading(
-        data.orientation.toQuaternion,
-        data.angular_velocity.toVector,
-        data.linear_acceleration.toVector
-      )
-      (reading, data.time_stamp)
-
-  def gps(sensor: String = ""): Future[Either[RpcError, Stamped[GpsReading]]] =
-    measured("getGpsData", Str(sensor)): (data: GpsData) =>
-      val reading = GpsReading(located(data.gnss.geo_point), data.gnss.velocity.toVector, data.is_valid)
-      (reading, data.time_stamp)
-
-  def barometer(sensor: String = ""): Future[Either[RpcError, Stamped[BarometerReading]]] =
-    measured("getBarometerData", Str(sensor)): (data: BarometerData) =>
-      (BarometerReading(Metres(data.altitude), data.pressure), data.time_stamp)
-
-  /** Magnetic field, body FRD, gauss. */
-  def magnetometer(sensor: String = ""): Future[Either[RpcError, Stamped[Vector3]]] =
-    measured("getMagnetometerData", Str(sensor)): (data: MagnetometerData) =>
-      (data.magnetic_field_body.toVector, data.time_stamp)
 
   /** Rotors in AirSim's order: front right, rear left, front left, rear right. */
   def rotors(): Future[Either[RpcError, Stamped[Seq[RotorReading]]]] =
@@ -111,27 +51,11 @@ final class Multirotor(
       val rotors = states.rotors.map(rotor => RotorReading(rotor.thrust, rotor.torque_scaler, rotor.speed))
       (rotors, states.timestamp)
 
-  // ---- control
-
-  /** Without api control moves answer true and do nothing. */
-  def enableApiControl(on: Boolean = true): Future[Either[RpcError, Unit]] =
-    tell("enableApiControl", Bool(on))
-
-  def isApiControlEnabled(): Future[Either[RpcError, Boolean]] = get("isApiControlEnabled")
+  // ---- moves
 
   def arm(): Future[Either[RpcError, Boolean]] = ask("armDisarm", Bool(true))
 
   def disarm(): Future[Either[RpcError, Boolean]] = ask("armDisarm", Bool(false))
-
-  /** Ends the move under way, with false. It travels behind every command sent before, on their connection. */
-  def cancelLastTask(): Future[Either[RpcError, Unit]] =
-    call[Msg]("cancelLastTask", Seq(), once.copy(key = Some(connectionKey))).map(_.map(_ => ()))
-
-  /** Answers when every command sent before has reached the simulator: it travels behind them, on their connection. */
-  def reached(): Future[Either[RpcError, Unit]] =
-    client.rpc.call("ping", Seq(), once.copy(key = Some(connectionKey))).map(_.map(_ => ()))
-
-  // ---- moves
 
   /** Climbs by 2 m. AirSim stops half a metre short and answers false. */
   def takeoff(timeout: Span = Span.ofSeconds(20)): Future[Either[RpcError, Boolean]] =
@@ -292,71 +216,20 @@ final class Multirotor(
   private def move(method: String, lasts: Span, params: Msg*): Future[Either[RpcError, Boolean]] =
     call(method, params, moving(lasts))
 
-  private def moving(lasts: Span) = once.copy(timeout = client.timeout + lasts, key = Some(connectionKey))
-
-  private def get[A: Reader](method: String): Future[Either[RpcError, A]] = call(method, Seq(), getter)
-
-  private def ask(method: String, params: Msg*): Future[Either[RpcError, Boolean]] =
-    call(method, params, once)
-
-  private def tell(method: String, params: Msg*): Future[Either[RpcError, Unit]] =
-    call[Msg](method, params, once).map(_.map(_ => ()))
-
-  private def call[A: Reader](
-      method: String,
-      params: Seq[Msg],
-      options: CallOptions
-  ): Future[Either[RpcError, A]] =
-    client.rpc.callAs[A](method, params :+ Str(name), options)
-
-  /** A getter whose answer says when it was valid. */
-  private def stamped[A: Reader, B](method: String, params: Msg*)(
-      read: A => (B, Instant)
-  ): Future[Either[RpcError, Stamped[B]]] = asked(getter, method, params)(read)
-
-  private def measured[A: Reader, B](method: String, params: Msg*)(
-      read: A => (B, Instant)
-  ): Future[Either[RpcError, Stamped[B]]] = asked(sensor, method, params)(read)
-
-  private def asked[A: Reader, B](options: CallOptions, method: String, params: Seq[Msg])(
-      read: A => (B, Instant)
-  ): Future[Either[RpcError, Stamped[B]]] =
-    client.rpc
-      .callStampedAs[A](method, params :+ Str(name), options)
-      .map(_.map: answer =>
-        val (value, validAt) = read(answer.value)
-        Stamped(value, validAt, answer.sentAt, answer.receivedAt))
-
-  private def own(pose: VehiclePose): Msg =
-    writeMsg(Pose(Vector3r(pose.positionNed - originNed), Quaternionr(pose.orientation)))
-
-  private def inWorld(state: KinematicsState): Kinematics =
-    Kinematics(
-      state.position.toVector + originNed,
-      state.linear_velocity.toVector,
-      state.orientation.toQuaternion,
-      state.angular_velocity.toVector
-    )
-
-  private def located(point: GeoPoint): GeoLocation =
-    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
+  private def moving(lasts: Span) = inOrder.copy(timeout = client.timeout + lasts)
 
   protected def ownDown(down: Metres): Double = down.value - originNed.z
 
-  private def real(value: Double): Msg      = Float32(value.toFloat)
   private def seconds(span: Span): Msg      = real(span.toSeconds)
   private def degrees(radians: Double): Msg = real(math.toDegrees(radians))
+
+  def over(client: AirSimClient, originNed: Vector3, connectionKey: Int): Multirotor =
+    Multirotor(client, name, originNed, connectionKey)
+
+  def port(onLost: String => Unit)(using ActorSystem): VehiclePort = AirSimVehicle(this, onLost)
 
 object Multirotor:
 
   /** The vehicle of this name; its origin is read from the simulator's settings. */
   def named(client: AirSimClient, name: String): Future[Either[AirSimError, Multirotor]] =
-    given ExecutionContext = ExecutionContext.parasitic
-    client.vehicles().flatMap:
-      case Left(error)                           => Future.successful(Left(AirSimError.Call(error)))
-      case Right(names) if !names.contains(name) =>
-        Future.successful(Left(AirSimError.UnknownVehicle(name, names)))
-      case Right(names) =>
-        client.settings().map(_.map: world =>
-          val origin = world.vehicles.find(_.name == name).fold(Vector3.Zero)(_.startNed)
-          Multirotor(client, name, origin, connectionKey = names.indexOf(name)))
+    VehicleClient.named(client, name, Multirotor(client, name, _, _))

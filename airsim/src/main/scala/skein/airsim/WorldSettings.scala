@@ -1,8 +1,10 @@
 package skein.airsim
 
 import scala.util.control.NonFatal
+import skein.policy.Agent
 import skein.scenario.Equipment
 import skein.units.*
+import skein.vehicle.VehicleKind
 import ujson.{Num, Obj, Value}
 
 /** Where a vehicle starts, which is where its own frame has its origin.
@@ -26,10 +28,20 @@ final case class VehicleSettings(
     firstPerson: Boolean = false,
     armed: Boolean = true,
     sensors: Map[String, SensorKind] = SensorKind.Default
-)
+):
+  def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
+
+object VehicleSettings:
+  /** Of a scenario's agent: on the ground below its start, looking where it will go. */
+  def of(agent: Agent): VehicleSettings = VehicleSettings(
+    agent.name,
+    agent.startPositionNed.copy(z = 0),
+    agent.startHeading,
+    WorldSettings.vehicleType(agent.kind)
+  )
 
 /** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed. Everything else in it is passed
-  * over.
+  * over. `SimMode` says of what type vehicles are that name none; unlike AirSim's, a world may have vehicles of both.
   *
   * @param vehicles
   *   in the file's order
@@ -65,12 +77,21 @@ object WorldSettings:
   /** The default vehicle's type and name in AirSim. */
   val SimpleFlight = "SimpleFlight"
 
+  /** The same where `SimMode` is `Car`. */
+  val PhysXCar = "PhysXCar"
+
+  private val CarMode = "Car"
+
+  private[airsim] def vehicleType(kind: VehicleKind): String = kind match
+    case VehicleKind.Multirotor => SimpleFlight
+    case VehicleKind.Car        => PhysXCar
+
   /** AirSim's default home. */
   val DefaultOrigin: GeoLocation = GeoLocation(47.641468, -122.140165, Metres(122))
 
   val Default: WorldSettings = WorldSettings(Vector(VehicleSettings(SimpleFlight)))
 
-  /** Reads a `settings.json`. Without vehicles there is one, named `SimpleFlight`, as in AirSim. */
+  /** Reads a `settings.json`. Without vehicles there is one, named after its type, as in AirSim. */
   def parse(text: String): Either[SettingsError, WorldSettings] =
     try
       ujson.read(text) match
@@ -114,7 +135,8 @@ object WorldSettings:
       if sensors.nonEmpty then entry("Sensors") = Obj.from(sensors)
       if cameras.nonEmpty then entry("Cameras") = Obj.from(cameras)
       vehicle.name -> entry
-    Obj("SettingsVersion" -> 1.2, "SimMode" -> "Multirotor", "Vehicles" -> Obj.from(entries)).render(2)
+    val mode = if vehicles.nonEmpty && vehicles.forall(_.isCar) then CarMode else "Multirotor"
+    Obj("SettingsVersion" -> 1.2, "SimMode" -> mode, "Vehicles" -> Obj.from(entries)).render(2)
 
   private def rendered(lidar: Equipment.Lidar): Obj = Obj(
     "SensorType"         -> SensorKind.Lidar.number,
@@ -144,11 +166,12 @@ object WorldSettings:
 
   private def read(root: Obj, text: String): WorldSettings =
     val unless   = sensors(root, "", "DefaultSensors", SensorKind.Default)
+    val usual    = if string(root, "", "SimMode", "") == CarMode then PhysXCar else SimpleFlight
     val vehicles = section(root, "Vehicles").value.toVector.map: (name, value) =>
-      vehicle(name, asObject(s"Vehicles.$name", value), unless)
+      vehicle(name, asObject(s"Vehicles.$name", value), usual, unless)
     val origin = section(root, "OriginGeopoint")
     WorldSettings(
-      if vehicles.isEmpty then Default.vehicles else vehicles,
+      if vehicles.isEmpty then Vector(VehicleSettings(usual, vehicleType = usual)) else vehicles,
       GeoLocation(
         number(origin, "OriginGeopoint", "Latitude", DefaultOrigin.latitudeDeg),
         number(origin, "OriginGeopoint", "Longitude", DefaultOrigin.longitudeDeg),
@@ -164,14 +187,19 @@ object WorldSettings:
     if speed > 0 then speed
     else throw Misfit(SettingsError.Unexpected("ClockSpeed", "a number above 0", speed.toString))
 
-  private def vehicle(name: String, fields: Obj, unless: Map[String, SensorKind]): VehicleSettings =
+  private def vehicle(
+      name: String,
+      fields: Obj,
+      usual: String,
+      unless: Map[String, SensorKind]
+  ): VehicleSettings =
     val path = s"Vehicles.$name"
     VehicleSettings(
       name,
       vector(fields, path),
       Radians(math.toRadians(number(fields, path, "Yaw", 0))),
-      string(fields, path, "VehicleType", SimpleFlight) match
-        case ""   => SimpleFlight
+      string(fields, path, "VehicleType", usual) match
+        case ""   => usual
         case kind => kind
       ,
       flag(fields, path, "IsFpvVehicle", default = false),
@@ -221,7 +249,7 @@ object WorldSettings:
       case Some(ujson.Str(value)) => value
       case None                   => default
       case Some(other)            =>
-        throw Misfit(SettingsError.Unexpected(s"$path.$key", "a string", kindOf(other)))
+        throw Misfit(SettingsError.Unexpected(s"$path.$key".stripPrefix("."), "a string", kindOf(other)))
 
   private def flag(fields: Obj, path: String, key: String, default: Boolean): Boolean =
     fields.value.get(key) match

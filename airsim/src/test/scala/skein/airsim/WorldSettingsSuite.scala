@@ -10,6 +10,26 @@ class WorldSettingsSuite extends munit.FunSuite:
   test("settings without vehicles have AirSim's default one"):
     assertEquals(WorldSettings.parse("{}").map(_.vehicles), Right(Vector(VehicleSettings("SimpleFlight"))))
 
+  test("SimMode says what vehicles are that name no type; a world may have both"):
+    assertEquals(
+      WorldSettings.parse("""{"SimMode": "Car"}""").map(_.vehicles),
+      Right(Vector(VehicleSettings("PhysXCar", vehicleType = "PhysXCar")))
+    )
+    val mixed = WorldSettings.parse(
+      """{"SimMode": "Car", "Vehicles": {"A": {"X": 3}, "B": {"VehicleType": "SimpleFlight"}}}"""
+    )
+    assertEquals(
+      mixed.map(_.vehicles.map(one => (one.name, one.isCar))),
+      Right(Vector(("A", true), ("B", false)))
+    )
+    assertEquals(
+      WorldSettings.parse("""{"SimMode": 1}""").left.map(_.message),
+      Left("SimMode: expected a string, found a number")
+    )
+    val cars = mixed.toOption.get.vehicles.take(1)
+    assert(WorldSettings.render(cars).contains("\"SimMode\": \"Car\""))
+    assertEquals(WorldSettings.parse(WorldSettings.render(cars)).map(_.vehicles), Right(cars))
+
   test("vehicles, origin, wind and clock speed are read, the rest is passed over"):
     val text = """{"SettingsVersion": 1.2, "SimMode": "Multirotor", "ClockSpeed": 2,
       "Wind": {"X": 1, "Y": -2}, "OriginGeopoint": {"Latitude": 47, "Longitude": 8, "Altitude": 400},

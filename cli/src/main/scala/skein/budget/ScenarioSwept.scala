@@ -11,6 +11,7 @@ import skein.search.{Conditions, TeamQuestion, UntilWrong}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** What is asked of a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(
@@ -48,7 +49,13 @@ final case class ScenarioQuestion(
   private def engagement: Either[String, Engagement] =
     try
       val plane = Engagement.of(scenario.fleet, conditions.durationS)
-      Either.cond(plane.agents.map(_.altitudeDownM).distinct.size == 1, plane, "not all fly at one altitude")
+      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars")
+      else
+        Either.cond(
+          plane.agents.map(_.altitudeDownM).distinct.size == 1,
+          plane,
+          "not all fly at one altitude"
+        )
     catch
       case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
 

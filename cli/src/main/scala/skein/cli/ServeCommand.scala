@@ -55,6 +55,11 @@ object ServeCommand
       )
       world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
       scene <- NamedScene.read(options.scene).left.map("--scene: " + _)
+      _     <- Either.cond(
+        !options.mavlink.value || !world.vehicles.exists(_.isCar),
+        (),
+        s"--mavlink: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
+      )
       mavlink = Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host))
       shows   = Shows()
       _ <- options.view.serving(shows)(

@@ -7,6 +7,7 @@ import skein.scenario.{Scenario, Scenarios}
 import skein.settings.NamedScene
 import skein.torture.{Torture, Verdict}
 import skein.units.Span
+import skein.vehicle.VehicleKind
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
 
 /** What flies through faults, as workers get it. A block is a range of seeds.
@@ -31,6 +32,11 @@ private[cli] final case class TortureQuestion(
         task.forall(_.eyes.isEmpty),
         (),
         s"--scenario ${scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
+      )
+      _ <- Either.cond(
+        task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor)),
+        (),
+        s"--scenario ${scenario.getOrElse("")}: expected multirotors, came cars, whose commands torture does not follow"
       )
       scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)

@@ -6,7 +6,7 @@ import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
 import skein.scene.render.{Kind, Picture, Png as PictureFile, Renderer, View}
 import skein.settings.NamedScene
-import skein.simulator.VehicleBody
+import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed
 import skein.vehicle.Quadrotor
 
@@ -43,7 +43,7 @@ object SightFigure:
       val cells = seen.decisive.map: (name, sight) =>
         val thing = SceneObject(
           seen.eye.target,
-          VehicleBody.parts(Quadrotor.AirSim.airframe, number, scene.scene.vehicleTagM),
+          MultirotorBody.parts(Quadrotor.AirSim.airframe, number, scene.scene.vehicleTagM),
           Placement(sight.trueNed, sight.trueOrientation)
         )
         val view =

@@ -16,6 +16,7 @@ import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
 import skein.settings.ConfigKeys
 import skein.units.Decimals.significant
+import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
 
 /** A setting that is searched between two bounds, by its key. */
@@ -95,6 +96,11 @@ final case class TeamQuestion(
         fresh >= 2 && fresh <= MostFresh,
         (),
         s"--fresh: expected 2 to $MostFresh, came $fresh"
+      )
+      _ <- Either.cond(
+        plain.agents.forall(_.kind == VehicleKind.Multirotor),
+        (),
+        s"--scenario: expected one of multirotors, came ${plain.name}, which has cars: fly and budget fly it"
       )
       flown <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
       sum   <- WeightedSum

@@ -1,6 +1,7 @@
 package skein.policy
 
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** A vehicle's part in the scenario, for example `Role("Scout")`. */
 final case class Role(name: String):
@@ -28,11 +29,13 @@ object Role:
   * @param speed
   *   commanded where the policy does not choose one
   * @param startPositionNed
-  *   m, in the world frame; it also holds this altitude
+  *   m, in the world frame; it also holds this altitude. A car's is 0
   * @param startHeading
   *   taken as the last commanded heading before the first decision
   * @param policy
   *   a [[Policy]] against one opponent, a [[TeamPolicy]] that knows the whole team, or any other in three dimensions
+  * @param kind
+  *   of vehicle; a car is steered in the plane, or told to stand still
   */
 final case class Agent(
     name: String,
@@ -40,7 +43,8 @@ final case class Agent(
     speed: MetresPerSecond,
     startPositionNed: Vector3,
     startHeading: Radians,
-    policy: AgentPolicy
+    policy: AgentPolicy,
+    kind: VehicleKind = VehicleKind.Multirotor
 ):
   /** The velocity to command for a heading, m/s, horizontal, world NED.
     *

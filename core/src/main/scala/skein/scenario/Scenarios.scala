@@ -58,5 +58,6 @@ object Scenarios:
     ScenarioKind(Surround()),
     ScenarioKind(Formation()),
     ScenarioKind(Crossing()),
-    ScenarioKind(Forest())
+    ScenarioKind(Forest()),
+    ScenarioKind(Convoy())
   )

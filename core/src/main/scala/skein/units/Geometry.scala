@@ -57,3 +57,7 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
 
 object Quaternion:
   val Identity: Quaternion = Quaternion(1, 0, 0, 0)
+
+  /** Level, with this heading, rad from north towards east. */
+  def ofYaw(headingRad: Double): Quaternion =
+    Quaternion(StrictMath.cos(headingRad / 2), 0, 0, StrictMath.sin(headingRad / 2))

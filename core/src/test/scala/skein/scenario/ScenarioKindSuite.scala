@@ -68,7 +68,9 @@ class ScenarioKindSuite extends munit.FunSuite:
   test("a kind that is not known is told with the nearest that is; no two kinds share a name"):
     assertEquals(
       Scenarios.ours.kind("crosing"),
-      Left("expected duel, surround, formation, crossing, forest, came 'crosing'; the nearest is 'crossing'")
+      Left(
+        "expected duel, surround, formation, crossing, forest, convoy, came 'crosing'; the nearest is 'crossing'"
+      )
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
 

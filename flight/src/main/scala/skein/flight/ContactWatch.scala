@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
-import skein.airsim.{AirSimClient, Collision, Multirotor}
+import skein.airsim.{AirSimClient, Collision, VehicleClient}
 import skein.record.{Event, EventKind, Recorder}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -13,7 +13,7 @@ import skein.units.Decimals.fixed
   */
 private[flight] final class ContactWatch private (
     client: AirSimClient,
-    vehicles: Vector[Multirotor],
+    vehicles: Vector[VehicleClient],
     period: Span,
     clock: Clock,
     recorder: Recorder
@@ -55,13 +55,13 @@ private[flight] object ContactWatch:
   /** What was touched before counts for nothing. */
   def start(
       client: AirSimClient,
-      vehicles: Vector[Multirotor],
+      vehicles: Vector[VehicleClient],
       period: Span,
       clock: Clock,
       recorder: Recorder
   )(using system: ActorSystem): Future[ContactWatch] =
     import system.dispatcher
-    val asked = vehicles.map(vehicle => Multirotor(client, vehicle.name, vehicle.originNed))
+    val asked = vehicles.map(_.over(client))
     val watch = ContactWatch(client, asked, period, clock, recorder)
     watch.ask().map: _ =>
       watch.goOn()

@@ -1,6 +1,6 @@
 package skein.flight
 
-import skein.airsim.{LidarSensor, Multirotor, Scan}
+import skein.airsim.{LidarSensor, Scan, VehicleClient}
 import skein.port.{Sensor, VehiclePort}
 import skein.scenario.{Equipment, Scenario}
 import skein.signal.Stamped
@@ -22,11 +22,11 @@ private[skein] object Equipped:
   def by(
       scenario: Scenario,
       vehicle: VehiclePort,
-      multirotor: Multirotor,
+      client: VehicleClient,
       seen: Map[String, Sensor] = Map.empty,
       scanned: (String, Stamped[Scan]) => Unit = (_, _) => ()
   ): VehiclePort =
     val lidars = scenario.equipment.collect:
-      case lidar: Equipment.Lidar if lidar.vehicle == multirotor.name =>
-        lidar.name -> LidarSensor(multirotor.eyes, lidar, scanned(lidar.name, _))
+      case lidar: Equipment.Lidar if lidar.vehicle == client.name =>
+        lidar.name -> LidarSensor(client.eyes, lidar, scanned(lidar.name, _))
     if lidars.isEmpty && seen.isEmpty then vehicle else Equipped(vehicle, lidars.toMap ++ seen)

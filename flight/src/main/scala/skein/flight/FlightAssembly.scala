@@ -292,16 +292,15 @@ final class FlightAssembler(
       )(_.close())
       vehicles = ready.zipWithIndex.map((vehicle, index) =>
         // Altitudes count from where each vehicle starts, as in its own frame.
-        Multirotor(client, vehicle.name, vehicle.originNed.copy(z = 0), index)
+        vehicle.over(client, vehicle.originNed.copy(z = 0), index)
       )
       logs    = vehicles.map(ImageRecorder(_, monitor, sight => isWatched || recorded(sight)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
       films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
       crafts  = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
-        val craft           = AirSimVehicle(
-          vehicle,
-          lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+        val craft           = vehicle.port(lost =>
+          monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
         )
         val isPaused = plan.loop == LoopKind.Paused
         val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
@@ -368,9 +367,7 @@ final class FlightAssembler(
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)
     else
-      val vehicles = fleet.agents.map(agent =>
-        VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
-      )
+      val vehicles = fleet.agents.map(VehicleSettings.of)
       SimulatorServer
         .start(
           SimulatorSettings(
@@ -390,7 +387,7 @@ final class FlightAssembler(
   /** What the scenario's eyes make of a vehicle's cameras. */
   private def look(
       plan: FlightPlan,
-      vehicle: Multirotor,
+      vehicle: VehicleClient,
       recorder: Recorder,
       log: ImageRecorder
   ): Vector[CameraSensor] =
@@ -406,7 +403,7 @@ final class FlightAssembler(
       )
 
   /** Its cameras that nobody decides by. */
-  private def film(vehicle: Multirotor, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
+  private def film(vehicle: VehicleClient, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
     settings.filmed.filter(_.sight.vehicle == vehicle.name).map: (sight, every) =>
       log.ask(sight.name)
       FilmedCamera(
@@ -421,7 +418,7 @@ final class FlightAssembler(
   private def watchContacts(
       opened: Opened,
       address: Address,
-      vehicles: Vector[Multirotor],
+      vehicles: Vector[VehicleClient],
       recorder: Recorder
   ): Future[Unit] =
     ContactWatch
@@ -435,7 +432,7 @@ final class FlightAssembler(
       .map(contacts => opened.closing(contacts)(_.close()): Unit)
 
   /** Over a connection of its own, without the link: this is not part of the flight. */
-  private def prepare(plan: FlightPlan, address: Address): Future[Vector[Multirotor]] =
+  private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock, () => calledOff(plan.id))
     val prepared    = if simulator.isDefined then preparation.climb(fleet) else preparation.place(fleet)
@@ -486,7 +483,7 @@ object FlightAssembler:
     * @return
     *   `Left` where it did not answer, else why a flight cannot go on
     */
-  private def startedAgain(vehicles: Vector[Multirotor], simulator: Address)(using
+  private def startedAgain(vehicles: Vector[VehicleClient], simulator: Address)(using
       ExecutionContext
   ): Future[Either[String, Option[String]]] =
     Future

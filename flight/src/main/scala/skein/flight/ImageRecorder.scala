@@ -3,7 +3,7 @@ package skein.flight
 import java.nio.{ByteBuffer, ByteOrder}
 import java.util.concurrent.ConcurrentHashMap
 import scala.concurrent.ExecutionContext
-import skein.airsim.{Image, Multirotor, Pixels, Scan}
+import skein.airsim.{Image, Pixels, Scan, VehicleClient}
 import skein.record.{Blob, Cloud, Picture, Recorder, ImagingSensor}
 import skein.signal.Stamped
 import skein.units.*
@@ -14,7 +14,7 @@ import skein.units.*
   *   whether anybody wants to have it
   */
 private[skein] final class ImageRecorder(
-    vehicle: Multirotor,
+    vehicle: VehicleClient,
     recorder: Recorder,
     isWanted: ImagingSensor => Boolean
 ):

@@ -1,11 +1,13 @@
 package skein.flight
 
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.airsim.*
 import skein.policy.{Agent, Fleet}
 import skein.rpc.RpcError
 import skein.units.*
+import skein.vehicle.CarControls
 
 /** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a scenario are above
   * the place where each vehicle's own frame has its origin.
@@ -25,30 +27,48 @@ final class Preparation(
   import system.dispatcher
 
   /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
-  def place(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
+  def place(fleet: Fleet): Future[Either[String, Vector[VehicleClient]]] = prepared:
     everyVehicle(fleet): (vehicle, agent) =>
-      for
-        _ <- call(vehicle.enableApiControl())
-        _ <- call(vehicle.arm())
-        _ <- call(vehicle.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
-      yield vehicle
+      vehicle match
+        case car: Car               => park(car, agent)
+        case multirotor: Multirotor =>
+          for
+            _ <- call(multirotor.enableApiControl())
+            _ <- call(multirotor.arm())
+            _ <- call(multirotor.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
+          yield vehicle
 
-  /** Flies there by [[StartPositioning]]. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
+  /** Flies there by [[StartPositioning]]; cars brake and are put there. For any simulator, in whatever state it is found: what a vehicle has is not taken again,
     * since a vehicle that flies in AirSim falls if api control is taken anew. Those on the ground take off.
     */
-  def climb(fleet: Fleet): Future[Either[String, Vector[Multirotor]]] = prepared:
+  def climb(fleet: Fleet): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for
       paused   <- call(client.isPaused())
       _        <- if paused then call(client.resume()) else Future.unit
       vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
-      _        <- StartPositioning.fly(vehicles.map((vehicle, agent) =>
+      _        <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
+      _        <- StartPositioning.fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
         StartPositioning.Starting(
-          agent.startPositionNed + Vector3(0, 0, vehicle.originNed.z),
-          Approach(agent.name, AirSimVehicle(vehicle, _ => ()), clock, calledOff),
-          () => leaveGround(vehicle)
+          agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
+          Approach(agent.name, AirSimVehicle(multirotor, _ => ()), clock, calledOff),
+          () => leaveGround(multirotor)
         )
-      ))
+      })
     yield vehicles.map(_._1)
+
+  /** Takes the car over, brakes it and puts it to its start: a car cannot drive there by every way. */
+  private def park(car: Car, agent: Agent): Future[VehicleClient] =
+    def stand(looks: Int): Future[Unit] = call(car.status()).flatMap: status =>
+      if math.abs(status.value.speed.value) <= StillMps then Future.unit
+      else if looks == 0 then Future.failed(NotReady(s"'${car.name}' does not come to a stand"))
+      else after(Every.toDuration)(stand(looks - 1))
+    for
+      _ <- call(car.enableApiControl())
+      _ <- call(car.setControls(CarControls.Stop))
+      _ <- stand(Looks)
+      start = agent.startPositionNed.copy(z = car.originNed.z)
+      _ <- call(car.setPose(VehiclePose(start, Quaternion.ofYaw(agent.startHeading.value))))
+    yield car
 
   private def leaveGround(vehicle: Multirotor): Future[Vector3] =
     for
@@ -63,10 +83,10 @@ final class Preparation(
       above <- call(vehicle.kinematics()).map(_.value.positionNed)
     yield above
 
-  private def everyVehicle[A](fleet: Fleet)(use: (Multirotor, Agent) => Future[A]): Future[Vector[A]] =
+  private def everyVehicle[A](fleet: Fleet)(use: (VehicleClient, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>
-      Multirotor
-        .named(client, agent.name)
+      VehicleClient
+        .named(client, agent.name, agent.kind)
         .flatMap:
           case Left(error)    => Future.failed(NotReady(error.message))
           case Right(vehicle) => use(vehicle, agent)
@@ -81,3 +101,7 @@ final class Preparation(
 object Preparation:
   /** What AirSim still takes for no speed, m/s. */
   private val StillMps = 0.05
+
+  /** How often it is looked whether a car stands, and how many times. */
+  private val Every = Span.ofMillis(100)
+  private val Looks = 200

@@ -5,7 +5,7 @@ import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
 import skein.record.Course
 import skein.signal.Kinematics
 import skein.units.*
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ReducedModel, VehicleKind}
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too. */
 private abstract class Planning(fleet: Fleet, self: Int, settings: PlanSettings):
@@ -93,11 +93,12 @@ final case class PlannedDecision(
 
 object Planning:
 
-  /** Whether a vehicle's decisions are planned; else its policy decides. */
+  /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn on the spot. */
   private[loop] def plans(agent: Agent): Boolean = agent.policy match
-    case _: Policy     => agent.role == Role.Pursuer
-    case _: GoalPolicy => true
-    case _             => false
+    case _ if agent.kind != VehicleKind.Multirotor => false
+    case _: Policy                                 => agent.role == Role.Pursuer
+    case _: GoalPolicy                             => true
+    case _                                         => false
 
   /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the time to find
     * every small gain follows the simple model, and guesses of other vehicles, where they are wrong, too; the policy

@@ -14,14 +14,14 @@ import skein.scenario.{Equipment, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
-import skein.vehicle.ReducedModel
+import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
 
 /** What to fly: every loop over every link, and `paused`, the ground truth, once without a network.
   *
   * @param policies
   *   with which the scenario is flown too, beside its own
   * @param predictor
-  *   by which `predictive` predicts
+  *   by which `predictive` predicts multirotors; cars are predicted by their own model
   * @param movesInFlight
   *   moves of one vehicle that may be unanswered; more than 2 are for links that never deliver several at once: see
   *   [[skein.flow.Steer]]
@@ -95,6 +95,9 @@ final case class FlySettings(
   /** Who flies. */
   def fleet: Fleet = scenario.fleet
 
+  private def multirotors: Vector[Agent] = fleet.agents.filter(_.kind == VehicleKind.Multirotor)
+  private def cars: Vector[Agent]        = fleet.agents.filter(_.kind == VehicleKind.Car)
+
   /** How a flight's loop is run. */
   def loopSettings(plan: FlightPlan): LoopSettings =
     val all = loopSettings.copy(seed = plan.seed)
@@ -106,16 +109,21 @@ final case class FlySettings(
 
   /** How the loops are run. */
   def loopSettings: LoopSettings =
-    val altitudes = fleet.agents.map(-_.startPositionNed.z)
-    val timely    = LoopSettings
+    val agents = fleet.agents
+    val timely = LoopSettings
       .every(period)
       .copy(
-        model = vehicle => predictor.at(altitudes(vehicle)),
+        model = vehicle => modelOf(agents(vehicle)),
         planning = planningByModel,
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if PaperDuel.isAsPublished(scenario) then timely.asPublished else timely
+
+  /** By which an agent's readings are carried forward. */
+  private def modelOf(agent: Agent): VehicleModel[?] = agent.kind match
+    case VehicleKind.Multirotor => predictor.at(-agent.startPositionNed.z)
+    case VehicleKind.Car        => CarModel()
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links differ, so
     * that they do not meet the same delays; flights that differ in the policy alone have the same seed.
@@ -242,11 +250,19 @@ object FlySettings:
       Option.when(
         settings.period < Span.ofMillis(1)
       )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
-      settings.fleet.agents.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
+      settings.multirotors.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
         s"${settings.scenario.name}: expected starts above 0 and up to $MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
         "wire: mavlink flies no loop paused, since its vehicles' time does not pass in steps; name other loops"
+      ),
+      settings.cars
+        .find(_.startPositionNed.z != 0)
+        .map(car =>
+          s"${settings.scenario.name}: expected cars on the ground, at 0 m, came ${car.name} at ${-car.startPositionNed.z} m"
+        ),
+      settings.cars.find(_ => settings.wire == Wire.Mavlink).map(car =>
+        s"wire: expected airsim, came mavlink, which cars do not speak: ${car.name}"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
         "images: expected none with wire mavlink, which carries no images"
@@ -279,14 +295,14 @@ object FlySettings:
     agent.role == file.role && agent.policy.isInstanceOf[Policy]
 
   private def predictorMistake(settings: FlySettings): Option[String] =
-    settings.fleet.agents
+    settings.multirotors
       .flatMap(agent => PredictionModel.mistake(settings.predictor, -agent.startPositionNed.z))
       .headOption
       .map("predictor: " + _)
 
   private def planMistake(settings: FlySettings): Option[String] =
     val shortest = Planner.shortestLagS(settings.planning.step.toSeconds)
-    settings.fleet.agents
+    settings.multirotors
       .map(agent => settings.planningByModel.responseAt(-agent.startPositionNed.z).lagS)
       .find(lagS => settings.loops.contains(LoopKind.Plan) && lagS < shortest)
       .map(lagS =>

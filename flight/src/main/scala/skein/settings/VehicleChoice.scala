@@ -1,10 +1,10 @@
 package skein.settings
 
 import java.nio.file.{Files, Path}
-import skein.forward.{Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
+import skein.forward.{PlantResponse, Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
 import skein.identify.Structure
 import skein.units.Decimals.fixed
-import skein.vehicle.ReducedModel
+import skein.vehicle.{DrivenCar, ReducedModel}
 
 /** Models of vehicles by the names that users give: one list for what flies (`--plant`) and, as far as they predict, for
   * what carries readings forward (`--predictor`, [[PredictionModel]]).
@@ -40,6 +40,12 @@ object VehicleChoice:
   private val ideal =
     VehicleChoice("ideal", "ideal kinematics: the velocity is the command", VelocityResponses.Ideal)
 
+  private val car = VehicleChoice(
+    "car",
+    "a car with its driver, by the single-track model with tyre lag",
+    PlantResponse(DrivenCar())
+  )
+
   /** Of these names, that of the vehicle itself without a file.
     *
     * @param altitudeM
@@ -47,7 +53,7 @@ object VehicleChoice:
     */
   def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
 
-  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal)
+  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal, car)
 
   val forms: String =
     s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE"

@@ -40,7 +40,7 @@ final class SimulatorSupervisor(
   def runs: Vector[Run] = ran
 
   /** Starts the simulator, its clock off by `clockJump`, and prepares the vehicles. */
-  def start(clockJump: Span): Future[Vector[Multirotor]] =
+  def start(clockJump: Span): Future[Vector[VehicleClient]] =
     val itsClock: Clock = Clock.ofNanos(() => (clock.now() + clockJump).toNanos)
     for
       started <- SimulatorServer.start(settings, simulatorHost, itsClock)
@@ -57,11 +57,11 @@ final class SimulatorSupervisor(
     yield Done
 
   /** Where every vehicle is, world NED. */
-  def positions(vehicles: Vector[Multirotor]): Future[Vector[Vector3]] =
+  def positions(vehicles: Vector[VehicleClient]): Future[Vector[Vector3]] =
     asking: client =>
       Future.sequence:
         vehicles.map: vehicle =>
-          Multirotor(client, vehicle.name, vehicle.originNed)
+          vehicle.over(client)
             .groundTruth()
             .map(_.fold(error => throw IllegalStateException(error.message), _.positionNed))
 

@@ -56,9 +56,7 @@ object TortureFlight:
       clock,
       TortureFlight.connectTimeout
     )
-    private val world = scenario.agents.map(agent =>
-      VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
-    )
+    private val world   = scenario.agents.map(VehicleSettings.of)
     private val address = Address("simulator", 41451)
     private val tap     = FaultyTransport(
       network.host("simulator"),

@@ -3,7 +3,7 @@ package skein.lanes
 import skein.forward.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
-import skein.vehicle.{PlaneReading, Plant}
+import skein.vehicle.{DrivenCar, PlaneReading, Plant}
 
 /** Vehicles of a user's own, as they are written. */
 class PlantSuite extends munit.FunSuite:
@@ -25,9 +25,11 @@ class PlantSuite extends munit.FunSuite:
   for
     timing <-
       Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
+    (name, vehicle) <-
+      Seq("a bicycle" -> bicycle, "a car with tyre lag and its driver" -> PlantResponse(DrivenCar()))
   do
-    test(s"a bicycle flies by lanes under ${timing.productPrefix} as its scalar does"):
-      val batch = DuelBatch(short, timing, bicycle, threads = 1)
+    test(s"$name flies by lanes under ${timing.productPrefix} as its scalar does"):
+      val batch = DuelBatch(short, timing, vehicle, threads = 1)
       assert(batch.fliesByLanes(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)))
       val all   = worlds(shared = true)
       val flown = batch.fly(all)
@@ -37,7 +39,7 @@ class PlantSuite extends munit.FunSuite:
           short.evader.copy(policy = all.evader(world)),
           short.durationS
         )
-        val scalar = Rollout(duel, timing, DelayTable.vpn, bicycle).fly(all.key(world))
+        val scalar = Rollout(duel, timing, DelayTable.vpn, vehicle).fly(all.key(world))
         (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
           (flown.minDistanceM(world) - scalar.minDistanceM).abs
       assert(off.max < 1e-3, off.sorted.takeRight(5))

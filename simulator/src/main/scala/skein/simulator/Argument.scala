@@ -60,6 +60,7 @@ private[simulator] object Argument:
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
   given Argument[YawMode]     = record(YawMode.Still)
   given Argument[RcData]      = record(RcData.Absent)
+  given Argument[CarControls] = record(CarControls())
   given Argument[GeoPoint]    = record(GeoPoint(0, 0, 0))
 
   given Argument[KinematicsState] = record(

@@ -67,41 +67,6 @@ private[simulator] object Camera:
   private val AspectRatio = 256f / 144
   private val NearPlaneCm = 10f
 
-  /** Those of AirSim's multirotor. Its places are in a binary file that nobody can read here, but for the 25 cm between the
-    * front left and the front right one; so these are ours.
-    */
-  val Defaults: Map[String, Camera] = Map(
-    "front_center"  -> looking(Vector3(0.25, 0, 0), yawDeg = 0),
-    "front_right"   -> looking(Vector3(0.25, 0.125, 0), yawDeg = 0),
-    "front_left"    -> looking(Vector3(0.25, -0.125, 0), yawDeg = 0),
-    "bottom_center" -> looking(Vector3(0, 0, 0.05), pitchDeg = -90),
-    "back_center"   -> looking(Vector3(-0.25, 0, 0), yawDeg = 180)
-  )
-
-  /** Numbers that older clients use, and other names of the same cameras. */
-  val Aliases: Map[String, String] = Map(
-    ""    -> "front_center",
-    "fpv" -> "front_center",
-    "0"   -> "front_center",
-    "1"   -> "front_right",
-    "2"   -> "front_left",
-    "3"   -> "bottom_center",
-    "4"   -> "back_center"
-  )
-
-  private def looking(position: Vector3, yawDeg: Double = 0, pitchDeg: Double = 0): Camera =
-    val yaw   = math.toRadians(yawDeg) / 2
-    val pitch = math.toRadians(pitchDeg) / 2
-    Camera(
-      position,
-      Quaternion(StrictMath.cos(yaw), 0, 0, StrictMath.sin(yaw)) * Quaternion(
-        StrictMath.cos(pitch),
-        0,
-        StrictMath.sin(pitch),
-        0
-      )
-    )
-
 /** A lens of Unreal's cine camera: focal lengths in mm, f-stops. */
 final private[simulator] case class Lens(
     name: String,

@@ -19,7 +19,7 @@ private[simulator] object CameraMethods:
           answer(
             cameraOf(simulation, index, camera).info(
               vehicle.positionAt(simulation.world.now),
-              vehicle.state.orientation
+              vehicle.orientation
             )
           )
     ,
@@ -181,8 +181,8 @@ private[simulator] object CameraMethods:
     if external then Outcome.Threw(s"No external camera with name $camera exist")
     else
       simulated(simulation, name): (index, vehicle) =>
-        simulation.cameras.canonical(vehicle.settings.name, camera)
+        simulation.cameras.canonical(vehicle, camera)
           .fold(Outcome.Threw(Shots.noCamera(camera)))(run(index, _))
 
   private def cameraOf(simulation: Simulated, vehicle: Int, camera: String): Camera =
-    simulation.cameras(vehicle, simulation.world.vehicles(vehicle).settings.name, camera)
+    simulation.cameras(vehicle, simulation.world.vehicles(vehicle), camera)

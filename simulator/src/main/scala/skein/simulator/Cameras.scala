@@ -12,22 +12,26 @@ final private[simulator] class Cameras(equipment: Equipment):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
   private val detected = mutable.Map.empty[(Int, String, Int), Detection]
 
-  /** A camera's own name, if the vehicle of this name has such a one. */
-  def canonical(vehicle: String, name: String): Option[String] =
-    val own = Camera.Aliases.getOrElse(name, name)
-    Option.when(Camera.Defaults.contains(own) || equipment.cameras.get(vehicle).exists(_.contains(own)))(own)
+  /** A camera's own name, if the vehicle has such a one. */
+  def canonical(vehicle: SimulatedVehicle, name: String): Option[String] =
+    val own    = vehicle.cameras.aliases.getOrElse(name, name)
+    val called = vehicle.settings.name
+    Option.when(
+      vehicle.cameras.places.contains(own) || equipment.cameras.get(called).exists(_.contains(own))
+    )(own)
 
-  /** @param called
-    *   the vehicle's name
+  /** @param index
+    *   of the vehicle
     */
-  def apply(vehicle: Int, called: String, name: String): Camera =
-    changed.getOrElse((vehicle, name), initial(called, name))
+  def apply(index: Int, vehicle: SimulatedVehicle, name: String): Camera =
+    changed.getOrElse((index, name), initial(vehicle, name))
 
-  private def initial(vehicle: String, name: String): Camera =
-    val builtIn = Camera.Defaults.getOrElse(name, Camera(Vector3.Zero, Quaternion.Identity))
-    val placed  = equipment.cameras.get(vehicle).flatMap(_.get(name)).flatMap(_.place).fold(builtIn): place =>
+  private def initial(vehicle: SimulatedVehicle, name: String): Camera =
+    val called  = vehicle.settings.name
+    val builtIn = vehicle.cameras.places.getOrElse(name, Camera(Vector3.Zero, Quaternion.Identity))
+    val placed  = equipment.cameras.get(called).flatMap(_.get(name)).flatMap(_.place).fold(builtIn): place =>
       builtIn.copy(position = place.position, orientation = place.orientation)
-    val fovDeg = equipment.capture(vehicle, name, imageType = 0).fovDeg
+    val fovDeg = equipment.capture(called, name, imageType = 0).fovDeg
     if fovDeg == Camera.DefaultFovDeg then placed else placed.withFov(fovDeg)
 
   def update(vehicle: Int, name: String, camera: Camera): Unit = changed((vehicle, name)) = camera

@@ -18,7 +18,7 @@ private[simulator] object GainMethods:
   private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): Method =
     many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
       case (simulation, (p, i, d, name)) =>
-        vehicle(simulation, name): (_, vehicle) =>
+        multirotor(simulation, name): (_, vehicle) =>
           // AirSim reads past the end of a shorter one.
           if Seq(p, i, d).exists(_.size < 3) then
             Outcome.Threw("gains are three lists of three numbers: P, I, D")

@@ -20,7 +20,7 @@ final private[simulator] class ManualMove private (
 
   override def lastsAtLeast: Span = duration
 
-  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
     val goal = Option.when(vehicle.sticks.is_valid)(towards(vehicle.sticks, vehicle.state.z))
     if elapsed >= duration then Progress.Ended(true, goal)
     else goal.fold(Progress.Idle)(Progress.Going(_))

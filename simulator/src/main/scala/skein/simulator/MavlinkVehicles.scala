@@ -71,7 +71,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
   /** One vehicle's autopilot. */
   private final class OnBoard(val index: Int) extends Pilot:
     val system: Int          = index + 1
-    private val vehicle      = world.vehicles(index)
+    private val vehicle      = world.multirotor(index)
     private var decided      = Autopilot(system, vehicle.home)
     def autopilot: Autopilot = decided
 
@@ -84,7 +84,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
       )
       Motion(at.since(startedAt), state, vehicle.flying)
 
-    def turn(vehicle: SimulatedVehicle, at: Instant): Option[Setpoint] =
+    def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       val wasArmed          = decided.isArmed
       val (heard, setpoint) = decided.steer(motionAt(at))
       decided = heard.next

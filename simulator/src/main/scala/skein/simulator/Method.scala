@@ -67,6 +67,18 @@ private[simulator] object Method:
   def simulated(simulation: Simulated, name: String)(run: (Int, SimulatedVehicle) => Outcome): Outcome =
     find(simulation, name, "Vehicle Sim-API", "this is not a simulation")(run)
 
+  /** A multirotor; a car has no such function. */
+  def multirotor(simulation: Simulated, name: String)(run: (Int, SimulatedMultirotor) => Outcome): Outcome =
+    vehicle(simulation, name):
+      case (index, multirotor: SimulatedMultirotor) => run(index, multirotor)
+      case (_, other) => Outcome.Threw(s"expected a multirotor, '${other.settings.name}' is a car")
+
+  /** A car; a multirotor has no such function. */
+  def car(simulation: Simulated, name: String)(run: (Int, SimulatedCar) => Outcome): Outcome =
+    vehicle(simulation, name):
+      case (index, car: SimulatedCar) => run(index, car)
+      case (_, other) => Outcome.Threw(s"expected a car, '${other.settings.name}' is a multirotor")
+
   private def find(simulation: Simulated, name: String, what: String, reason: String)(
       run: (Int, SimulatedVehicle) => Outcome
   ): Outcome =

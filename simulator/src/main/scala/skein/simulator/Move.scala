@@ -13,7 +13,7 @@ private[simulator] trait Move:
     * @param elapsed
     *   since the move began; zero at the first turn
     */
-  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress
 
   /** It does not end before this much time has elapsed. */
   def lastsAtLeast: Span = Span.Zero
@@ -31,16 +31,16 @@ private[simulator] object Move:
   /** A move as it is asked for: made when its turn comes, from the vehicle as it is then. `Left` is the text of the
     * exception that AirSim throws.
     */
-  type Order = SimulatedVehicle => Either[String, Move]
+  type Order = SimulatedMultirotor => Either[String, Move]
 
   /** Keeps one goal for a duration. Without any, it ends at once with `ifNone`. */
-  def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedVehicle => Setpoint): Order = vehicle =>
+  def hold(seconds: Float, ifNone: Boolean = true)(goal: SimulatedMultirotor => Setpoint): Order = vehicle =>
     val setpoint = goal(vehicle)
     val duration = span(seconds)
     Right(new Move:
       override def lastsAtLeast: Span = duration
 
-      def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+      def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
         if duration <= Span.Zero then Progress.Ended(ifNone, None)
         else if elapsed >= duration then Progress.Ended(true, Some(setpoint))
         else Progress.Going(setpoint))

@@ -88,10 +88,10 @@ private[simulator] object MoveMethods:
   )
 
   private def fly(simulation: Simulated, name: String)(order: Move.Order): Outcome =
-    Method.vehicle(simulation, name)((index, _) => Outcome.Flies(index, order))
+    Method.multirotor(simulation, name)((index, _) => Outcome.Flies(index, order))
 
   private def byVelocity(method: String, ifNone: Boolean)(
-      goal: (SimulatedVehicle, Double, Double, Double) => Setpoint
+      goal: (SimulatedMultirotor, Double, Double, Double) => Setpoint
   ): Method =
     many[(Float, Float, Float, Float, Int, YawMode, String)](method):
       case (simulation, (x, y, third, duration, drivetrain, yaw, name)) =>
@@ -104,7 +104,7 @@ private[simulator] object MoveMethods:
         fly(simulation, name)(Move.hold(duration)(_ => goal(first, second, third, fourth)))
 
   /** North and east of a velocity to the front and to the right, by the heading now. */
-  private def turned(vehicle: SimulatedVehicle, front: Double, right: Double): (Double, Double) =
+  private def turned(vehicle: SimulatedMultirotor, front: Double, right: Double): (Double, Double) =
     val yaw = vehicle.state.yawRad
     (
       front * StrictMath.cos(yaw) - right * StrictMath.sin(yaw),

@@ -46,7 +46,7 @@ final private[simulator] class PathMove private (
   private var progress = 0.0
   private var complete = false
 
-  def turn(vehicle: SimulatedVehicle, elapsed: Span): Progress =
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
     val position = vehicle.state.positionNed
     if elapsed > Span.Zero then follow(position)
     if elapsed >= timeout || (aim.segment >= last && progress <= 0) then Progress.Ended(complete, None)

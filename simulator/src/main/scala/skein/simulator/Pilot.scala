@@ -9,4 +9,4 @@ import skein.vehicle.Setpoint
   *   None where it leaves the vehicle to others
   */
 private[simulator] trait Pilot:
-  def turn(vehicle: SimulatedVehicle, at: Instant): Option[Setpoint]
+  def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint]

@@ -119,11 +119,13 @@ private[simulator] object SceneMethods:
       Outcome.Threw(s"the built-in simulator flies at most $MostVehicles vehicles")
     else if start.norm > FarthestM then Outcome.Threw(s"a start within ${FarthestM / 1000} km is wanted")
     else
-      val known = kind.equalsIgnoreCase(WorldSettings.SimpleFlight) && !simulation.objects.exists(name)
+      val added = VehicleSettings(name, start, vehicleType = kind)
+      val known = (added.isCar || kind.equalsIgnoreCase(WorldSettings.SimpleFlight)) &&
+        !simulation.objects.exists(name)
       if known then
         val q   = pose.orientation.toQuaternion.normalized
         val yaw = StrictMath.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-        simulation.addVehicle(VehicleSettings(name, start, Radians(yaw)))
+        simulation.addVehicle(added.copy(yaw = Radians(yaw)))
       answer(known)
 
   /** Beyond it, and faster, numbers would soon be none. */

@@ -2,8 +2,8 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
-import skein.scene.{Moment, Scene, SceneObject, Shape}
-import skein.units.Vector3
+import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
+import skein.units.{Quaternion, Vector3}
 
 /** The objects of the scene under their names, which are those of the vehicles and `Ground`, and what clients have set
   * of them: scales and segmentation ids.
@@ -64,7 +64,7 @@ final private[simulator] class SceneObjects(world: World):
       SceneObject(
         vehicle.settings.name,
         Shape.Box(vehicle.halfLengths),
-        world.placeOf(index, world.now),
+        world.placeOf(index, world.now).outside(Placement(vehicle.middleFrd, Quaternion.Identity)),
         0,
         None
       )
@@ -74,7 +74,7 @@ final private[simulator] class SceneObjects(world: World):
     Pose(Vector3r(thing.place.position), Quaternionr(thing.place.orientation))
 
   def pose(vehicle: SimulatedVehicle): Pose =
-    Pose(Vector3r(vehicle.worldPosition(world.now)), Quaternionr(vehicle.state.orientation))
+    Pose(Vector3r(vehicle.worldPosition(world.now)), Quaternionr(vehicle.orientation))
 
 private[simulator] object SceneObjects:
   val Ground: String = Scene.Ground

@@ -66,9 +66,9 @@ private[simulator] object Shots:
 
   /** Through a vehicle's camera, now. */
   def view(simulation: Simulated, vehicle: Int, camera: String, imageType: Int): View =
-    val name    = simulation.world.vehicles(vehicle).settings.name
-    val seen    = simulation.cameras(vehicle, name, camera)
-    val capture = simulation.equipment.capture(name, camera, imageType)
+    val owner   = simulation.world.vehicles(vehicle)
+    val seen    = simulation.cameras(vehicle, owner, camera)
+    val capture = simulation.equipment.capture(owner.settings.name, camera, imageType)
     val place   = simulation.world.placeOf(vehicle, simulation.world.now)
     View(
       place.outside(Placement(seen.position, seen.orientation)),
@@ -99,18 +99,18 @@ private[simulator] object Shots:
     shot.view.width.toLong * shot.view.height * (if shot.response.pixels_as_float then 5 else 3)
 
   private def wanted(simulation: Simulated, vehicle: Int, request: ImageRequest): Either[String, Wanted] =
-    val owner = simulation.world.vehicles(vehicle).settings
+    val owner = simulation.world.vehicles(vehicle)
     for
       kind <- kindOf(request.image_type)
       name <-
-        simulation.cameras.canonical(owner.name, request.camera_name).toRight(noCamera(request.camera_name))
+        simulation.cameras.canonical(owner, request.camera_name).toRight(noCamera(request.camera_name))
     yield
       val seen = view(simulation, vehicle, name, request.image_type)
       Wanted(
         seen,
         kind,
         ImageResponse(
-          camera_position = Vector3r(seen.place.position - owner.startNed),
+          camera_position = Vector3r(seen.place.position - owner.settings.startNed),
           camera_name = request.camera_name,
           camera_orientation = Quaternionr(seen.place.orientation),
           time_stamp = simulation.world.now,

@@ -176,7 +176,7 @@ final class Simulation(
             else if !settings.losesCancel() then world.cancelMove(vehicle)
 
   private def start(vehicle: Int, flight: Waiting, at: Instant): Unit =
-    flight.order(world.vehicles(vehicle)) match
+    flight.order(world.multirotor(vehicle)) match
       case Right(move) => world.startMove(vehicle, flight.call.token, move)
       case Left(text)  =>
         val call = flight.call
@@ -219,7 +219,7 @@ object Simulation:
   final private case class Waiting(call: SimulatorCall, order: Move.Order)
 
   private[simulator] val methods: Seq[Method] =
-    SimulatorMethods.all ++ VehicleMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
+    SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all
 
   private val named: Map[String, Method] = methods.map(method => method.name -> method).toMap

@@ -247,14 +247,13 @@ object SimulatorServer:
       Truth(
         world.now,
         world.vehicles.map: vehicle =>
-          val state = vehicle.state
           (
             name = vehicle.settings.name,
             kinematics = Kinematics(
               vehicle.settings.startNed + vehicle.positionAt(world.now),
               vehicle.velocityAt(world.now),
-              state.orientation,
-              state.angularVelocityFrd
+              vehicle.orientation,
+              vehicle.angularVelocityFrd
             )
           )
       )

@@ -63,14 +63,14 @@ object SimulatorSettings:
   /** Time from a move's cancellation to its successor's start, measured at AirSim's server: below 0.3 ms. */
   val Handover: Span = Span.ofMillis(0.3)
 
-  /** Checks that the built-in simulator can fly these vehicles. */
+  /** Checks that the built-in simulator has these vehicles. */
   def supported(world: WorldSettings): Either[SettingsError, WorldSettings] =
     world.vehicles
-      .find(!_.vehicleType.equalsIgnoreCase(WorldSettings.SimpleFlight))
+      .find(vehicle => !vehicle.isCar && !vehicle.vehicleType.equalsIgnoreCase(WorldSettings.SimpleFlight))
       .map(vehicle =>
         SettingsError.Unexpected(
           s"Vehicles.${vehicle.name}.VehicleType",
-          WorldSettings.SimpleFlight,
+          s"${WorldSettings.SimpleFlight} or ${WorldSettings.PhysXCar}",
           vehicle.vehicleType
         )
       )

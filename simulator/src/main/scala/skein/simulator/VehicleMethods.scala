@@ -26,7 +26,7 @@ private[simulator] object VehicleMethods:
     ,
     many[(RcData, String)]("moveByRC"):
       case (simulation, (sticks, name)) =>
-        vehicle(simulation, name): (_, vehicle) =>
+        multirotor(simulation, name): (_, vehicle) =>
           vehicle.steer(sticks)
           Nil
     ,
@@ -36,10 +36,10 @@ private[simulator] object VehicleMethods:
         Nil
     ,
     one[String]("getMultirotorState")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(state(vehicle, simulation.world.now)))
+      multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, simulation.world.now)))
     ),
     one[String]("getRotorStates")((simulation, name) =>
-      vehicle(simulation, name)((_, vehicle) => answer(rotors(vehicle, simulation.world.now)))
+      multirotor(simulation, name)((_, vehicle) => answer(rotors(vehicle, simulation.world.now)))
     ),
     one[String]("getHomeGeoPoint")((simulation, name) =>
       vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
@@ -64,7 +64,7 @@ private[simulator] object VehicleMethods:
     ),
     many[(Pose, String)]("skeinHoverAt"):
       case (simulation, (pose, name)) =>
-        simulated(simulation, name): (_, vehicle) =>
+        multirotor(simulation, name): (_, vehicle) =>
           val place = pose.position.toVector
           if !vehicle.apiControl then Outcome.Threw("only a vehicle under api control can hover")
           else if !vehicle.isAboveGround(place) then
@@ -131,7 +131,7 @@ private[simulator] object VehicleMethods:
   private def missing(kind: String, sensor: String): Outcome =
     Outcome.Threw(s"No $kind with name $sensor exist on vehicle")
 
-  private def state(vehicle: SimulatedVehicle, at: Instant) = MultirotorState(
+  private def state(vehicle: SimulatedMultirotor, at: Instant) = MultirotorState(
     CollisionInfo.None,
     kinematics(vehicle, at),
     GeoPoint(vehicle.locationAt(at)),
@@ -140,17 +140,17 @@ private[simulator] object VehicleMethods:
     vehicle.sticks
   )
 
-  private def kinematics(vehicle: SimulatedVehicle, at: Instant) = KinematicsState(
+  def kinematics(vehicle: SimulatedVehicle, at: Instant): KinematicsState = KinematicsState(
     Vector3r(vehicle.positionAt(at)),
-    Quaternionr(vehicle.state.orientation),
+    Quaternionr(vehicle.orientation),
     Vector3r(vehicle.velocityAt(at)),
-    Vector3r(vehicle.state.angularVelocityFrd),
-    Vector3r(vehicle.state.accelerationNed),
-    Vector3r(vehicle.state.angularAccelerationFrd)
+    Vector3r(vehicle.angularVelocityFrd),
+    Vector3r(vehicle.accelerationNed),
+    Vector3r(vehicle.angularAccelerationFrd)
   )
 
   private def pose(vehicle: SimulatedVehicle, at: Instant) =
-    Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.state.orientation))
+    Pose(Vector3r(vehicle.positionAt(at)), Quaternionr(vehicle.orientation))
 
   private def collision(touch: Option[Touch]) = touch.fold(CollisionInfo.None): touch =>
     CollisionInfo(
@@ -166,13 +166,13 @@ private[simulator] object VehicleMethods:
 
   private def imu(vehicle: SimulatedVehicle, at: Instant) =
     // The ground carries a vehicle that stands, and physics does not move it.
-    val acceleration = if vehicle.state.grounded then Vector3.Zero else vehicle.state.accelerationNed
+    val acceleration = if vehicle.isGrounded then Vector3.Zero else vehicle.accelerationNed
     val force        = acceleration - Vector3(0, 0, Gravity)
     ImuData(
       at,
-      Quaternionr(vehicle.state.orientation),
-      Vector3r(vehicle.state.angularVelocityFrd),
-      Vector3r(vehicle.state.orientation.toBody(force))
+      Quaternionr(vehicle.orientation),
+      Vector3r(vehicle.angularVelocityFrd),
+      Vector3r(vehicle.orientation.toBody(force))
     )
 
   private def barometer(vehicle: SimulatedVehicle, at: Instant) =
@@ -186,7 +186,7 @@ private[simulator] object VehicleMethods:
 
   private def magnetometer(vehicle: SimulatedVehicle, at: Instant) =
     val field =
-      vehicle.state.orientation.toBody(Globe.magneticFieldNed(vehicle.locationAt(at)))
+      vehicle.orientation.toBody(Globe.magneticFieldNed(vehicle.locationAt(at)))
     MagnetometerData(at, Vector3r(field), Seq.empty)
 
   private def environment(vehicle: SimulatedVehicle, at: Instant) =
@@ -204,7 +204,7 @@ private[simulator] object VehicleMethods:
   /** Thrust and torque as at sea level: AirSim tells them before it scales them by the density of the air. The torque is
     * that on the body, whose sign AirSim counts upwards: negative for the two rotors that turn counter-clockwise.
     */
-  private def rotors(vehicle: SimulatedVehicle, at: Instant) =
+  private def rotors(vehicle: SimulatedMultirotor, at: Instant) =
     val thrusts =
       Seq(vehicle.state.thrust0, vehicle.state.thrust1, vehicle.state.thrust2, vehicle.state.thrust3)
     val rotors =

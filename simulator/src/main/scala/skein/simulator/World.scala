@@ -24,8 +24,8 @@ final class World(
 ):
   import World.*
 
-  private var flying     = settings.vehicles.map(SimulatedVehicle(_, quadrotor, settings.origin))
-  private val moves      = ArrayBuffer.fill(flying.size)(Option.empty[Running])
+  private var present    = settings.vehicles.map(made)
+  private val moves      = ArrayBuffer.fill(present.size)(Option.empty[Running])
   private val ended      = ArrayBuffer.empty[Ended]
   private val stepLength = Span.ofSeconds(quadrotor.stepS)
   private var clock      = start
@@ -43,19 +43,32 @@ final class World(
     yield Scans.Carried(index, name, lidar)
   )
 
-  flying.foreach(_.reset(start))
+  present.foreach(_.reset(start))
   setWind(wind)
 
   /** Those of the settings, then those added. */
-  private[simulator] def vehicles: Vector[SimulatedVehicle] = flying
+  private[simulator] def vehicles: Vector[SimulatedVehicle] = present
+
+  /** A vehicle that moves and pilots are made for.
+    *
+    * @throws IllegalArgumentException
+    *   if it is none
+    */
+  private[simulator] def multirotor(vehicle: Int): SimulatedMultirotor = vehicles(vehicle) match
+    case multirotor: SimulatedMultirotor => multirotor
+    case other => throw IllegalArgumentException(s"expected a multirotor, ${other.settings.name} is a car")
+
+  private def made(vehicle: VehicleSettings): SimulatedVehicle =
+    if vehicle.isCar then SimulatedCar(vehicle, settings.origin)
+    else SimulatedMultirotor(vehicle, quadrotor, settings.origin)
 
   /** One more vehicle, at rest at its start. */
   private[simulator] def add(vehicle: VehicleSettings): Unit =
-    val added = SimulatedVehicle(vehicle, quadrotor, settings.origin)
+    val added = made(vehicle)
     added.reset(clock)
     added.setWind(wind)
     moves += None
-    flying = flying :+ added
+    present = present :+ added
 
   /** The simulator's clock. */
   def now: Instant = clock
@@ -115,14 +128,14 @@ final class World(
 
   /** Where a vehicle is at `at` in the world. */
   private[simulator] def placeOf(vehicle: Int, at: Instant): Placement =
-    Placement(vehicles(vehicle).worldPosition(at), vehicles(vehicle).state.orientation)
+    Placement(vehicles(vehicle).worldPosition(at), vehicles(vehicle).orientation)
 
   /** The vehicles at `at`, as they look. */
   private[simulator] def bodies(at: Instant): Vector[SceneObject] =
     vehicles.zipWithIndex.map: (vehicle, index) =>
       SceneObject(
         vehicle.settings.name,
-        VehicleBody.parts(vehicle.airframe, index, scene.vehicleTagM),
+        vehicle.parts(index, scene.vehicleTagM),
         placeOf(index, at)
       )
 
@@ -156,8 +169,8 @@ final class World(
     if pilots.nonEmpty && next.forall(pilotAt < _._1) then Some((pilotAt, AllPilots)) else next
 
   private def askPilots(): Unit =
-    for (vehicle, pilot) <- pilots; setpoint <- pilot.turn(vehicles(vehicle), clock) do
-      vehicles(vehicle).command(setpoint, clock)
+    for (vehicle, pilot) <- pilots; setpoint <- pilot.turn(multirotor(vehicle), clock) do
+      multirotor(vehicle).command(setpoint, clock)
     pilotAt = clock + PathFollowing.Period
 
   private def stepTo(to: Instant): Unit =
@@ -170,13 +183,13 @@ final class World(
 
   private def takeTurn(vehicle: Int): Unit =
     for running <- moves(vehicle) do
-      running.move.turn(vehicles(vehicle), clock.since(running.startedAt)) match
+      running.move.turn(multirotor(vehicle), clock.since(running.startedAt)) match
         case Progress.Going(goal) =>
-          vehicles(vehicle).command(goal, clock)
+          multirotor(vehicle).command(goal, clock)
           goOn(vehicle, running)
         case Progress.Idle                => goOn(vehicle, running)
         case Progress.Ended(result, goal) =>
-          goal.foreach(vehicles(vehicle).command(_, clock))
+          goal.foreach(multirotor(vehicle).command(_, clock))
           end(vehicle, result)
 
   private def goOn(vehicle: Int, running: Running): Unit =

@@ -46,7 +46,7 @@ class GainMethodsSuite extends munit.FunSuite:
     assertEqualsDouble(speedAfter(bench, 3), speedAfter(hovering, 3), 0.01)
     bench.tell("setVelocityControllerGains", list(0.1, 0.1, 2), list(0, 0, 2), list(0, 0, 0), Str(""))
     bench.tell("reset")
-    assertEquals(bench.simulation.world.vehicles.head.gains.velocity.first.p, 0.1f.toDouble)
+    assertEquals(bench.simulation.world.multirotor(0).gains.velocity.first.p, 0.1f.toDouble)
 
   test("lists that are too short are refused"):
     val refusal =

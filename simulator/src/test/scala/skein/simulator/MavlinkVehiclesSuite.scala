@@ -156,4 +156,4 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     assert(flown.heard.exists(_.message match
       case Timesync(_, 99, _, _) => true
       case _                     => false))
-    assert(flown.simulation.world.vehicles.head.state.kinematics.isFinite)
+    assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)

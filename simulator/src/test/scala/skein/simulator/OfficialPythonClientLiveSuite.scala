@@ -21,6 +21,8 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
     val _ = Await.result(system.terminate(), 20.seconds)
 
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
+  private val mixed    = vehicles.take(1) :+
+    VehicleSettings("Car", Vector3(0, 40, 0), vehicleType = WorldSettings.PhysXCar)
 
   /** The pursuer carries a lidar, and a distance sensor that looks down. */
   private val text =
@@ -37,6 +39,9 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
   test("the official Python client flies as AirSim's examples do, and works scene, cameras and markers"):
     fly("fly_examples.py")
 
+  test("the official Python client drives a car as AirSim's example does, beside a multirotor"):
+    fly("drive_car.py", WorldSettings(mixed, text = WorldSettings.render(mixed)))
+
   test("the official Python client calls what methods.txt lists"):
     val (status, output) = OfficialPythonClient.run(client(), "list_methods.py")
     assertEquals(status, 0, output)
@@ -49,10 +54,10 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
     assume(python.isRight, s"the official client cannot be installed here: ${python.swap.getOrElse("")}")
     python.toOption.get
 
-  private def fly(script: String): Unit =
+  private def fly(script: String, world: WorldSettings = WorldSettings(vehicles, text = text)): Unit =
     val python   = client()
     val settings = SimulatorSettings(
-      WorldSettings(vehicles, text = text),
+      world,
       Address("127.0.0.1", 0),
       speed = 5
     )

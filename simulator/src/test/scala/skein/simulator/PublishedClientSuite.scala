@@ -26,7 +26,7 @@ class PublishedClientSuite extends munit.FunSuite:
     row.findAllMatchIn(page).map(found => found.group(1) -> found.group(2)).toSeq
 
   test("every function of the published client is there, with as many arguments as it sends"):
-    assertEquals(called.size, 122)
+    assertEquals(called.size, 125)
     val here = Simulation.methods.map(method => method.name -> method.arity).toMap
     for (name, arity) <- called do assertEquals(here.get(name), Some(arity), name)
 

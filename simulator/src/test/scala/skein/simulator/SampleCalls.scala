@@ -1,6 +1,7 @@
 package skein.simulator
 
 import scala.language.implicitConversions
+import skein.airsim.VehicleSettings
 import skein.airsim.wire.*
 import upack.*
 import upickle.default.writeMsg
@@ -10,7 +11,9 @@ private[simulator] object SampleCalls:
 
   /** What a fresh simulator with one vehicle answers to it, a move when it ends. */
   def answered(name: String): Either[String, Msg] =
-    val bench = Bench(Seq("Evader")).hovering(-5)
+    val bench =
+      if name.contains("Car") then Bench.of(VehicleSettings("Evader", vehicleType = "PhysXCar"))
+      else Bench(Seq("Evader")).hovering(-5)
     val token = bench.call(name, params(name)*)
     while bench.answeredAt(token).isEmpty && bench.elapsedS < 70 do bench.pass(1)
     bench.answerOf(token)
@@ -53,6 +56,7 @@ private[simulator] object SampleCalls:
           "getDistanceSensorData" =>
         Seq("", v)
       case "simSetVehiclePose" => Seq(pose, true, v)
+      case "setCarControls"    => Seq(writeMsg(CarControls(throttle = 1)), v)
       case "skeinHoverAt"      => Seq(pose, v)
       case "simSetKinematics"  =>
         val zero = Vector3r.Zero

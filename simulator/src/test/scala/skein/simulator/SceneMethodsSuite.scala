@@ -45,7 +45,7 @@ class SceneMethodsSuite extends munit.FunSuite:
       bench.now[Boolean]("simAddVehicle", Str(name), Str(kind), pose(0, 0, 0), Str(""))
     assertEquals(add("Evader", "simpleflight"), false)
     assertEquals(add("Ground", "simpleflight"), false)
-    assertEquals(add("Car", "PhysXCar"), false)
+    assertEquals(add("Car", "ArduRover"), false)
     assert(bench.error(
       "simAddVehicle",
       Str(""),

@@ -4,8 +4,8 @@ import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Airframe
 
-/** What a vehicle looks like: its box, two beams across, four rotors, and tags on its sides where the scene wants them. */
-private[skein] object VehicleBody:
+/** What a multirotor looks like: its box, two beams across, four rotors, and tags on its sides where the scene wants them. */
+private[skein] object MultirotorBody:
   import SceneObject.Part
 
   def parts(airframe: Airframe, number: Int, tagM: Double): Vector[Part] =

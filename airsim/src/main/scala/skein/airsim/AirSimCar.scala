@@ -1,0 +1,92 @@
+package skein.airsim
+
+import java.util.concurrent.atomic.AtomicReference
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{Future, Promise}
+import skein.policy.Action
+import skein.port.{Sensor, VehicleError, VehiclePort}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.vehicle.{CarControls, CarDriver, GoTo, SingleTrack}
+
+/** A car of AirSim as a loop sees it. AirSim's cars take pedals and a steering wheel, not velocities: the driver
+  * ([[skein.vehicle.CarDriver]]) sits here, looks at the newest reading whenever an action comes, and what he does then
+  * stands until the next action. When the time that an action lasts is over, the car brakes.
+  *
+  * A velocity's vertical part is no car's, and is passed over; to land is to brake. Turning on the spot and attitudes are
+  * refused.
+  *
+  * @param model
+  *   what the driver takes the car for
+  */
+final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTrack = SingleTrack())(using
+    system: ActorSystem
+) extends VehiclePort:
+  import VehicleErrors.errorOf
+  import system.dispatcher
+  private type Answer = Either[VehicleError, Boolean]
+
+  private val seen     = AtomicReference(Option.empty[Kinematics])
+  private val underWay = AtomicReference(Promise[Answer]())
+
+  def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = car
+    .kinematics()
+    .map: answer =>
+      answer.foreach(reading => seen.set(Some(reading.value)))
+      answer.left.map(errorOf)
+
+  def act(action: Action, lasts: Span): Future[Answer] = action match
+    case Action.VelocityAt(north, east, _, _) => drive(lasts)(_ => (north, east))
+    case Action.Velocity(velocity, _)         => drive(lasts)(_ => (velocity.x, velocity.y))
+    case Action.Position(place, speed, _)     =>
+      drive(lasts): now =>
+        val wanted = GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed)
+        (wanted.x, wanted.y)
+    case Action.Hover | Action.Land  => hover()
+    case Action.Turn(_)              => unsupported("turn on the spot")
+    case Action.Attitude(_, _, _, _) => unsupported("keep an attitude")
+
+  def hover(): Future[Answer] =
+    val done = Promise[Answer]()
+    replace(done, CarControls.Stop)(_ => done.trySuccess(Right(true)): Unit)
+    done.future
+
+  override val sensors: Map[String, Sensor] = AirSimSensors.of(car)
+
+  private def unsupported(what: String): Future[Answer] =
+    Future.successful(Left(VehicleError.Unsupported(s"${car.name} is a car, which cannot $what")))
+
+  /** @param wanted
+    *   velocity, north and east, m/s, of a car that moves so
+    */
+  private def drive(lasts: Span)(wanted: Kinematics => (Double, Double)): Future[Answer] = seen.get match
+    // At once, so that actions leave in the order of the calls.
+    case Some(now) => drive(now, wanted(now), lasts)
+    case None      =>
+      read().flatMap:
+        case Left(error)    => Future.successful(Left(error))
+        case Right(reading) => drive(reading.value, wanted(reading.value), lasts)
+
+  private def drive(now: Kinematics, wanted: (Double, Double), lasts: Span): Future[Answer] =
+    val (north, east) = wanted
+    val speed         = now.orientation.toBody(now.velocityNed).x
+    val ended         = Promise[Answer]()
+    replace(ended, driver.controls(model, now.orientation.yawRad, speed, north, east)): _ =>
+      val over = system.scheduler.scheduleOnce(lasts.toDuration)(expire(ended))
+      ended.future.onComplete(_ => over.cancel())
+    ended.future
+
+  /** Sends controls in the place of those that stand. The action before ends when they have arrived. */
+  private def replace(next: Promise[Answer], controls: CarControls)(arrived: Unit => Unit): Unit =
+    val before = underWay.getAndSet(next)
+    car.setControls(controls).foreach:
+      case Right(()) =>
+        before.trySuccess(Right(false))
+        arrived(())
+      case Left(error) =>
+        before.trySuccess(Left(errorOf(error)))
+        next.trySuccess(Left(errorOf(error))): Unit
+
+  private def expire(ended: Promise[Answer]): Unit =
+    if (underWay.get eq ended) && ended.trySuccess(Right(true)) then
+      car.setControls(CarControls.Stop): Unit

@@ -1,0 +1,85 @@
+package skein.airsim
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.wire.{CarControls as WireControls, CarState}
+import skein.port.VehiclePort
+import skein.rpc.RpcError
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.vehicle.CarControls
+import upickle.default.writeMsg
+
+/** One car of a simulator. Controls act at once and stand until the next; they are sent on one connection, in order. */
+final class Car(
+    client: AirSimClient,
+    name: String,
+    originNed: Vector3 = Vector3.Zero,
+    connectionKey: Int = 0
+) extends VehicleClient(client, name, originNed, connectionKey):
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]] = status().map(_.map(_.map(_.kinematics)))
+
+  def status(): Future[Either[RpcError, Stamped[CarStatus]]] =
+    stamped("getCarState")((state: CarState) =>
+      (
+        CarStatus(
+          inWorld(state.kinematics_estimated),
+          MetresPerSecond(state.speed),
+          state.gear,
+          state.rpm,
+          state.handbrake
+        ),
+        state.timestamp
+      )
+    ).map(_.filterOrElse(
+      _.value.kinematics.isFinite,
+      RpcError.Malformed("getCarState", "expected finite numbers in kinematics_estimated")
+    ))
+
+  /** Without api control nothing happens.
+    *
+    * @param gear
+    *   chosen by hand: −1 is reverse; without it, AirSim's gearbox chooses
+    */
+  def setControls(
+      controls: CarControls,
+      handbrake: Boolean = false,
+      gear: Option[Int] = None
+  ): Future[Either[RpcError, Unit]] =
+    val told = WireControls(
+      controls.throttle.toFloat,
+      controls.steering.toFloat,
+      controls.brake.toFloat,
+      handbrake,
+      gear.isDefined,
+      gear.getOrElse(0)
+    )
+    call[upack.Msg]("setCarControls", Seq(writeMsg(told)), inOrder).map(_.map(_ => ()))
+
+  def over(client: AirSimClient, originNed: Vector3, connectionKey: Int): Car =
+    Car(client, name, originNed, connectionKey)
+
+  def port(onLost: String => Unit)(using ActorSystem): VehiclePort = AirSimCar(this)
+
+object Car:
+
+  /** The car of this name; its origin is read from the simulator's settings. */
+  def named(client: AirSimClient, name: String): Future[Either[AirSimError, Car]] =
+    VehicleClient.named(client, name, Car(client, name, _, _))
+
+/** A car's state.
+  *
+  * @param speed
+  *   along its heading, negative backwards
+  * @param gear
+  *   −1 is reverse
+  */
+final case class CarStatus(
+    kinematics: Kinematics,
+    speed: MetresPerSecond,
+    gear: Int,
+    rpm: Double,
+    handbrake: Boolean
+)

@@ -1,0 +1,198 @@
+package skein.airsim
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.wire.*
+import skein.port.VehiclePort
+import skein.rpc.{CallOptions, Channel, RpcError}
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.vehicle.VehicleKind
+import upack.{Bool, Float32, Msg, Str}
+import upickle.default.{Reader, writeMsg}
+
+/** One vehicle of a simulator, of whatever kind. Positions are world NED in m, velocities NED in m/s.
+  *
+  * @param originNed
+  *   where the vehicle's own frame has its origin: its start
+  * @param connectionKey
+  *   vehicles with different keys are spread over the connections
+  */
+abstract class VehicleClient(
+    client: AirSimClient,
+    val name: String,
+    val originNed: Vector3,
+    connectionKey: Int
+):
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  protected val once: CallOptions   = CallOptions(client.timeout)
+  protected val getter: CallOptions = once.copy(idempotent = true)
+  private val sensor                = getter.copy(channel = Channel.Sensors)
+
+  /** Behind every command sent before, on their connection. */
+  protected val inOrder: CallOptions = once.copy(key = Some(connectionKey))
+
+  /** Its cameras and LIDARs. */
+  val eyes: Eyes = Eyes(client, name, originNed)
+
+  /** The same vehicle by another client. */
+  def over(client: AirSimClient, originNed: Vector3 = originNed, connectionKey: Int = 0): VehicleClient
+
+  /** The vehicle as a loop sees it.
+    *
+    * @param onLost
+    *   told of every answer that was missed, and what became of it
+    */
+  def port(onLost: String => Unit)(using ActorSystem): VehiclePort
+
+  // ---- state
+
+  /** Where the vehicle is and how it moves, by its own estimate, with the three times known so far. */
+  def kinematics(): Future[Either[RpcError, Stamped[Kinematics]]]
+
+  /** The truth; AirSim does not say when it was valid. */
+  def groundTruth(): Future[Either[RpcError, Kinematics]] =
+    get[KinematicsState]("simGetGroundTruthKinematics").map(_.map(inWorld))
+
+  def pose(): Future[Either[RpcError, VehiclePose]] =
+    get[Pose]("simGetVehiclePose").map(_.map(pose =>
+      VehiclePose(pose.position.toVector + originNed, pose.orientation.toQuaternion)
+    ))
+
+  /** Puts the vehicle elsewhere. It keeps its velocity and its goal: one that holds a position flies back there, one that
+    * stood on the ground falls.
+    */
+  def setPose(pose: VehiclePose): Future[Either[RpcError, Unit]] =
+    tell("simSetVehiclePose", own(pose), Bool(true))
+
+  /** What was touched since the last call, if anything was. */
+  def collision(): Future[Either[RpcError, Option[Collision]]] =
+    call[CollisionInfo]("simGetCollisionInfo", Seq(), once).map(_.map: info =>
+      Option.when(info.has_collided)(
+        Collision(info.time_stamp, info.position.toVector + originNed, info.normal.toVector, info.object_name)
+      ))
+
+  /** The start of the vehicle on the globe. */
+  def home(): Future[Either[RpcError, GeoLocation]] = get[GeoPoint]("getHomeGeoPoint").map(_.map(located))
+
+  // ---- sensors; an empty name means the first of its kind
+
+  def imu(sensor: String = ""): Future[Either[RpcError, Stamped[ImuReading]]] =
+    measured("getImuData", Str(sensor)): (data: ImuData) =>
+      val reading = ImuReading(
+        data.orientation.toQuaternion,
+        data.angular_velocity.toVector,
+        data.linear_acceleration.toVector
+      )
+      (reading, data.time_stamp)
+
+  def gps(sensor: String = ""): Future[Either[RpcError, Stamped[GpsReading]]] =
+    measured("getGpsData", Str(sensor)): (data: GpsData) =>
+      val reading = GpsReading(located(data.gnss.geo_point), data.gnss.velocity.toVector, data.is_valid)
+      (reading, data.time_stamp)
+
+  def barometer(sensor: String = ""): Future[Either[RpcError, Stamped[BarometerReading]]] =
+    measured("getBarometerData", Str(sensor)): (data: BarometerData) =>
+      (BarometerReading(Metres(data.altitude), data.pressure), data.time_stamp)
+
+  /** Magnetic field, body FRD, gauss. */
+  def magnetometer(sensor: String = ""): Future[Either[RpcError, Stamped[Vector3]]] =
+    measured("getMagnetometerData", Str(sensor)): (data: MagnetometerData) =>
+      (data.magnetic_field_body.toVector, data.time_stamp)
+
+  // ---- control
+
+  /** Without api control moves answer true and do nothing. */
+  def enableApiControl(on: Boolean = true): Future[Either[RpcError, Unit]] =
+    tell("enableApiControl", Bool(on))
+
+  def isApiControlEnabled(): Future[Either[RpcError, Boolean]] = get("isApiControlEnabled")
+
+  /** Ends the move under way, with false. It travels behind every command sent before, on their connection. */
+  def cancelLastTask(): Future[Either[RpcError, Unit]] =
+    call[Msg]("cancelLastTask", Seq(), inOrder).map(_.map(_ => ()))
+
+  /** Answers when every command sent before has reached the simulator: it travels behind them, on their connection. */
+  def reached(): Future[Either[RpcError, Unit]] =
+    client.rpc.call("ping", Seq(), inOrder).map(_.map(_ => ()))
+
+  // ---- helpers
+
+  protected def get[A: Reader](method: String): Future[Either[RpcError, A]] = call(method, Seq(), getter)
+
+  protected def ask(method: String, params: Msg*): Future[Either[RpcError, Boolean]] =
+    call(method, params, once)
+
+  protected def tell(method: String, params: Msg*): Future[Either[RpcError, Unit]] =
+    call[Msg](method, params, once).map(_.map(_ => ()))
+
+  protected def call[A: Reader](
+      method: String,
+      params: Seq[Msg],
+      options: CallOptions
+  ): Future[Either[RpcError, A]] =
+    client.rpc.callAs[A](method, params :+ Str(name), options)
+
+  /** A getter whose answer says when it was valid. */
+  protected def stamped[A: Reader, B](method: String, params: Msg*)(
+      read: A => (B, Instant)
+  ): Future[Either[RpcError, Stamped[B]]] = asked(getter, method, params)(read)
+
+  private def measured[A: Reader, B](method: String, params: Msg*)(
+      read: A => (B, Instant)
+  ): Future[Either[RpcError, Stamped[B]]] = asked(sensor, method, params)(read)
+
+  private def asked[A: Reader, B](options: CallOptions, method: String, params: Seq[Msg])(
+      read: A => (B, Instant)
+  ): Future[Either[RpcError, Stamped[B]]] =
+    client.rpc
+      .callStampedAs[A](method, params :+ Str(name), options)
+      .map(_.map: answer =>
+        val (value, validAt) = read(answer.value)
+        Stamped(value, validAt, answer.sentAt, answer.receivedAt))
+
+  protected def own(pose: VehiclePose): Msg =
+    writeMsg(Pose(Vector3r(pose.positionNed - originNed), Quaternionr(pose.orientation)))
+
+  protected def inWorld(state: KinematicsState): Kinematics =
+    Kinematics(
+      state.position.toVector + originNed,
+      state.linear_velocity.toVector,
+      state.orientation.toQuaternion,
+      state.angular_velocity.toVector
+    )
+
+  private def located(point: GeoPoint): GeoLocation =
+    GeoLocation(point.latitude, point.longitude, Metres(point.altitude))
+
+  protected def real(value: Double): Msg = Float32(value.toFloat)
+
+object VehicleClient:
+
+  /** The vehicle of this name and kind; its origin is read from the simulator's settings. */
+  def named(
+      client: AirSimClient,
+      name: String,
+      kind: VehicleKind
+  ): Future[Either[AirSimError, VehicleClient]] = kind match
+    case VehicleKind.Multirotor => Multirotor.named(client, name)
+    case VehicleKind.Car        => Car.named(client, name)
+
+  /** @param make
+    *   of its origin and its connection's key
+    */
+  private[airsim] def named[A](
+      client: AirSimClient,
+      name: String,
+      make: (Vector3, Int) => A
+  ): Future[Either[AirSimError, A]] =
+    given ExecutionContext = ExecutionContext.parasitic
+    client.vehicles().flatMap:
+      case Left(error)                           => Future.successful(Left(AirSimError.Call(error)))
+      case Right(names) if !names.contains(name) =>
+        Future.successful(Left(AirSimError.UnknownVehicle(name, names)))
+      case Right(names) =>
+        client.settings().map(_.map: world =>
+          val origin = world.vehicles.find(_.name == name).fold(Vector3.Zero)(_.startNed)
+          make(origin, names.indexOf(name)))

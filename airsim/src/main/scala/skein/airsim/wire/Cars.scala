@@ -1,0 +1,30 @@
+package skein.airsim.wire
+
+import skein.units.Instant
+import upickle.default.ReadWriter
+import upickle.implicits.serializeDefaults
+
+/** What a car's pedals, wheel and gear lever do. Throttle and steering −1 to 1, brake 0 to 1; `manual_gear` counts only
+  * with `is_manual_gear`, −1 is reverse.
+  */
+@serializeDefaults(true)
+final private[skein] case class CarControls(
+    throttle: Float = 0,
+    steering: Float = 0,
+    brake: Float = 0,
+    handbrake: Boolean = false,
+    is_manual_gear: Boolean = false,
+    manual_gear: Int = 0,
+    gear_immediate: Boolean = true
+) derives ReadWriter
+
+/** Speed along the heading in m/s, negative backwards; the engine's turns a minute. */
+final private[skein] case class CarState(
+    speed: Float,
+    gear: Int,
+    rpm: Float,
+    maxrpm: Float,
+    handbrake: Boolean,
+    kinematics_estimated: KinematicsState,
+    timestamp: Instant
+) derives ReadWriter

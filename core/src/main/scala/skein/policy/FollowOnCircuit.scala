@@ -1,0 +1,31 @@
+package skein.policy
+
+/** Follows a vehicle round a circuit, a distance behind it along the circuit: steers to the point a fixed length ahead of
+  * its own place ([[LeadOnCircuit]]) and is as fast as the vehicle before it, and faster or slower by a share of what the
+  * gap is off. It never turns back: it waits. A policy for vehicles that cannot turn on the spot.
+  *
+  * @param leader
+  *   its place in the scenario
+  * @param aheadM
+  *   about as far as the vehicle drives before it follows a command
+  * @param perS
+  *   speed per metre that the gap is too wide
+  */
+final case class FollowOnCircuit(
+    leader: Int,
+    circuit: Racetrack,
+    gapM: Double,
+    mostMps: Double,
+    aheadM: Double,
+    perS: Double = 0.5
+) extends TeamPolicy:
+
+  def course(seen: TeamObservation): Course =
+    val (north, east)     = (seen.northM(seen.self), seen.eastM(seen.self))
+    val place             = circuit.nearest(north, east)
+    val round             = circuit.nearest(seen.northM(leader), seen.eastM(leader)) - place
+    val gap               = round - circuit.lengthM * math.floor(round / circuit.lengthM)
+    val leaderMps         = StrictMath.hypot(seen.northMps(leader), seen.eastMps(leader))
+    val speed             = (leaderMps + perS * (gap - gapM)).max(0.0).min(mostMps)
+    val (toNorth, toEast) = circuit.point(place + aheadM)
+    Course(StrictMath.atan2(toEast - east, toNorth - north), speed)

@@ -1,0 +1,104 @@
+package skein.scenario
+
+import skein.policy.*
+import skein.units.*
+import skein.vehicle.{ReducedModel, VehicleKind}
+
+/** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars to their
+  * right, one beside them to their left, one behind them. The drones' places turn with the road where the leading car is.
+  *
+  * @param gapM
+  *   from the leading car to the other, along the circuit
+  * @param carMps
+  *   of the leading car
+  * @param mostMps
+  *   the fastest that anybody is commanded
+  * @param straightM
+  *   of the circuit; its half turns have the radius `radiusM`
+  * @param altitudeM
+  *   of the drones
+  * @param sightM
+  *   within which a drone has a car in view, in the plane
+  */
+final case class Convoy(
+    gapM: Double = 12,
+    carMps: Double = 7,
+    mostMps: Double = 12,
+    straightM: Double = 60,
+    radiusM: Double = 25,
+    altitudeM: Double = 10,
+    sightM: Double = 15
+) extends Scenario:
+  import Convoy.*
+
+  override def mistakes: Seq[String] = Scenario.notPositive(this, "straightM")
+
+  def circuit: Racetrack = Racetrack(straightM, radiusM)
+
+  /** Where the drones' places are: metres ahead of the leading car and to its right. */
+  def places: Vector[(Double, Double)] = Vector((6.0, 7.0), (-gapM / 2, -9.0), (-gapM - 8, 0.0))
+
+  def agents: Vector[Agent] =
+    val lagS   = ReducedModel.airSimAt(altitudeM).lagS
+    val drones = places.zipWithIndex.map:
+      case ((aheadM, rightM), drone) =>
+        Agent(
+          s"Escort${drone + 1}",
+          Role("Escort"),
+          MetresPerSecond(carMps),
+          Vector3(aheadM, rightM, -altitudeM),
+          Radians(0),
+          KeepSlot(0, circuit, aheadM, rightM, mostMps, lagS)
+        )
+    val leads   = LeadOnCircuit(circuit, carMps, carMps * AheadS)
+    val follows = FollowOnCircuit(0, circuit, gapM, mostMps, carMps * AheadS)
+    (car("Lead", 0, leads) +: drones) :+ car("Rear", -gapM, follows)
+
+  private def car(name: String, northM: Double, policy: TeamPolicy) =
+    val start = Vector3(northM, 0, 0)
+    Agent(name, Role("Car"), MetresPerSecond(carMps), start, Radians(0), policy, VehicleKind.Car)
+
+  override def limits: Vector[Limit] = Vector(Limit.separation(Metres(3)))
+
+  override def series: Vector[Series] = Vector(offPlaces, apart, unseen)
+
+  override def measures: Vector[Measure] =
+    val settled = Window.After(SettlingS)
+    Vector(
+      offPlaces.rms("off places", settled),
+      apart.mean("between cars", settled),
+      apart.sd("its sd", settled),
+      unseen.timeWhere("out of view")(_ > sightM)
+    )
+
+  override def note: String =
+    s"Off places: distance of the drones to their places after the first $SettlingS s, root mean square. " +
+      s"Between cars: in the plane. Out of view: how long a car had no drone within $sightM m, seen from above."
+
+  private def offPlaces =
+    val (ahead, right) = places.unzip
+    Series.of("off places, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
+
+  private def apart =
+    Series("between the cars", "m", Some(Bound("asked for", gapM)))(tracks =>
+      instant => tracks.distanceM(Lead, Rear, instant)
+    )
+
+  /** Of the two cars, how far the one is from its nearest drone that is farther from its own. */
+  private def unseen =
+    Series("from a car to its nearest drone", "m", Some(Bound("in view", sightM)))(tracks =>
+      instant =>
+        Seq(Lead, Rear).map(car => Drones.map(tracks.distanceM(car, _, instant)).min).max
+    )
+
+object Convoy:
+  // Places of the vehicles; those of the drones' scores follow the leader's.
+  private val Lead   = 0
+  private val Drones = 1 to 3
+  private val Rear   = 4
+
+  /** Before a car follows a command, s: as long as its driver takes for a turn, and a little for its tyres. */
+  private val AheadS = 1.0
+
+  /** For the vehicles to get under way; not counted. */
+  private val SettlingS = 10.0

@@ -1,0 +1,40 @@
+package skein.vehicle
+
+/** Drives a car after a commanded velocity: steers onto the arc that takes the heading's error away within a time, and
+  * approaches the speed with a time constant, slower while it is turning. Told to stand still, it brakes. It never drives
+  * backwards: what is wanted behind it is reached by turning round.
+  *
+  * @param headingS
+  *   within which the heading's error would be gone
+  * @param speedS
+  *   time constant of the speed
+  * @param leastShare
+  *   of the commanded speed, while the heading is far off
+  */
+final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastShare: Double = 0.4):
+
+  /** @param northMps
+    *   commanded velocity
+    */
+  def controls(
+      car: SingleTrack,
+      headingRad: Double,
+      speedMps: Double,
+      northMps: Double,
+      eastMps: Double
+  ): CarControls =
+    val commanded = StrictMath.hypot(northMps, eastMps)
+    val off       = math.IEEEremainder(StrictMath.atan2(eastMps, northMps) - headingRad, 2 * math.Pi)
+    val wanted    = commanded * StrictMath.cos(off).max(leastShare)
+    val steered   = StrictMath.atan2(car.wheelbaseM * off / headingS, speedMps.max(1.0))
+    val mps2      = (wanted - speedMps) / speedS + car.coastMps2(speedMps)
+    val stands    = commanded < CarDriver.StandsMps
+    CarControls(
+      if stands then 0.0 else (mps2 / car.driveMps2(speedMps)).max(0.0).min(1.0),
+      if stands then 0.0 else (steered / car.mostSteeredRad).max(-1.0).min(1.0),
+      if stands then 1.0 else (-mps2 / car.brakeMps2).max(0.0).min(1.0)
+    )
+
+object CarDriver:
+  /** Who is told to be slower than this is told to stand still. */
+  private val StandsMps = 1e-3

@@ -1,0 +1,48 @@
+package skein.vehicle
+
+/** Everything that changes while a car drives. Place and velocity are those of its centre of mass.
+  *
+  * @param headingRad
+  *   from north towards east, any number of turns
+  * @param frontMps
+  *   velocity along the heading, negative backwards
+  * @param rightMps
+  *   across it
+  * @param yawRadPerS
+  *   clockwise seen from above
+  * @param frontSlipRad
+  *   angle by which the front tyres are deflected, positive where they push to the right; `rearSlipRad` likewise
+  * @param steeredRad
+  *   angle of the front wheels, positive to the right
+  */
+final case class CarState(
+    northM: Double,
+    eastM: Double,
+    headingRad: Double,
+    frontMps: Double = 0,
+    rightMps: Double = 0,
+    yawRadPerS: Double = 0,
+    frontSlipRad: Double = 0,
+    rearSlipRad: Double = 0,
+    steeredRad: Double = 0
+):
+  def northMps: Double = frontMps * StrictMath.cos(headingRad) - rightMps * StrictMath.sin(headingRad)
+  def eastMps: Double  = frontMps * StrictMath.sin(headingRad) + rightMps * StrictMath.cos(headingRad)
+
+/** What a driver does.
+  *
+  * @param throttle
+  *   −1 to 1; negative drives backwards
+  * @param steering
+  *   −1, full lock to the left, to 1
+  * @param brake
+  *   0 to 1
+  */
+final case class CarControls(throttle: Double, steering: Double, brake: Double)
+
+object CarControls:
+  /** Stands, or comes to a stand. */
+  val Stop: CarControls = CarControls(0, 0, 1)
+
+  /** Nothing is touched: it rolls out. */
+  val Neutral: CarControls = CarControls(0, 0, 0)

@@ -1,0 +1,106 @@
+package skein.vehicle
+
+import skein.vehicle.Airframe.Gravity
+
+/** How a car moves: the single-track ("bicycle") model, whose two wheels of an axle are one, with tyres that answer late.
+  *
+  * A tyre pushes sideways in proportion to the angle by which it is deflected, up to what friction holds. That angle
+  * follows the slip angle, the direction in which the tyre is drawn over the ground, while it rolls: with a first-order
+  * lag over its relaxation length σ, σ · α' = −(velocity across the wheel) − |v| · α (Pacejka, ''Tyre and Vehicle
+  * Dynamics'', 2nd ed., section 1.2 and chapter 7). The two forces turn the car and move it sideways as in the linear
+  * single-track model (Rajamani, ''Vehicle Dynamics and Control'', 2nd ed., equations 2.31 and 2.32), here with the
+  * sines and cosines of the steering angle. Stiffness is in proportion to an axle's load, F = μ · C_S · F_z · α.
+  *
+  * Along its way it is driven by as much as its two driven wheels hold or its engine's power gives, and slowed by its
+  * brakes, as far as all four wheels hold, by rolling, by the air and by the steered wheels. That a tyre that brakes holds
+  * less sideways is left out, and so are springs and the shifting of loads.
+  *
+  * Defaults are a BMW 320i's, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger, ''CommonRoad: Composable
+  * Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set 2): 1093.3 kg, 1791.6 kg·m²,
+  * μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to 7.319 m/s. Not from there: full lock, 40° as
+  * AirSim's car has it (`CarWheelFront`); the relaxation length, 0.5 m, within the 0.3 to 0.6 m of passenger cars' tyres;
+  * the rolling resistance of 0.015 of the weight, and the air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
+  *
+  * A pure formula: the simulator, predictions and forward simulation by lanes compute it alike. `SingleTrackSuite` holds it
+  * to its sources.
+  *
+  * @param rearM
+  *   from the rear axle to the centre of mass
+  * @param gyrationM
+  *   radius of gyration about the vertical axis: the root of moment of inertia over mass
+  * @param relaxationM
+  *   the way over which tyres answer
+  * @param wattPerKg
+  *   of the engine
+  */
+final case class SingleTrack(
+    wheelbaseM: Double = 2.5789,
+    rearM: Double = 1.4227,
+    gyrationM: Double = 1.2801,
+    friction: Double = 1.0489,
+    stiffnessPerRad: Double = 20.89,
+    relaxationM: Double = 0.5,
+    mostSteeredRad: Double = math.Pi * 40 / 180,
+    mostSteeringRadPerS: Double = 0.4,
+    wattPerKg: Double = 11.5 * 7.319,
+    rolling: Double = 0.015,
+    airPerM: Double = 0.00033
+):
+  /** From the centre of mass to the front axle. */
+  def frontM: Double = wheelbaseM - rearM
+
+  /** What the brakes give, m/s². */
+  def brakeMps2: Double = friction * Gravity
+
+  /** What full throttle gives, m/s². */
+  def driveMps2(frontMps: Double): Double =
+    (friction * Gravity / 2).min(wattPerKg / math.abs(frontMps).max(1.0))
+
+  /** By which it slows down if nothing is touched, m/s². */
+  def coastMps2(frontMps: Double): Double = rolling * Gravity + airPerM * frontMps * frontMps
+
+  /** The state after `dtS` under controls that stand. Steps of up to 20 ms are stable. */
+  def step(state: CarState, controls: CarControls, dtS: Double): CarState =
+    val most       = mostSteeringRadPerS * dtS
+    val wanted     = mostSteeredRad * controls.steering.max(-1.0).min(1.0)
+    val steered    = state.steeredRad + (wanted - state.steeredRad).max(-most).min(most)
+    val (cos, sin) = (StrictMath.cos(steered), StrictMath.sin(steered))
+
+    // A tyre that hardly rolls would swing undamped for long.
+    val rollsMps  = math.abs(state.frontMps).max(SingleTrack.DampedMps)
+    val left      = StrictMath.exp(-rollsMps * dtS / relaxationM)
+    val frontWay  = ((state.rightMps + frontM * state.yawRadPerS) * cos - state.frontMps * sin) / rollsMps
+    val rearWay   = (state.rightMps - rearM * state.yawRadPerS) / rollsMps
+    val frontSlip = (state.frontSlipRad + frontWay) * left - frontWay
+    val rearSlip  = (state.rearSlipRad + rearWay) * left - rearWay
+
+    // Forces over the mass; the axles bear the weight as their distances say.
+    val held      = friction * Gravity / wheelbaseM
+    val frontMps2 = held * rearM * (stiffnessPerRad * frontSlip).max(-1.0).min(1.0)
+    val rearMps2  = held * frontM * (stiffnessPerRad * rearSlip).max(-1.0).min(1.0)
+    val across    = frontMps2 * cos
+    val right     = state.rightMps + dtS * (across + rearMps2 - state.frontMps * state.yawRadPerS)
+    val yaw       = state.yawRadPerS + dtS * (frontM * across - rearM * rearMps2) / (gyrationM * gyrationM)
+    val throttle  = controls.throttle.max(-1.0).min(1.0) * driveMps2(state.frontMps)
+    val driven    = state.frontMps + dtS * (throttle - frontMps2 * sin + state.rightMps * state.yawRadPerS)
+    val brake     = controls.brake.max(0.0).min(1.0) * brakeMps2
+    val slowed    = dtS * (brake + coastMps2(state.frontMps))
+    val front     = driven - driven.max(-slowed).min(slowed)
+    val turn      = dtS * (state.yawRadPerS + yaw) / 2
+    val along     = state.headingRad + turn / 2
+    val (alongM, acrossM) = (dtS * (state.frontMps + front) / 2, dtS * (state.rightMps + right) / 2)
+    CarState(
+      state.northM + alongM * StrictMath.cos(along) - acrossM * StrictMath.sin(along),
+      state.eastM + alongM * StrictMath.sin(along) + acrossM * StrictMath.cos(along),
+      state.headingRad + turn,
+      front,
+      right,
+      yaw,
+      frontSlip,
+      rearSlip,
+      steered
+    )
+
+object SingleTrack:
+  /** Slower, tyres answer as if they rolled so fast. A car so slow hardly needs lateral forces. */
+  private val DampedMps = 5.0

@@ -1,0 +1,31 @@
+package skein.simulator
+
+import skein.airsim.wire.{CarControls, CarState}
+
+/** Functions of cars: those that AirSim's `CarClient` has beside those of all vehicles. */
+private[simulator] object CarMethods:
+  import Method.*
+
+  val all: Seq[Method] = Seq(
+    many[(CarControls, String)]("setCarControls"):
+      case (simulation, (controls, name)) =>
+        car(simulation, name): (_, car) =>
+          car.setControls(controls)
+          Nil
+    ,
+    one[String]("getCarControls")((simulation, name) =>
+      car(simulation, name)((_, car) => answer(car.controls))
+    ),
+    one[String]("getCarState"): (simulation, name) =>
+      car(simulation, name): (_, car) =>
+        val now = simulation.world.now
+        answer(CarState(
+          car.speedMps.toFloat,
+          car.gear,
+          car.rpm.toFloat,
+          SimulatedCar.MostRpm.toFloat,
+          car.controls.handbrake,
+          VehicleMethods.kinematics(car, now),
+          now
+        ))
+  )

@@ -1,0 +1,44 @@
+package skein.simulator
+
+import skein.scene.{Contact, Placement, Scene}
+import skein.units.{Instant, Quaternion, Vector3}
+
+/** What of a scene's objects one vehicle touches. It remembers how far the vehicle can go before it touches anything.
+  *
+  * @param startNed
+  *   of the vehicle's own frame in the world
+  */
+final private[simulator] class Obstacles(startNed: Vector3):
+  // Of this scene it can touch nothing until it is so far from there.
+  private var freeOf = Scene.Empty
+  private var freeAt = Vector3.Zero
+  private var freeM  = 0.0
+
+  /** @param centre
+    *   of the box around the vehicle, in the world
+    * @param half
+    *   of the box' lengths, m
+    * @param orientation
+    *   of the vehicle; computed only where something is near
+    */
+  def touched(scene: Scene, centre: Vector3, half: Vector3)(orientation: => Quaternion): Option[Contact] =
+    if (scene eq freeOf) && (centre - freeAt).norm < freeM then None
+    else
+      freeOf = scene
+      freeAt = centre
+      freeM = Contact.clearanceM(scene, centre, half.norm)
+      if freeM <= 0 then Contact.of(scene, Placement(centre, orientation), half) else None
+
+  /** As a client is told of it.
+    *
+    * @param positionNed
+    *   of the vehicle, in its own frame
+    */
+  def told(scene: Scene, contact: Contact, at: Instant, positionNed: Vector3): Touch = Touch(
+    at,
+    positionNed,
+    contact.normal,
+    contact.depthM,
+    contact.point - startNed,
+    scene.objects(contact.item - 1).name
+  )

@@ -1,0 +1,233 @@
+package skein.simulator
+
+import skein.airsim.wire.{KinematicsState, RcData}
+import skein.airsim.VehicleSettings
+import skein.scene.{Contact, Scene, SceneObject}
+import skein.units.*
+import skein.vehicle.*
+
+/** One multirotor: its physics and what AirSim's SimpleFlight firmware keeps beside them (`OffboardApi`). */
+final private[simulator] class SimulatedMultirotor(
+    settings: VehicleSettings,
+    quadrotor: Quadrotor,
+    worldOrigin: GeoLocation
+) extends SimulatedVehicle(settings, worldOrigin):
+  val state: QuadrotorState = quadrotor.landed(Vector3.Zero, settings.yaw.value)
+
+  private var tuned       = quadrotor
+  private var environment =
+    Environment(groundDownM = math.max(0, -settings.startNed.z), originAltitudeM = home.altitude.value)
+  private var goal        = Setpoint.Disarmed
+  private var goalSetAt   = Instant.Epoch
+  private var goalExpired = false
+  private var armed       = settings.armed
+  private var remote      = RcData.Absent
+  private var flown       = false
+
+  /** The remote control's sticks as last heard of. */
+  def sticks: RcData = remote
+
+  /** AirSim's landed state. */
+  def flying: Boolean = flown
+
+  def airframe: Airframe = quadrotor.airframe
+
+  reset(Instant.Epoch)
+
+  /** Back to the start, without api control; armed if the settings say so. */
+  def reset(at: Instant): Unit =
+    state.copyFrom(quadrotor.landed(Vector3.Zero, settings.yaw.value))
+    state.grounded = environment.groundDownM == 0
+    sampledAt = at
+    armed = settings.armed
+    controlled = false
+    remote = RcData.Absent
+    goalExpired = false
+    goalSetAt = at
+    goal = remoteGoal
+    touched = None
+    resetAt = at
+    flown = false
+
+  def setWind(windNed: Vector3): Unit = environment = environment.copy(windNed = windNed)
+
+  def step(at: Instant, scene: Scene): Unit =
+    if controlled && flown && !goalExpired && at.since(goalSetAt) > SimulatedMultirotor.GoalLifetime then
+      goal = Setpoint.hold(state.positionNed)
+      goalExpired = true
+    val contacts = state.contacts
+    tuned.step(state, goal, environment)
+    sampledAt = at
+    if state.contacts > contacts then touched = Some(Touch(at, state.positionNed))
+    if scene.objects.nonEmpty then meet(scene, at)
+    noticeTakeoffAndLanding()
+
+  /** AirSim's response to a collision, with the contact taken at the centre of mass, so that it turns nothing: what moves
+    * into the object bounces, what slides along it is slowed, and who comes down more than sideways stays.
+    */
+  private def meet(scene: Scene, at: Instant): Unit =
+    val centre = settings.startNed + state.positionNed
+    for contact <- obstacles.touched(scene, centre, halfLengths)(state.orientation) do
+      bounce(contact)
+      touched = Some(obstacles.told(scene, contact, at, state.positionNed))
+
+  private def bounce(contact: Contact): Unit =
+    val n        = contact.normal
+    val inwards  = state.vx * n.x + state.vy * n.y + state.vz * n.z
+    val lands    = n.z < -0.75 && state.vz > math.abs(state.vx) && state.vz > math.abs(state.vy)
+    val returned = if lands then 0 else airframe.restitution
+    val kept     = if lands then 0 else 1 - airframe.friction
+    if inwards < 0 then
+      state.vx = (state.vx - n.x * inwards) * kept - n.x * inwards * returned
+      state.vy = (state.vy - n.y * inwards) * kept - n.y * inwards * returned
+      state.vz = (state.vz - n.z * inwards) * kept - n.z * inwards * returned
+      state.wx *= SimulatedMultirotor.SpinKept
+      state.wy *= SimulatedMultirotor.SpinKept
+      state.wz *= SimulatedMultirotor.SpinKept
+      state.ax = 0; state.ay = 0; state.az = 0
+      state.wxDot = 0; state.wyDot = 0; state.wzDot = 0
+    state.x += n.x * contact.depthM
+    state.y += n.y * contact.depthM
+    state.z += n.z * contact.depthM
+
+  /** Sets the goal, if the API has control; it holds for 60 ms. */
+  def command(setpoint: Setpoint, at: Instant): Unit =
+    if controlled then
+      goal = setpoint
+      goalSetAt = at
+      goalExpired = false
+
+  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the API has had
+    * control before. A vehicle that held its position thus falls: the throttle of an absent remote control is idle, and
+    * of a vehicle that is at rest under it AirSim takes for granted that it has landed, so that it is not caught by
+    * holding a position either.
+    */
+  def setApiControl(on: Boolean): Unit =
+    controlled = on
+    goal = remoteGoal
+
+  /** Moves the sticks. They fly an armed vehicle that the API does not control: angles (rates, if the first switch is on),
+    * yaw rate and throttle. AirSim looks at them every 12 ms only.
+    */
+  def steer(sticks: RcData): Unit =
+    remote = sticks
+    if !controlled then goal = remoteGoal
+
+  /** Arms or disarms; only the API in control can, and only an armed vehicle can be disarmed. One that is armed already is
+    * left alone. Moves drive a disarmed vehicle too, as in AirSim.
+    */
+  def arm(on: Boolean): Boolean =
+    val may = controlled && (on || armed)
+    if may && on != armed then
+      armed = on
+      goal = if on then Setpoint.Armed else Setpoint.Disarmed
+    may
+
+  /** Puts it elsewhere, in its own frame; its motion, its goal and its rotors stay as they are, and it stands on nothing. */
+  def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
+    val sinceSample = positionAt(at) - state.positionNed
+    state.place(positionNed - sinceSample, orientation.normalized)
+    state.grounded = false
+
+  /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground and under api
+    * control.
+    */
+  def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
+    require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
+    val hold = positionNed - Vector3(0, 0, quadrotor.hoverSagM(positionNed.z, environment))
+    state.copyFrom(quadrotor.hovering(hold, yawRad, environment))
+    // Exactly there, whatever the sum of hold and sag was rounded to.
+    state.place(positionNed, state.orientation)
+    flown = true
+    command(Setpoint.hold(hold), at)
+    // This goal is already what an expired one becomes.
+    goalExpired = true
+    sampledAt = at
+
+  def isAboveGround(positionNed: Vector3): Boolean = positionNed.z < environment.groundDownM
+
+  /** The gains of its flight controller. */
+  def gains: CascadeGains = tuned.cascade.getOrElse(CascadeGains.Default)
+
+  /** Sets them; all controllers start anew. */
+  def tune(gains: CascadeGains): Unit =
+    tuned = quadrotor.tuned(gains)
+    state.restartController()
+
+  /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on nothing. */
+  def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
+    val acceleration        = kinematics.linear_acceleration.toVector
+    val angularVelocity     = kinematics.angular_velocity.toVector
+    val angularAcceleration = kinematics.angular_acceleration.toVector
+    // Physics stands at the step before `at`: what is told there must be this when it is carried on.
+    val s        = sinceSample(at)
+    val velocity = kinematics.linear_velocity.toVector - acceleration * s
+    val position = kinematics.position.toVector - velocity * s - acceleration * (s * s / 2)
+    state.place(position, kinematics.orientation.toQuaternion.normalized)
+    state.vx = velocity.x; state.vy = velocity.y; state.vz = velocity.z
+    state.ax = acceleration.x; state.ay = acceleration.y; state.az = acceleration.z
+    state.wx = angularVelocity.x; state.wy = angularVelocity.y; state.wz = angularVelocity.z
+    state.wxDot = angularAcceleration.x
+    state.wyDot = angularAcceleration.y
+    state.wzDot = angularAcceleration.z
+    state.grounded = false
+
+  /** Rotors included. */
+  def halfLengths: Vector3 =
+    val reach = airframe.rotorOffsetM + airframe.rotorDiameterM / 2
+    Vector3(reach, reach, airframe.rotorDownM + airframe.rotorHeightM)
+
+  def middleFrd: Vector3 = Vector3.Zero
+
+  def parts(number: Int, tagM: Double): Vector[SceneObject.Part] =
+    MultirotorBody.parts(airframe, number, tagM)
+
+  def cameras: CameraSet = CameraSet.OfMultirotor
+
+  def isGrounded: Boolean             = state.grounded
+  def orientation: Quaternion         = state.orientation
+  def angularVelocityFrd: Vector3     = state.angularVelocityFrd
+  def accelerationNed: Vector3        = state.accelerationNed
+  def angularAccelerationFrd: Vector3 = state.angularAccelerationFrd
+
+  /** Position at `at`, up to one step after the last: carried on at constant acceleration, which errs by less than
+    * 0.1 µm at 10 m/s³ of jerk.
+    */
+  def positionAt(at: Instant): Vector3 =
+    val s = sinceSample(at)
+    state.positionNed + state.velocityNed * s + state.accelerationNed * (s * s / 2)
+
+  /** Velocity at `at`, carried on likewise. */
+  def velocityAt(at: Instant): Vector3 = state.velocityNed + state.accelerationNed * sinceSample(at)
+
+  /** What the remote control's sticks ask for; those of an absent one are at zero. */
+  private def remoteGoal: Setpoint =
+    if !armed then Setpoint.Disarmed
+    else
+      val sticks   = if remote.is_valid then remote else RcData.Absent
+      val tilt     = quadrotor.gains.maxTilt
+      val roll     = sticks.roll * tilt
+      val pitch    = -sticks.pitch * tilt
+      val throttle = math.max(sticks.throttle.toDouble, Setpoint.Armed.third)
+      val yawRate  = sticks.yaw * math.Pi
+      if (sticks.switches & 1) == 0 then
+        Setpoint.anglesThrottle(roll, pitch, 0, throttle).withYawRate(yawRate)
+      else Setpoint.ratesThrottle(roll, pitch, yawRate, throttle)
+
+  private def noticeTakeoffAndLanding(): Unit =
+    val driven =
+      (state.control0 + state.control1 + state.control2 + state.control3) / 4 > SimulatedMultirotor.ArmedThrottle
+    if !flown then flown = driven && math.abs(state.vz) > 0.01
+    else if !driven && isStill then flown = false
+
+  private def isStill: Boolean =
+    Seq(state.vx, state.vy, state.vz, state.wx, state.wy, state.wz).forall(math.abs(_) < 0.08)
+
+private[simulator] object SimulatedMultirotor:
+  /** A goal that no command renews within this turns into position hold, once the vehicle flies. */
+  val GoalLifetime: Span = Span.ofMillis(60)
+
+  private val ArmedThrottle = 0.1
+
+  /** Share of the angular velocity that a bounce leaves: AirSim's rolling friction. */
+  private val SpinKept = 0.9
