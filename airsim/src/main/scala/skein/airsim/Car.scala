@@ -1,9 +1,7 @@
 package skein.airsim
 
-import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.{CarControls as WireControls, CarState}
-import skein.port.VehiclePort
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -60,8 +58,6 @@ final class Car(
 
   def over(client: AirSimClient, originNed: Vector3, connectionKey: Int): Car =
     Car(client, name, originNed, connectionKey)
-
-  def port(onLost: String => Unit)(using ActorSystem): VehiclePort = AirSimCar(this)
 
 object Car:
 

@@ -1,9 +1,7 @@
 package skein.airsim
 
-import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.port.VehiclePort
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -225,8 +223,6 @@ final class Multirotor(
 
   def over(client: AirSimClient, originNed: Vector3, connectionKey: Int): Multirotor =
     Multirotor(client, name, originNed, connectionKey)
-
-  def port(onLost: String => Unit)(using ActorSystem): VehiclePort = AirSimVehicle(this, onLost)
 
 object Multirotor:
 

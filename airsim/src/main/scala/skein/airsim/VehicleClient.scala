@@ -1,13 +1,10 @@
 package skein.airsim
 
-import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.port.VehiclePort
 import skein.rpc.{CallOptions, Channel, RpcError}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
-import skein.vehicle.VehicleKind
 import upack.{Bool, Float32, Msg, Str}
 import upickle.default.{Reader, writeMsg}
 
@@ -18,7 +15,7 @@ import upickle.default.{Reader, writeMsg}
   * @param connectionKey
   *   vehicles with different keys are spread over the connections
   */
-abstract class VehicleClient(
+abstract class VehicleClient private[airsim] (
     client: AirSimClient,
     val name: String,
     val originNed: Vector3,
@@ -38,13 +35,6 @@ abstract class VehicleClient(
 
   /** The same vehicle by another client. */
   def over(client: AirSimClient, originNed: Vector3 = originNed, connectionKey: Int = 0): VehicleClient
-
-  /** The vehicle as a loop sees it.
-    *
-    * @param onLost
-    *   told of every answer that was missed, and what became of it
-    */
-  def port(onLost: String => Unit)(using ActorSystem): VehiclePort
 
   // ---- state
 
@@ -168,21 +158,12 @@ abstract class VehicleClient(
 
   protected def real(value: Double): Msg = Float32(value.toFloat)
 
-object VehicleClient:
-
-  /** The vehicle of this name and kind; its origin is read from the simulator's settings. */
-  def named(
-      client: AirSimClient,
-      name: String,
-      kind: VehicleKind
-  ): Future[Either[AirSimError, VehicleClient]] = kind match
-    case VehicleKind.Multirotor => Multirotor.named(client, name)
-    case VehicleKind.Car        => Car.named(client, name)
+private object VehicleClient:
 
   /** @param make
     *   of its origin and its connection's key
     */
-  private[airsim] def named[A](
+  def named[A](
       client: AirSimClient,
       name: String,
       make: (Vector3, Int) => A

@@ -1,10 +1,8 @@
 package skein.airsim
 
 import scala.util.control.NonFatal
-import skein.policy.Agent
 import skein.scenario.Equipment
 import skein.units.*
-import skein.vehicle.VehicleKind
 import ujson.{Num, Obj, Value}
 
 /** Where a vehicle starts, which is where its own frame has its origin.
@@ -30,15 +28,6 @@ final case class VehicleSettings(
     sensors: Map[String, SensorKind] = SensorKind.Default
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
-
-object VehicleSettings:
-  /** Of a scenario's agent: on the ground below its start, looking where it will go. */
-  def of(agent: Agent): VehicleSettings = VehicleSettings(
-    agent.name,
-    agent.startPositionNed.copy(z = 0),
-    agent.startHeading,
-    WorldSettings.vehicleType(agent.kind)
-  )
 
 /** What is read of an AirSim `settings.json`: vehicles with their sensors, origin, wind and clock speed. Everything else in it is passed
   * over. `SimMode` says of what type vehicles are that name none; unlike AirSim's, a world may have vehicles of both.
@@ -81,10 +70,6 @@ object WorldSettings:
   val PhysXCar = "PhysXCar"
 
   private val CarMode = "Car"
-
-  private[airsim] def vehicleType(kind: VehicleKind): String = kind match
-    case VehicleKind.Multirotor => SimpleFlight
-    case VehicleKind.Car        => PhysXCar
 
   /** AirSim's default home. */
   val DefaultOrigin: GeoLocation = GeoLocation(47.641468, -122.140165, Metres(122))

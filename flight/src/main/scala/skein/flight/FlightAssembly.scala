@@ -299,8 +299,9 @@ final class FlightAssembler(
       films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
       crafts  = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
-        val craft           = vehicle.port(lost =>
-          monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+        val craft           = Vehicles.port(
+          vehicle,
+          lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
         )
         val isPaused = plan.loop == LoopKind.Paused
         val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
@@ -367,7 +368,7 @@ final class FlightAssembler(
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)
     else
-      val vehicles = fleet.agents.map(VehicleSettings.of)
+      val vehicles = fleet.agents.map(Vehicles.settings)
       SimulatorServer
         .start(
           SimulatorSettings(

@@ -85,7 +85,7 @@ final class Preparation(
 
   private def everyVehicle[A](fleet: Fleet)(use: (VehicleClient, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>
-      VehicleClient
+      Vehicles
         .named(client, agent.name, agent.kind)
         .flatMap:
           case Left(error)    => Future.failed(NotReady(error.message))

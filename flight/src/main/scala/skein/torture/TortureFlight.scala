@@ -56,7 +56,7 @@ object TortureFlight:
       clock,
       TortureFlight.connectTimeout
     )
-    private val world   = scenario.agents.map(VehicleSettings.of)
+    private val world   = scenario.agents.map(Vehicles.settings)
     private val address = Address("simulator", 41451)
     private val tap     = FaultyTransport(
       network.host("simulator"),

@@ -56,7 +56,7 @@ class SensorLiveSuite extends munit.FunSuite:
         ))
       ready <-
         Preparation(client, Clock.system).place(fleet).map(_.fold(fail(_), identity))
-      ports = ready.map(_.port(_ => ()))
+      ports = ready.map(Vehicles.port(_, _ => ()))
       landed <- flight.start(ports, recorder, Some(AirSimTime(client))).landed
       _ = assertEquals(landed.outcome, Outcome.Completed)
       _ <- client.close()

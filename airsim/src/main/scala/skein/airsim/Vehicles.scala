@@ -1,0 +1,38 @@
+package skein.airsim
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Future
+import skein.policy.Agent
+import skein.port.VehiclePort
+import skein.vehicle.VehicleKind
+
+/** Vehicles of a simulator, by their kind. */
+object Vehicles:
+
+  /** The vehicle of this name; its origin is read from the simulator's settings. */
+  def named(
+      client: AirSimClient,
+      name: String,
+      kind: VehicleKind
+  ): Future[Either[AirSimError, VehicleClient]] = kind match
+    case VehicleKind.Multirotor => Multirotor.named(client, name)
+    case VehicleKind.Car        => Car.named(client, name)
+
+  /** A vehicle as a loop sees it.
+    *
+    * @param onLost
+    *   told of every answer that was missed, and what became of it
+    */
+  def port(vehicle: VehicleClient, onLost: String => Unit)(using ActorSystem): VehiclePort = vehicle match
+    case multirotor: Multirotor => AirSimVehicle(multirotor, onLost)
+    case car: Car               => AirSimCar(car)
+
+  /** Of a scenario's agent: on the ground below its start, looking where it will go. */
+  def settings(agent: Agent): VehicleSettings = VehicleSettings(
+    agent.name,
+    agent.startPositionNed.copy(z = 0),
+    agent.startHeading,
+    agent.kind match
+      case VehicleKind.Multirotor => WorldSettings.SimpleFlight
+      case VehicleKind.Car        => WorldSettings.PhysXCar
+  )
