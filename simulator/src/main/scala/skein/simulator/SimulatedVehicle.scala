@@ -36,6 +36,7 @@ final private[simulator] class SimulatedVehicle(
   private var remote      = RcData.Absent
   private var touched     = Option.empty[Touch]
   private var flown       = false
+  private var outside     = Option.empty[Setpoint]
   private var resetAt     = Instant.Epoch
 
   // Of this scene it can touch nothing until it is so far from there.
@@ -78,7 +79,7 @@ final private[simulator] class SimulatedVehicle(
       goal = Setpoint.hold(state.positionNed)
       goalExpired = true
     val contacts = state.contacts
-    tuned.step(state, goal, environment)
+    tuned.step(state, outside.getOrElse(goal), environment)
     sampledAt = at
     if state.contacts > contacts then touched = Some(Touch(at, state.positionNed))
     if scene.objects.nonEmpty then meet(scene, at)
@@ -131,6 +132,9 @@ final private[simulator] class SimulatedVehicle(
       goal = setpoint
       goalSetAt = at
       goalExpired = false
+
+  /** Lets an autopilot outside fly it, whose setpoint holds until the next; None: it is AirSim's again. */
+  def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
   /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the API has had
     * control before. A vehicle that held its position thus falls: the throttle of an absent remote control is idle, and
