@@ -49,7 +49,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
-    .aggregate(scene, blocks, cluster, autopilot, offboard, kafka, docs)
+    .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, docs)
     .settings(publish / skip := true)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -121,7 +121,8 @@ lazy val scene = project
 /** The built-in simulator, which speaks AirSim's wire. */
 lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
-  .dependsOn(scene, autopilot, airsim % "compile->compile;test->test", vtime % Test, testing % Test)
+  .dependsOn(scene, autopilot, hil % "compile->compile;test->test", airsim % "compile->compile;test->test")
+  .dependsOn(vtime % Test, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
@@ -138,6 +139,12 @@ lazy val mavlink = project
 /** An autopilot's decisions behind MAVLink, as values. No Pekko, no I/O, no clock. */
 lazy val autopilot = project
   .settings(artifact("autopilot", "What an autopilot like PX4 decides and says, as pure functions"))
+  .dependsOn(core, mavlink)
+  .settings(libraryDependencies ++= munit)
+
+/** What a simulator says to autopilots, and hears of them, as values. No Pekko, no I/O, no clock. */
+lazy val hil = project
+  .settings(artifact("hil", "Sensors with noise for autopilots in simulation: PX4, ArduPilot, Betaflight"))
   .dependsOn(core, mavlink)
   .settings(libraryDependencies ++= munit)
 

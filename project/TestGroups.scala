@@ -40,7 +40,9 @@ object TestGroups extends AutoPlugin {
     "skein.flight.MavlinkFlightLiveSuite",
     "skein.flight.RunningSimulatorLiveSuite",
     "skein.mcap.OfficialPythonLibraryLiveSuite",
+    "skein.simulator.HilServerLiveSuite",
     "skein.simulator.MavsdkLiveSuite",
+    "skein.simulator.MujocoOracleLiveSuite",
     "skein.simulator.OfficialPythonClientLiveSuite"
   )
 

@@ -5,10 +5,11 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
+import skein.hil.AutopilotKind
 import skein.link.{TcpTransport, TransportError}
 import skein.settings.{NamedScene, TextFile}
 import skein.report.TextTable
-import skein.simulator.{MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
+import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 import skein.view.Shows
 
@@ -31,6 +32,11 @@ final case class ServeOptions(
         "programs, a vehicle each; all vehicles also at UDP 18570"
     )
     mavlink: Flag,
+    @arg(doc =
+      "lets an autopilot outside fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), ardupilot (JSON, UDP 9002, 9012, …) " +
+        "or betaflight (UDP 9002, one vehicle)"
+    )
+    hil: Option[String],
     view: ViewOptions
 )
 
@@ -53,18 +59,35 @@ object ServeCommand
         (),
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
       )
-      world <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
-      scene <- NamedScene.read(options.scene).left.map("--scene: " + _)
-      _     <- Either.cond(
-        !options.mavlink.value || !world.vehicles.exists(_.isCar),
+      world     <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
+      scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
+      autopilot <-
+        options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
+      _ <- Either.cond(
+        autopilot.isEmpty || !options.mavlink.value,
         (),
-        s"--mavlink: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
+        "--hil: not together with --mavlink, which is an autopilot itself"
+      )
+      flies = if autopilot.isDefined then "--hil" else "--mavlink"
+      _ <- Either.cond(
+        autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar),
+        (),
+        s"$flies: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
       )
       mavlink = Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host))
+      hil     = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
       shows   = Shows()
       _ <- options.view.serving(shows)(
         serve(
-          SimulatorSettings(world, address, overload, options.speed, scene = scene.scene, mavlink = mavlink),
+          SimulatorSettings(
+            world,
+            address,
+            overload,
+            options.speed,
+            scene = scene.scene,
+            mavlink = mavlink,
+            hil = hil
+          ),
           Option.when(options.view.view.value)(shows)
         )
       )
@@ -78,6 +101,11 @@ object ServeCommand
         .filter(_ > 0)
         .map(Overload.Workers(_))
         .toRight(s"--workers: expected a number, vehicles+4 or unlimited, came '$number'")
+
+  private def autopilotOf(label: String): Either[String, AutopilotKind] =
+    AutopilotKind.values
+      .find(_.label == label)
+      .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, came '$label'")
 
   private def worldOf(file: String): Either[String, WorldSettings] =
     for
@@ -95,7 +123,9 @@ object ServeCommand
         s", and by MAVLink from UDP ports ${open.udp.map(port =>
             s"${port.at.port}${port.tells.fold("")(to => s" to $to")}"
           ).mkString(", ")}"
-      Console.out.println(s"serving $vehicles at ${server.address}$mavlink; Ctrl-C ends it")
+      val hil = settings.hil.fold(""): open =>
+        s", for ${open.autopilot.label} at ${server.peerAddresses.mkString(", ")}"
+      Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil; Ctrl-C ends it")
       val ended = Promise[Either[String, Unit]]()
       server.failed.foreach(failure =>
         ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))
@@ -117,9 +147,10 @@ object ServeCommand
 
   /** Says what clients were refused whenever there is more of it. */
   private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:
-    private var told = Option.empty[String]
-    def run(): Unit  =
-      val news = ServerNews.line(server.stats, settings.limits, server.mavlinkStats)
+    private var told   = Option.empty[String]
+    private val called = settings.hil.fold("MAVLink")(_.autopilot.label)
+    def run(): Unit    =
+      val news = ServerNews.line(server.stats, settings.limits, server.peerStats, called)
       if news != told then
         told = news
         news.foreach(Console.out.println)

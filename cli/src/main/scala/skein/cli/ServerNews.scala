@@ -1,13 +1,18 @@
 package skein.cli
 
 import skein.rpc.{ServerLimits, ServerStats}
-import skein.simulator.MavlinkStats
+import skein.simulator.PeerStats
 
 /** What a person who runs a simulator is told of clients that were refused something. */
 private[cli] object ServerNews:
 
   /** One line, or nothing as long as all is well. Equal lines mean that nothing has happened between them. */
-  def line(stats: ServerStats, limits: ServerLimits, mavlink: MavlinkStats = MavlinkStats()): Option[String] =
+  def line(
+      stats: ServerStats,
+      limits: ServerLimits,
+      peers: PeerStats = PeerStats(),
+      called: String = "MAVLink"
+  ): Option[String] =
     val counts = Seq(
       stats.turnedAway -> s"turned away because ${limits.connections} connections were open",
       stats.malformed  -> "closed for messages that were malformed or beyond a limit",
@@ -16,17 +21,18 @@ private[cli] object ServerNews:
       stats.tooSlow    -> "closed for messages or replies that took too long",
       stats.idle       -> "closed for silence"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
-    val dropped   = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
-    val byMavlink = Seq(
-      mavlink.damaged    -> "damaged frames",
-      mavlink.dropped    -> "datagrams dropped for peers too slow",
-      mavlink.turnedAway -> "peers turned away",
-      mavlink.ignored    -> "datagrams ignored, of too many peers or too many at once"
+    val dropped = Option.when(stats.dropped > 0)(s"${stats.dropped} calls of closed connections dropped")
+    val ofPeers = Seq(
+      peers.damaged    -> "damaged frames",
+      peers.dropped    -> "datagrams dropped for peers too slow",
+      peers.turnedAway -> "peers turned away",
+      peers.ignored    -> "datagrams ignored, of too many peers or too many at once",
+      peers.unanswered -> "times no answer within a second, and time went on"
     ).collect { case (count, what) if count > 0 => s"$count $what" }
-    Option.when(counts.nonEmpty || dropped.nonEmpty || byMavlink.nonEmpty):
+    Option.when(counts.nonEmpty || dropped.nonEmpty || ofPeers.nonEmpty):
       val clients = Option.when(counts.nonEmpty)(s"clients: ${counts.mkString(", ")}")
-      val peers   = Option.when(byMavlink.nonEmpty)(s"MAVLink: ${byMavlink.mkString(", ")}")
-      s"${(clients ++ dropped ++ peers).mkString("; ")}; at most ${mebibytes(stats.mostHeldBytes)} of " +
+      val others  = Option.when(ofPeers.nonEmpty)(s"$called: ${ofPeers.mkString(", ")}")
+      s"${(clients ++ dropped ++ others).mkString("; ")}; at most ${mebibytes(stats.mostHeldBytes)} of " +
         s"${mebibytes(limits.heldBytes)} MiB were held for clients at any time"
 
   private def mebibytes(bytes: Long): Long = (bytes + (1 << 20) - 1) >> 20

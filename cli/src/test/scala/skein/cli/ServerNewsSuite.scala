@@ -1,7 +1,7 @@
 package skein.cli
 
 import skein.rpc.{ServerLimits, ServerStats}
-import skein.simulator.MavlinkStats
+import skein.simulator.PeerStats
 
 class ServerNewsSuite extends munit.FunSuite:
   private val calm = ServerStats(3, 3, 0, 0, 0, 0, 0, 0, 100, 0, 100, 0, 0, 0, 0, 500, 3 << 20)
@@ -14,7 +14,7 @@ class ServerNewsSuite extends munit.FunSuite:
       ServerNews.line(
         calm,
         ServerLimits(),
-        MavlinkStats(damaged = 3, dropped = 2, turnedAway = 1, ignored = 9)
+        PeerStats(damaged = 3, dropped = 2, turnedAway = 1, ignored = 9)
       ).map(
         _.takeWhile(_ != ';')
       ),

@@ -323,9 +323,9 @@ final class FlightAssembler(
       server: Option[SimulatorServer],
       opened: Opened
   ): Future[Reached] =
-    val at                                      = server.flatMap(_.mavlinkAddress).orElse(simulator).get
-    val by                                      = if server.isDefined then transport else UdpTransport()
-    def plain()                                 = by.connect(at)
+    val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
+    val by      = if server.isDefined then transport else UdpTransport()
+    def plain() = by.connect(at)
     def linked: Flow[ByteString, ByteString, ?] =
       if plan.link == LatencyProfile.none then plain()
       else

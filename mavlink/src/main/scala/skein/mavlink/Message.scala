@@ -360,6 +360,73 @@ final case class ExtendedSysState(vtolState: Int, landedState: Int) extends Mess
 /** A line for a person; a long one in several pieces of one `id`. */
 final case class Statustext(severity: Int, text: String, id: Int = 0, chunkSeq: Int = 0) extends Message
 
+/** Motors and servos of a simulated vehicle, from its autopilot: 0 to 1 each, or −1 to 1; the mode is a heartbeat's, and the
+  * first flag says that the autopilot waits for the next sensors.
+  */
+final case class HilActuatorControls(timeUsec: Long, controls: Vector[Float], mode: Int, flags: Long)
+    extends Message
+
+/** What sensors of a simulated vehicle show: m/s², rad/s, gauss, hPa, m, °C; `fieldsUpdated` has a bit for each field that
+  * is new.
+  */
+final case class HilSensor(
+    timeUsec: Long,
+    xacc: Float,
+    yacc: Float,
+    zacc: Float,
+    xgyro: Float,
+    ygyro: Float,
+    zgyro: Float,
+    xmag: Float,
+    ymag: Float,
+    zmag: Float,
+    absPressure: Float,
+    diffPressure: Float,
+    pressureAlt: Float,
+    temperature: Float,
+    fieldsUpdated: Long,
+    id: Int = 0
+) extends Message
+
+/** A simulated vehicle's satellite fix: degE7, mm, cm, cm/s, cdeg. */
+final case class HilGps(
+    timeUsec: Long,
+    fixType: Int,
+    lat: Int,
+    lon: Int,
+    alt: Int,
+    eph: Int,
+    epv: Int,
+    vel: Int,
+    vn: Int,
+    ve: Int,
+    vd: Int,
+    cog: Int,
+    satellitesVisible: Int,
+    id: Int = 0,
+    yaw: Int = 0
+) extends Message
+
+/** The truth of a simulated vehicle: degE7, mm, cm/s, and acceleration in thousandths of gravity. */
+final case class HilStateQuaternion(
+    timeUsec: Long,
+    attitudeQuaternion: Vector[Float],
+    rollspeed: Float,
+    pitchspeed: Float,
+    yawspeed: Float,
+    lat: Int,
+    lon: Int,
+    alt: Int,
+    vx: Int,
+    vy: Int,
+    vz: Int,
+    indAirspeed: Int,
+    trueAirspeed: Int,
+    xacc: Int,
+    yacc: Int,
+    zacc: Int
+) extends Message
+
 /** Position, attitude and velocity, each in the frame that is named; rates in rad/s. */
 final case class Odometry(
     timeUsec: Long,

@@ -8,9 +8,9 @@ import skein.vehicle.Setpoint
 
 /** The vehicles of a simulation as MAVLink vehicles, with system numbers from 1 in their order: bytes of peers go in, bytes
   * for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is disarmed; before and after,
-  * AirSim's API can fly it. Not thread-safe.
+  * AirSim's API can fly it.
   */
-private[simulator] final class MavlinkVehicles(simulation: Simulation):
+private[simulator] final class MavlinkVehicles(simulation: Simulation) extends PeerProtocol:
   import MavlinkVehicles.*
 
   private val world      = simulation.world
@@ -23,18 +23,12 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
 
   autopilots.foreach(one => world.attach(one.index, one))
 
-  /** @param systems
-    *   that the peer sees; none is all
-    * @param isDatagrams
-    *   whether it speaks by datagrams, and not by a stream
-    */
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
     val seen = if systems.isEmpty then autopilots.map(_.system) else systems
     channels(channel) = Channel(seen, sinceBoot, isDatagrams)
 
   def leave(channel: Long): Unit = channels.remove(channel).foreach(gone => damagedBefore += gone.damaged)
 
-  /** Takes in what a peer has sent, now: time was let pass before. */
   def receive(channel: Long, bytes: Array[Byte]): Unit =
     for
       peer  <- channels.get(channel)
@@ -46,7 +40,6 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
       ) && (system == 0 || system == one.system) && component <= CommonDialect.Autopilot1
     do one.hear(frame.message, (system = frame.system, component = frame.component), peer)
 
-  /** What is due for each peer, in datagrams. */
   def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
     val now = sinceBoot
     for (_, peer) <- channels; (system, id) <- peer.takeDue(now) do
@@ -56,12 +49,13 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation):
       _.datagrams.nonEmpty
     ).toVector
 
-  /** When something is to be told next, on the simulator's clock. */
   def nextDue: Option[Instant] =
     channels.valuesIterator.flatMap(_.nextDue).minOption.map(startedAt + _)
 
   /** Frames with a wrong checksum, of an unknown message or of a wrong content, of all peers since the start. */
   def damaged: Long = damagedBefore + channels.valuesIterator.map(_.damaged).sum
+
+  def unanswered: Long = 0
 
   private def sinceBoot: Span = world.now.since(startedAt)
 

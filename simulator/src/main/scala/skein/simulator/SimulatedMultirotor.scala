@@ -23,6 +23,7 @@ final private[simulator] class SimulatedMultirotor(
   private var armed       = settings.armed
   private var remote      = RcData.Absent
   private var flown       = false
+  private var outside     = Option.empty[Setpoint]
 
   /** The remote control's sticks as last heard of. */
   def sticks: RcData = remote
@@ -56,7 +57,7 @@ final private[simulator] class SimulatedMultirotor(
       goal = Setpoint.hold(state.positionNed)
       goalExpired = true
     val contacts = state.contacts
-    tuned.step(state, goal, environment)
+    tuned.step(state, outside.getOrElse(goal), environment)
     sampledAt = at
     if state.contacts > contacts then touched = Some(Touch(at, state.positionNed))
     if scene.objects.nonEmpty then meet(scene, at)
@@ -96,6 +97,9 @@ final private[simulator] class SimulatedMultirotor(
       goal = setpoint
       goalSetAt = at
       goalExpired = false
+
+  /** Lets an autopilot outside fly it, whose setpoint holds until the next; None: it is AirSim's again. */
+  def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
   /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, also if the API has had
     * control before. A vehicle that held its position thus falls: the throttle of an absent remote control is idle, and

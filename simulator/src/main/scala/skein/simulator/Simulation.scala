@@ -39,7 +39,8 @@ final class Simulation(
 
   private[simulator] val equipment = settings.equipment
 
-  val world: World = World(settings.world, startedAt, scene = settings.scene, equipment = equipment)
+  val world: World =
+    World(settings.world, startedAt, settings.quadrotor, scene = settings.scene, equipment = equipment)
 
   private[simulator] val objects    = SceneObjects(world)
   private[simulator] val cameras    = Cameras(equipment)
@@ -72,6 +73,7 @@ final class Simulation(
     * still, or else skipped, and counted by [[behind]].
     */
   def advance(at: Instant): Unit =
+    world.heldTo.foreach(_.told(at))
     var handover = workers.nextHandover
     while handover.exists(_ <= at) do
       handover.foreach: due =>
@@ -83,7 +85,8 @@ final class Simulation(
 
   /** When to call [[advance]] at the latest. None: not before the next call. */
   def nextWake(at: Instant): Option[Instant] =
-    if continuing.nonEmpty then Some(at)
+    // Who is waited for goes on with it when the answer comes.
+    if continuing.nonEmpty then Some(if isHeld then at + KeepUp else at)
     else
       val running =
         if paused then None else Some(world.nextEndAt.fold(at + KeepUp)(wallTime(_).min(at + KeepUp)))
@@ -103,8 +106,8 @@ final class Simulation(
   private[simulator] def comesTo(simulated: Instant): Option[Instant] =
     Option.unless(paused || continuing.nonEmpty)(wallTime(simulated))
 
-  /** Simulated time that was skipped because it was too much to compute at once: the simulator's clock is that much
-    * behind.
+  /** Simulated time that was skipped because it was too much to compute at once, or because an autopilot in lockstep was
+    * too slow: the simulator's clock is that much behind.
     */
   def behind: Span = lag
 
@@ -122,14 +125,21 @@ final class Simulation(
       world.advanceTo(until.min(world.now + longestStretch))
       if world.now >= until then finishStep()
     else if !paused then
-      val target = anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed))
+      val asked  = world.heldTo.flatMap(_.goal)
+      val target = asked.getOrElse(anchored + Span.ofNanos(scaled(at.since(anchoredAt).toNanos, speed)))
       val able   = world.now + longestRun
-      if target <= able then world.advanceTo(target)
-      else
-        lag = lag + target.since(able)
-        world.advanceTo(able)
+      world.advanceTo(target.min(able))
+      // What an autopilot is late by is made up for, up to a bound.
+      val behind          = target.since(world.now)
+      val madeUpFor: Span = if isHeld then MostMadeUpFor else Span.Zero
+      if asked.nonEmpty then anchor(at)
+      else if behind > madeUpFor then
+        lag = lag + behind - madeUpFor
         anchor(at)
+        anchored = anchored + madeUpFor
     if paused || continuing.nonEmpty then anchor(at)
+
+  private def isHeld = world.heldTo.exists(_.isWaiting)
 
   private def anchor(at: Instant): Unit =
     anchoredAt = at
@@ -209,6 +219,9 @@ object Simulation:
 
   /** A running simulator is looked after at least this often, so that a call never finds much to compute. */
   private val KeepUp = Span.ofMillis(50)
+
+  /** Of the time that an autopilot in lockstep has taken longer than it simulates. */
+  private val MostMadeUpFor = Span.ofMillis(20)
 
   /** Steps of one vehicle that one call may compute: some 30 ms. */
   private val LongestRunSteps = 200_000

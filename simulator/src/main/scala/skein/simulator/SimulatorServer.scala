@@ -34,19 +34,19 @@ final class SimulatorServer private (
     lines: CallLines[?],
     behindNanos: AtomicLong,
     broken: Future[Throwable],
-    mavlink: Option[MavlinkServer],
-    counters: MavlinkCounters
+    peers: Option[PeerServer],
+    counters: PeerCounters
 ):
 
   /** Where it listens, with the actual port. */
   def address: Address = server.address
 
-  /** Where it listens for MAVLink by its transport, with the actual port. */
-  def mavlinkAddress: Option[Address] = mavlink.flatMap(_.address)
+  /** Where it listens for MAVLink, or for autopilots, with the actual ports: by its transport, then by datagrams. */
+  def peerAddresses: Vector[Address] = peers.fold(Vector.empty)(_.addresses)
 
   def stats: ServerStats = server.stats.copy(dropped = lines.dropped)
 
-  def mavlinkStats: MavlinkStats = counters.stats.copy(ignored = mavlink.fold(0L)(_.ignored))
+  def peerStats: PeerStats = counters.stats.copy(ignored = peers.fold(0L)(_.ignored))
 
   /** Completes if it ends without having been closed, with the reason. */
   val failed: Future[Throwable] =
@@ -66,8 +66,8 @@ final class SimulatorServer private (
   def close(): Future[Done] =
     simulator ! SimulatorServer.Message.Stop
     given ExecutionContext = ExecutionContext.parasitic
-    val mavlinkClosed      = mavlink.fold(Future.successful(Done))(_.close())
-    server.close().flatMap(_ => mavlinkClosed)
+    val peersClosed        = peers.fold(Future.successful(Done))(_.close())
+    server.close().flatMap(_ => peersClosed)
 
 object SimulatorServer:
 
@@ -89,11 +89,10 @@ object SimulatorServer:
     val broken             = Promise[Throwable]()
     val lines              = CallLines[Call]()
     val work               = AtomicBoolean()
-    val counters           = MavlinkCounters()
+    val counters           = PeerCounters()
     val simulator          = system.spawnAnonymous(
       Behaviors.withTimers(Running(
         Simulation(settings, clock.now(), VoxelGrid.save),
-        settings.mavlink.isDefined,
         counters,
         clock,
         lines,
@@ -114,7 +113,7 @@ object SimulatorServer:
     for server <- bound; failure <- broken.future do
       system.log.error(failure, "the simulator has failed; it closes its port")
       server.close()
-    val peers = new MavlinkPeers:
+    val peers = new Peers:
       def joined(
           channel: Long,
           systems: Vector[Int],
@@ -125,17 +124,17 @@ object SimulatorServer:
         simulator ! Message.Heard(channel, bytes, done)
       def left(channel: Long): Unit = simulator ! Message.Left(channel)
     for
-      rpc     <- bound
-      mavlink <- settings.mavlink match
-        case None       => Future.successful(None)
-        case Some(open) =>
-          MavlinkServer
-            .start(open, transport, peers, counters)
+      rpc  <- bound
+      open <- settings.mavlink.map(PeerPorts.of(_)).orElse(settings.hil.map(PeerPorts.of(_))) match
+        case None        => Future.successful(None)
+        case Some(ports) =>
+          PeerServer
+            .start(ports, transport, peers, counters)
             .map(Some(_))
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, mavlink, counters)
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters)
 
   private[simulator] enum Message:
     /** Calls wait. */
@@ -144,7 +143,7 @@ object SimulatorServer:
     case Look(answer: Promise[Truth])
     case Stop
 
-    /** Peers of MAVLink. */
+    /** Peers of MAVLink, or autopilots. */
     case Joined(
         channel: Long,
         systems: Vector[Int],
@@ -164,19 +163,20 @@ object SimulatorServer:
     */
   final private class Running(
       simulation: Simulation,
-      speaksMavlink: Boolean,
-      counters: MavlinkCounters,
+      counters: PeerCounters,
       clock: Clock,
       lines: CallLines[Call],
       work: AtomicBoolean,
       behind: AtomicLong,
       broken: Promise[Throwable]
   ):
-    private val waiting   = mutable.LongMap.empty[Promise[Either[String, Msg | Encoded]]]
-    private var nextToken = 0L
-    private var wakeAt    = Option.empty[Instant]
-    private val mavlink   = Option.when(speaksMavlink)(MavlinkVehicles(simulation))
-    private val outs      = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
+    private val waiting                        = mutable.LongMap.empty[Promise[Either[String, Msg | Encoded]]]
+    private var nextToken                      = 0L
+    private var wakeAt                         = Option.empty[Instant]
+    private val protocol: Option[PeerProtocol] =
+      simulation.settings.mavlink.map(_ => MavlinkVehicles(simulation))
+        .orElse(simulation.settings.hil.map(HilVehicles(simulation, _)))
+    private val outs = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
       given ExecutionContext = context.executionContext
@@ -185,13 +185,13 @@ object SimulatorServer:
         takeCalls()
         for answer <- simulation.takeAnswers() do
           waiting.remove(answer.token).foreach(complete(_, answer.result))
-        for vehicles <- mavlink; (channel, datagrams) <- vehicles.take(); out <- outs.get(channel) do
+        for vehicles <- protocol; (channel, datagrams) <- vehicles.take(); out <- outs.get(channel) do
           for bytes <- datagrams do
             if out.offer(ByteString.fromArrayUnsafe(bytes)) == QueueOfferResult.Dropped then
               counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
         val now  = clock.now()
-        val told = mavlink.flatMap(_.nextDue).flatMap(simulation.comesTo)
+        val told = protocol.flatMap(_.nextDue).flatMap(simulation.comesTo)
         for at <- (simulation.nextWake(now) ++ told.map(_.max(now))).minOption if wakeAt.forall(at < _) do
           wakeAt = Some(at)
           // A timer is late by up to its scheduler's tick.
@@ -227,20 +227,24 @@ object SimulatorServer:
         case Message.Joined(channel, systems, isDatagrams, out) =>
           outs.update(channel, out)
           orEnd:
-            mavlink.foreach(_.join(channel, systems, isDatagrams))
+            protocol.foreach(_.join(channel, systems, isDatagrams))
             goOn()
         case Message.Heard(channel, bytes, done) =>
           orEnd:
             simulation.advance(clock.now())
-            for vehicles <- mavlink do
+            for vehicles <- protocol do
               vehicles.receive(channel, bytes)
               counters.damaged.set(vehicles.damaged)
+              counters.unanswered.set(vehicles.unanswered)
+            // An autopilot may have been waited for.
+            if simulation.settings.hil.nonEmpty then simulation.advance(clock.now())
             val _ = done.trySuccess(Done)
             goOn()
         case Message.Left(channel) =>
           val _ = outs.remove(channel)
-          mavlink.foreach(_.leave(channel))
-          Behaviors.same
+          orEnd:
+            protocol.foreach(_.leave(channel))
+            goOn()
 
     private def truth =
       val world = simulation.world

@@ -1,10 +1,12 @@
 package skein.simulator
 
 import skein.airsim.{SettingsError, WorldSettings}
+import skein.hil.AutopilotInterface
 import skein.link.Address
 import skein.rpc.{FrameLimits, ServerLimits}
 import skein.scene.Scene
 import skein.units.*
+import skein.vehicle.Quadrotor
 
 /** How AirSim's server deals with moves that come faster than they end; see [[Workers]]. */
 enum Overload:
@@ -30,6 +32,8 @@ enum Overload:
   *   what stands in the world
   * @param mavlink
   *   where its vehicles are reached by MAVLink, too
+  * @param hil
+  *   which autopilots outside fly its vehicles; then they are not reached by MAVLink
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -39,12 +43,18 @@ final case class SimulatorSettings(
     limits: ServerLimits = SimulatorSettings.Limits,
     losesCancel: () => Boolean = () => false,
     scene: Scene = Scene.Empty,
-    mavlink: Option[MavlinkSettings] = None
+    mavlink: Option[MavlinkSettings] = None,
+    hil: Option[HilSettings] = None
 ):
+  require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
   /** What the vehicles carry; nothing, where the file's text cannot be read: [[SimulatorSettings.supported]] says so. */
   private[simulator] def equipment: Equipment = Equipment.read(world.text).getOrElse(Equipment.None)
+
+  /** Autopilots outside want their sensors at whole milliseconds. */
+  private[simulator] def quadrotor: Quadrotor =
+    if hil.isEmpty then Quadrotor.AirSim else Quadrotor(stepS = AutopilotInterface.Step.toSeconds)
 
   private[simulator] def newWorkers[Job, Flight](): Workers[Job, Flight] =
     val vehicles = world.vehicles.size

@@ -1,0 +1,86 @@
+package skein.hil
+
+import java.nio.charset.StandardCharsets.US_ASCII
+import java.nio.{ByteBuffer, ByteOrder}
+import skein.units.*
+import skein.vehicle.Setpoint
+
+/** ArduPilot's interface to simulators in JSON (its `SIM_JSON`): a datagram with the servos' pulses comes, physics runs on
+  * by one frame, and a line with the state goes back. So ArduPilot sets the pace. It is told the truth, and adds its sensors'
+  * errors itself; the inertial sensors have ours as well.
+  *
+  * A frame lasts as long as ArduPilot says, in whole milliseconds. One that is repeated, because its answer was lost, gets
+  * the same answer.
+  */
+final class ArduPilotInterface(sensors: Sensors, from: Span) extends AutopilotInterface:
+  import ArduPilotInterface.*
+  import AutopilotInterface.Step
+
+  private var controls = AutopilotInterface.MotorsOff
+  private var hasToAsk = true
+  private var frame    = -1L
+  private var due      = from
+  private var answered = Vector.empty[Array[Byte]]
+  private var sensed   = from
+  private var notRead  = 0L
+
+  def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]] =
+    val from  = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
+    val magic = if bytes.length >= HeaderLength then from.getShort() & 0xffff else -1
+    if !ServosByMagic.get(magic).exists(servos => bytes.length == HeaderLength + 2 * servos) then
+      notRead += 1
+      Vector.empty
+    else
+      val rate  = from.getShort() & 0xffff
+      val count = from.getInt() & 0xffffffffL
+      if count == frame then if hasToAsk then answered else Vector.empty
+      else
+        frame = count
+        controls = AutopilotInterface.rotors(
+          Vector.fill(4)(((from.getShort() & 0xffff) - LeastPulse) / (MostPulse - LeastPulse))
+        )
+        if hasToAsk then
+          val asked = Span.ofSeconds(1.0 / rate.max(1)).min(LongestFrame)
+          due = AutopilotInterface.onGrid(up) + Step * math.round(asked.toSeconds / Step.toSeconds).max(1)
+          hasToAsk = false
+        Vector.empty
+
+  def rotors: Setpoint        = controls
+  def isWaiting: Boolean      = hasToAsk
+  def isByClock: Boolean      = false
+  def stop(until: Span): Span = due
+  def damaged: Long           = notRead
+
+  /** It asks again by itself. */
+  def giveUp(): Unit = ()
+
+  def sense(truth: SensorTruth): Vector[Array[Byte]] =
+    val inertial = sensors.inertial(truth, (truth.up - sensed).max(Step).toSeconds)
+    val seen     = truth.kinematics
+    val turn     = seen.orientation
+    val line     =
+      s"""\n{"timestamp":${truth.up.toSeconds},"imu":{"gyro":${list(inertial.angularVelocityFrd)},""" +
+        s""""accel_body":${list(inertial.specificForceFrd)}},"position":${list(seen.positionNed)},""" +
+        s""""attitude":[${turn.rollRad},${turn.pitchRad},${turn.yawRad}],""" +
+        s""""quaternion":[${turn.w},${turn.x},${turn.y},${turn.z}],"velocity":${list(seen.velocityNed)}}\n"""
+    sensed = truth.up
+    hasToAsk = true
+    answered = Vector(line.getBytes(US_ASCII))
+    answered
+
+object ArduPilotInterface:
+  /** Of the first vehicle; each further one's is ten higher. */
+  val Port = 9002
+
+  private val HeaderLength = 8
+
+  /** Pulses for so many servos follow. */
+  private val ServosByMagic = Map(18458 -> 16, 29569 -> 32)
+
+  /** Of a rotor that stands, and of one that runs at full speed, µs. */
+  private val LeastPulse = 1000.0
+  private val MostPulse  = 2000.0
+
+  private val LongestFrame = Span.ofMillis(20)
+
+  private def list(v: Vector3): String = s"[${v.x},${v.y},${v.z}]"

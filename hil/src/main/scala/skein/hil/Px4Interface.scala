@@ -1,0 +1,202 @@
+package skein.hil
+
+import skein.mavlink.*
+import skein.mavlink.CommonDialect.{Command, ModeFlag}
+import skein.units.*
+import skein.vehicle.{Airframe, Setpoint}
+
+/** PX4's simulator interface (its `simulator_mavlink`; the simulator listens, PX4 connects by TCP): HIL_SENSOR at 250 Hz,
+  * HIL_GPS at 8 Hz, SYSTEM_TIME once a second, and HIL_STATE_QUATERNION as often as PX4 asks. PX4's clock is the time of the
+  * first sensors; it answers each with HIL_ACTUATOR_CONTROLS and waits for the next.
+  *
+  * Until the first answer physics runs by the clock, for PX4 starts by the sensors' time. From then on, as long as the
+  * answers say that PX4 runs in lockstep, physics waits for each.
+  *
+  * @param system
+  *   the number that frames are sent under
+  */
+final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends AutopilotInterface:
+  import Px4Interface.*
+
+  private val reader        = FrameReader()
+  private val writer        = FrameWriter(system, Component)
+  private var controls      = AutopilotInterface.MotorsOff
+  private var isLockstep    = false
+  private var owes          = false
+  private var due           = Period * (from.toNanos / Period.toNanos + 1)
+  private var ticks         = 0L
+  private var magneticFrd   = Vector3.Zero
+  private var pressure      = 0.0
+  private var temperatureC  = 0.0
+  private var fix           = Option.empty[Sensors.Fix]
+  private var fixDue        = from + FirstFix
+  private var systemTimeDue = from
+  private var stateInterval = Option.empty[Span]
+  private var stateDue      = from
+
+  def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]] =
+    for frame <- reader.read(bytes) do
+      frame.message match
+        case answer: HilActuatorControls =>
+          owes = false
+          isLockstep = (answer.flags & LockstepFlag) != 0
+          controls =
+            if (answer.mode & ModeFlag.Armed) == 0 then AutopilotInterface.MotorsOff
+            else AutopilotInterface.rotors(answer.controls.map(_.toDouble))
+        case CommandLong(_, _, Command.SetMessageInterval, _, id, micros, _, _, _, _, _)
+            if id == StateId && !micros.isNaN =>
+          stateInterval =
+            Option.unless(micros < 0)(Span.ofSeconds(micros.min(1e9f) * 1e-6).max(Period))
+          stateDue = up
+        case _ => ()
+    Vector.empty
+
+  def rotors: Setpoint        = controls
+  def isWaiting: Boolean      = owes
+  def isByClock: Boolean      = true
+  def stop(until: Span): Span = due
+  def giveUp(): Unit          = owes = false
+
+  def damaged: Long =
+    val counts = reader.counts
+    counts.badChecksum + counts.unknown + counts.notUnderstood
+
+  def sense(truth: SensorTruth): Vector[Array[Byte]] =
+    val messages =
+      sensor(truth) +: (state(truth) ++ satellites(truth) ++ systemTime(truth)).toVector
+    due = due + Period
+    ticks += 1
+    owes = isLockstep
+    Vector(messages.flatMap(writer.write).toArray)
+
+  private def sensor(truth: SensorTruth): Message =
+    val inertial   = sensors.inertial(truth, Period.toSeconds)
+    val isMagnetic = ticks % TicksPerSlowReading == 0
+    val isPressure = ticks % TicksPerSlowReading == 2 || ticks == 0
+    if isMagnetic then magneticFrd = sensors.magneticFrd(truth)
+    if isPressure then
+      pressure = sensors.pressurePa(truth)
+      temperatureC = truth.temperatureK - 273.15
+    val force = inertial.specificForceFrd
+    val rates = inertial.angularVelocityFrd
+    HilSensor(
+      micros(truth.up),
+      force.x.toFloat,
+      force.y.toFloat,
+      force.z.toFloat,
+      rates.x.toFloat,
+      rates.y.toFloat,
+      rates.z.toFloat,
+      magneticFrd.x.toFloat,
+      magneticFrd.y.toFloat,
+      magneticFrd.z.toFloat,
+      (pressure / 100).toFloat,
+      0,
+      pressureAltitudeM(pressure).toFloat,
+      temperatureC.toFloat,
+      Updated.Inertial | (if isMagnetic then Updated.Magnetic else 0L) |
+        (if isPressure then Updated.Pressure else 0L)
+    )
+
+  private def satellites(truth: SensorTruth): Option[Message] =
+    if fix.isEmpty && truth.up >= fixDue then
+      fix = Some(sensors.fix(truth))
+      fixDue = fixDue + FixInterval
+    val arrived = fix.filter(_.at + FixLatency <= truth.at)
+    if arrived.nonEmpty then fix = None
+    arrived.map(gps)
+
+  private def gps(fix: Sensors.Fix): Message =
+    val velocity = fix.velocityNed
+    val speed    = StrictMath.hypot(velocity.x, velocity.y)
+    val course   = math.toDegrees(StrictMath.atan2(velocity.y, velocity.x))
+    HilGps(
+      fix.at.toNanos / 1000,
+      fixType = 3,
+      degE7(fix.place.latitudeDeg),
+      degE7(fix.place.longitudeDeg),
+      math.round(fix.place.altitude.value * 1000).toInt,
+      eph = 90,
+      epv = 178,
+      short(speed * 100),
+      short(velocity.x * 100),
+      short(velocity.y * 100),
+      short(velocity.z * 100),
+      (math.round(course * 100).toInt + 36000) % 36000,
+      satellitesVisible = 10
+    )
+
+  private def state(truth: SensorTruth): Option[Message] =
+    stateInterval.filter(_ => stateDue <= truth.up).map: interval =>
+      // What was late is not made up for.
+      stateDue = if stateDue + interval > truth.up then stateDue + interval else truth.up + interval
+      val seen         = truth.kinematics
+      val turn         = seen.orientation
+      val acceleration = truth.accelerationNed * (1000 / Airframe.Gravity)
+      HilStateQuaternion(
+        micros(truth.up),
+        Vector(turn.w, turn.x, turn.y, turn.z).map(_.toFloat),
+        seen.angularVelocityFrd.x.toFloat,
+        seen.angularVelocityFrd.y.toFloat,
+        seen.angularVelocityFrd.z.toFloat,
+        degE7(truth.place.latitudeDeg),
+        degE7(truth.place.longitudeDeg),
+        math.round(truth.place.altitude.value * 1000).toInt,
+        short(seen.velocityNed.x * 100),
+        short(seen.velocityNed.y * 100),
+        short(seen.velocityNed.z * 100),
+        indAirspeed = 0,
+        trueAirspeed = short(seen.velocityNed.norm * 100),
+        short(acceleration.x),
+        short(acceleration.y),
+        short(acceleration.z)
+      )
+
+  private def systemTime(truth: SensorTruth): Option[Message] = Option.when(systemTimeDue <= truth.up):
+    systemTimeDue = truth.up + SystemTimeInterval
+    SystemTime(truth.at.toNanos / 1000, truth.up.toNanos / 1_000_000)
+
+object Px4Interface:
+  /** Between two HIL_SENSOR. */
+  val Period: Span = Span.ofMillis(4)
+
+  /** Of the first vehicle; each further one's is one higher. */
+  val Port = 4560
+
+  /** That of PX4's plugin for Gazebo. */
+  private val Component = 200
+
+  private val LockstepFlag = 1L
+
+  private val StateId = 115
+
+  /** Magnetometer and barometer at 50 Hz, as AirSim's. */
+  private val TicksPerSlowReading = 5
+
+  /** As PX4's own simulated receiver. */
+  private val FixInterval = Span.ofMillis(125)
+
+  /** What PX4's estimator takes for granted (`EKF2_GPS_DELAY`). */
+  private val FixLatency = Span.ofMillis(110)
+
+  /** After the beginning, as AirSim's. */
+  private val FirstFix = Span.ofSeconds(1)
+
+  private val SystemTimeInterval = Span.ofSeconds(1)
+
+  /** Bits of HIL_SENSOR's `fieldsUpdated`. */
+  private object Updated:
+    val Inertial = 0x3fL
+    val Magnetic = 0x1c0L
+    // Pressure, altitude by pressure, temperature.
+    val Pressure = 0x1a00L
+
+  private def micros(up: Span): Long = up.toNanos / 1000
+
+  private def degE7(degrees: Double): Int = math.round(degrees * 1e7).toInt
+
+  private def short(value: Double): Int = math.round(value.max(-32767).min(32767)).toInt
+
+  /** m, of the International Standard Atmosphere (ISO 2533). */
+  private def pressureAltitudeM(pressurePa: Double): Double =
+    288.15 / 0.0065 * (1 - StrictMath.pow(pressurePa / 101325, 0.190263))

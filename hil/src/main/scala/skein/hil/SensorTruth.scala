@@ -1,0 +1,35 @@
+package skein.hil
+
+import skein.signal.Kinematics
+import skein.units.*
+import skein.vehicle.Airframe
+
+/** What a vehicle's sensors would show if they were without error.
+  *
+  * @param at
+  *   on the simulator's clock
+  * @param up
+  *   since the simulator's start: the time that autopilots are told
+  * @param kinematics
+  *   in the vehicle's own NED frame, whose origin is its start
+  * @param accelerationNed
+  *   m/s², zero for a vehicle at rest
+  * @param place
+  *   where it is on the globe
+  * @param pressurePa
+  *   of the air, Pa
+  * @param temperatureK
+  *   of the air, K
+  */
+final case class SensorTruth(
+    at: Instant,
+    up: Span,
+    kinematics: Kinematics,
+    accelerationNed: Vector3,
+    place: GeoLocation,
+    pressurePa: Double,
+    temperatureK: Double
+):
+  /** What an accelerometer measures, FRD, m/s²: (0, 0, −9.81) at rest. */
+  def specificForceFrd: Vector3 =
+    kinematics.orientation.toBody(accelerationNed - Vector3(0, 0, Airframe.Gravity))

@@ -1,0 +1,102 @@
+package skein.hil
+
+import scala.util.Random
+import skein.mavlink.*
+import skein.units.*
+import skein.vehicle.Setpoint
+
+class Px4InterfaceSuite extends munit.FunSuite:
+  import SensorsSuite.atRest
+
+  private final class Peer(from: Span = Span.Zero):
+    val interface      = Px4Interface(1, Sensors(1), from)
+    private val reader = FrameReader()
+    private val writer = FrameWriter(1, 1)
+
+    def say(message: Message): Unit =
+      assertEquals(interface.hear(writer.write(message), Span.Zero), Vector.empty)
+
+    /** The next stop. */
+    def tick(): Vector[Message] =
+      val up = interface.stop(Span.Zero)
+      interface.sense(atRest(up, Vector3(3, -4, 1))).flatMap(reader.readDatagram).map(_.message)
+
+    def ticks(seconds: Double): Vector[Message] = Vector.fill((seconds * 250).toInt)(tick()).flatten
+
+  private def controls(mode: Int, flags: Long, values: Float*): Message =
+    HilActuatorControls(4000, values.toVector, mode, flags)
+
+  test(
+    "sensors come every 4 ms of its time, each with accelerometer and gyroscope, a fifth with the slow ones"
+  ):
+    val sensors = Peer(Span.ofMillis(7)).ticks(1).collect { case one: HilSensor => one }
+    assertEquals(sensors.map(_.timeUsec), Vector.tabulate(250)(tick => 8000L + 4000 * tick))
+    assert(sensors.forall(one => (one.fieldsUpdated & 0x3f) == 0x3f))
+    assertEquals(sensors.count(one => (one.fieldsUpdated & 0x1c0) == 0x1c0), 50)
+    assertEquals(sensors.count(one => (one.fieldsUpdated & 0x1a00) == 0x1a00), 51)
+    assertEquals(sensors.count(one => (one.fieldsUpdated & ~0x1fffL) != 0), 0)
+    assertEqualsFloat(sensors.last.absPressure, 998.63f, 0.5f)
+    assertEqualsFloat(sensors.last.pressureAlt, 122f, 5f)
+
+  test("satellite fixes come eight times a second, a second after the beginning, of 110 ms before"):
+    val gps = Peer().ticks(3).collect { case one: HilGps => one }
+    assertEquals(gps.size, 16)
+    assertEquals((gps.head.fixType, gps.head.vel, gps.head.satellitesVisible), (3, gps.head.vel, 10))
+    assertEqualsDouble(gps.head.lat * 1e-7, 47.641468, 1e-5)
+    assertEqualsDouble(gps.head.vel.toDouble, 500, 20)
+    assertEqualsDouble(gps.head.cog.toDouble, 30687, 400)
+    assertEquals(gps.head.timeUsec, 1_001_000_000L)
+
+  test("the truth comes as often as it is asked for, and never unasked"):
+    val peer               = Peer()
+    def states(s: Double)  = peer.ticks(s).collect { case one: HilStateQuaternion => one }
+    def ask(micros: Float) = peer.say(CommandLong(0, 0, 511, 0, 115, micros, 0, 0, 0, 0, 0))
+    assertEquals(states(1).size, 0)
+    ask(20_000)
+    assertEquals(states(1).size, 50)
+    for bad <- Seq(Float.NaN, Float.PositiveInfinity, 3e38f) do ask(bad)
+    ask(1)
+    assertEqualsDouble(states(1).size.toDouble, 250, 1)
+    ask(-1)
+    assertEquals(states(1).size, 0)
+
+  test("it does not wait before the first answer, then for each, until answers say that nobody waits"):
+    val peer = Peer()
+    peer.ticks(2)
+    assert(!peer.interface.isWaiting)
+    peer.say(controls(1, 1))
+    assert(!peer.interface.isWaiting)
+    peer.tick()
+    assert(peer.interface.isWaiting)
+    peer.say(Heartbeat(0, 12, 0, 0, 0, 3))
+    assert(peer.interface.isWaiting)
+    peer.say(controls(1, 1))
+    assert(!peer.interface.isWaiting)
+    peer.tick()
+    peer.interface.giveUp()
+    assert(!peer.interface.isWaiting)
+    peer.say(controls(1, 0))
+    peer.tick()
+    assert(!peer.interface.isWaiting)
+
+  test("rotors turn while it is armed, each between 0 and 1, and stand for what is no number"):
+    val peer = Peer()
+    peer.say(controls(1, 1, 0.5f, 0.5f, 0.5f, 0.5f))
+    assertEquals(peer.interface.rotors, AutopilotInterface.MotorsOff)
+    peer.say(controls(129, 1, 0.25f, Float.NaN, 7f, -1f))
+    assertEquals(peer.interface.rotors, Setpoint.rotors(0.25, 0, 1, 0))
+
+  test("a thousand damaged frames of each kind, and a thousand of any content, harm nothing"):
+    val random = Random(560)
+    val peer   = Peer()
+    val writer = FrameWriter(3, 3)
+    for definition <- Dialect.all; _ <- 1 to 1000 do
+      val frame = writer.write(definition.decode(random.nextBytes(definition.length)))
+      peer.interface.hear(frame, Span.Zero)
+      frame(random.nextInt(frame.length)) = random.nextInt(256).toByte
+      peer.interface.hear(frame.take(1 + random.nextInt(frame.length)), Span.Zero)
+    assert(peer.interface.damaged > 1000)
+    // Whatever a damaged one has claimed, these end it.
+    for _ <- 1 to 40 do peer.say(controls(129, 1, 0.5f, 0.5f, 0.5f, 0.5f))
+    assertEquals(peer.interface.rotors, Setpoint.rotors(0.5, 0.5, 0.5, 0.5))
+    assert(peer.ticks(1).nonEmpty)

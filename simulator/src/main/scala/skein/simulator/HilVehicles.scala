@@ -1,0 +1,107 @@
+package skein.simulator
+
+import scala.collection.mutable
+import skein.hil.{AutopilotInterface, SensorTruth, Sensors}
+import skein.signal.{Kinematics, SplitMix64}
+import skein.units.*
+
+/** The vehicles of a simulation with autopilots outside: an autopilot's channel is a vehicle's. The simulator's clock stops
+  * wherever sensors are due, and goes on as the autopilots let it. A vehicle without an autopilot is AirSim's.
+  */
+private[simulator] final class HilVehicles(simulation: Simulation, settings: HilSettings)
+    extends PeerProtocol,
+      Lockstep:
+  import HilVehicles.*
+
+  private val world     = simulation.world
+  private val startedAt = world.now
+  private val flown     = mutable.LinkedHashMap.empty[Long, Flown]
+  private val out       = mutable.ArrayBuffer.empty[(channel: Long, datagrams: Vector[Array[Byte]])]
+
+  private var damagedBefore = 0L
+  private var lost          = 0L
+  private var waitingSince  = Option.empty[Instant]
+
+  world.holdTo(this)
+
+  def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
+    for system <- systems.headOption; case vehicle: SimulatedMultirotor <- world.vehicles.lift(system - 1) do
+      val sensors   = Sensors(SplitMix64.seedOf(settings.seed, system), settings.noise)
+      val interface = settings.autopilot.interface(system, sensors, up)
+      flown(channel) = Flown(vehicle, interface)
+      vehicle.flyBy(Some(interface.rotors))
+
+  def leave(channel: Long): Unit = flown.remove(channel).foreach: gone =>
+    damagedBefore += gone.interface.damaged
+    gone.vehicle.flyBy(None)
+
+  def receive(channel: Long, bytes: Array[Byte]): Unit = flown.get(channel).foreach: one =>
+    val answers = one.interface.hear(bytes, up)
+    if answers.nonEmpty then out += ((channel = channel, datagrams = answers))
+    one.vehicle.flyBy(Some(one.interface.rotors))
+
+  def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
+    val all = out.toVector
+    out.clear()
+    all
+
+  def nextDue: Option[Instant] =
+    if isWaiting then None else stop(world.now)
+
+  def damaged: Long    = damagedBefore + interfaces.map(_.damaged).sum
+  def unanswered: Long = lost
+
+  def isWaiting: Boolean = interfaces.exists(_.isWaiting)
+
+  def stop(until: Instant): Option[Instant] =
+    interfaces.map(_.stop(until.since(startedAt))).minOption.map(startedAt + _)
+
+  def reached(): Unit =
+    for (channel, one) <- flown if startedAt + one.interface.stop(up) <= world.now do
+      out += ((channel = channel, datagrams = one.interface.sense(truthOf(one.vehicle))))
+
+  def goal: Option[Instant] =
+    if flown.isEmpty || interfaces.exists(_.isByClock) then None
+    else if isWaiting then Some(world.now)
+    else stop(world.now)
+
+  def told(at: Instant): Unit =
+    if !isWaiting then waitingSince = None
+    else
+      val since = waitingSince.getOrElse(at)
+      waitingSince = Some(since)
+      if at.since(since) >= Patience then
+        for one <- interfaces if one.isWaiting do
+          one.giveUp()
+          if !one.isWaiting then lost += 1
+        waitingSince = None
+
+  private def interfaces = flown.valuesIterator.map(_.interface)
+
+  private def up: Span = world.now.since(startedAt)
+
+  private def truthOf(vehicle: SimulatedMultirotor): SensorTruth =
+    val now   = world.now
+    val place = vehicle.locationAt(now)
+    val state = vehicle.state
+    SensorTruth(
+      now,
+      up,
+      Kinematics(
+        vehicle.positionAt(now),
+        vehicle.velocityAt(now),
+        state.orientation,
+        state.angularVelocityFrd
+      ),
+      // The ground carries a vehicle that stands, and physics does not move it.
+      if state.grounded then Vector3.Zero else state.accelerationNed,
+      place,
+      Globe.pressurePa(place.altitude.value),
+      Globe.temperatureK(place.altitude.value)
+    )
+
+private[simulator] object HilVehicles:
+  private final case class Flown(vehicle: SimulatedMultirotor, interface: AutopilotInterface)
+
+  /** An autopilot that has not answered for so long is not waited for: as PX4's plugin for Gazebo does it. */
+  private val Patience = Span.ofSeconds(1)

@@ -1,0 +1,41 @@
+package skein.simulator
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Flow, Keep, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.Future
+import skein.hil.SmallAutopilot
+import skein.link.{Address, Transport}
+import skein.mavlink.{FrameReader, HilSensor}
+
+/** A small autopilot at the other end of a connection. */
+private[simulator] object HilPeer:
+  /** Completes when it has been told the sensors of so much time, µs; then it hangs up.
+    *
+    * @param on
+    *   is given every piece that comes, before it is answered
+    */
+  def fly(autopilot: SmallAutopilot, untilUsec: Long, to: Address, transport: Transport)(
+      on: Array[Byte] => Unit = _ => ()
+  )(using ActorSystem): Future[Done] =
+    val answering = Flow[ByteString]
+      .map: bytes =>
+        on(bytes.toArray)
+        ByteString.fromArray(autopilot.hear(bytes.toArray))
+      .takeWhile(_ => autopilot.heard.lastOption.forall(_ < untilUsec))
+      .prepend(Source.single(ByteString.fromArray(autopilot.greeting)))
+      .watchTermination()(Keep.right)
+    transport.connect(to).joinMat(answering)(Keep.right).run()
+
+  /** When each HIL_SENSOR came, by the clock, and the time it told. */
+  final class Arrivals:
+    private val reader                        = FrameReader()
+    var at: Vector[(nanos: Long, usec: Long)] = Vector.empty
+
+    def note(bytes: Array[Byte]): Unit =
+      val now = System.nanoTime()
+      for frame <- reader.read(bytes) do
+        frame.message match
+          case sensors: HilSensor => at = at.appended((nanos = now, usec = sensors.timeUsec))
+          case _                  => ()

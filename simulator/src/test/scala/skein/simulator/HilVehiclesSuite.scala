@@ -1,0 +1,211 @@
+package skein.simulator
+
+import scala.util.Random
+import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.hil.*
+import skein.link.Address
+import skein.units.*
+
+/** Autopilots outside, without sockets and without a clock. */
+class HilVehiclesSuite extends munit.FunSuite:
+
+  private final class Flown(kind: AutopilotKind = AutopilotKind.Px4, vehicles: Int = 1, speed: Double = 1):
+    val simulation = Simulation(
+      SimulatorSettings(
+        WorldSettings(Vector.tabulate(vehicles)(index =>
+          VehicleSettings(s"v$index", Vector3(0, 10 * index, 0))
+        )),
+        hil = Some(HilSettings(kind, Vector.fill(vehicles)(Address("127.0.0.1", 0)))),
+        speed = speed
+      ),
+      Instant.Epoch
+    )
+    val hil = HilVehicles(simulation, simulation.settings.hil.get)
+    var now = Instant.Epoch
+
+    def up: Span = simulation.world.now.since(Instant.Epoch)
+
+    /** Lets the clock run on and hands over what comes of it. */
+    def run(
+        span: Span,
+        every: Span = Span.ofMillis(1)
+    )(answer: (Long, Array[Byte]) => Seq[Array[Byte]]): Unit =
+      val until = now + span
+      while now < until do
+        now = (now + every).min(until)
+        simulation.advance(now)
+        var pending = hil.take()
+        while pending.nonEmpty do
+          for (channel, pieces) <- pending; piece <- pieces; reply <- answer(channel, piece) do
+            hil.receive(channel, reply)
+            simulation.advance(now)
+          pending = hil.take()
+
+    def truth(vehicle: Int = 0) = simulation.world.multirotor(vehicle).state.kinematics
+
+  private def flying(autopilot: SmallAutopilot): (Long, Array[Byte]) => Seq[Array[Byte]] =
+    (_, bytes) => Seq(autopilot.hear(bytes)).filter(_.nonEmpty)
+
+  test("a small autopilot that knows its sensors alone arms, takes off and hovers over its start"):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    flown.hil.receive(0, autopilot.greeting)
+    flown.run(Span.ofSeconds(15))(flying(autopilot))
+    assert(autopilot.isArmed)
+    var worst = 0.0
+    flown.run(Span.ofSeconds(10)): (channel, bytes) =>
+      val state = flown.truth()
+      worst = worst.max((state.positionNed - Vector3(0, 0, -5)).norm)
+      flying(autopilot)(channel, bytes)
+    assert(worst < 1.5, s"up to $worst m away")
+    assertEquals(autopilot.heard.size, 25 * 250)
+    assertEquals(autopilot.heard.sliding(2).map(pair => pair(1) - pair(0)).toSet, Set(4000L))
+    assertEquals(flown.hil.unanswered, 0L)
+
+  test(
+    "while an autopilot owes its answer time stands still; after a second it goes on, and that is counted"
+  ):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    flown.run(Span.ofSeconds(2))(flying(autopilot))
+    val before = flown.up
+    flown.run(Span.ofMillis(900))((_, _) => Nil)
+    assert((flown.up - before).toMillis <= 4, s"${(flown.up - before).toMillis} ms")
+    flown.run(Span.ofMillis(200))((_, _) => Nil)
+    assertEquals(flown.hil.unanswered, 1L)
+    flown.run(Span.ofSeconds(1))(flying(autopilot))
+    // What it was late by is lost but for a few milliseconds.
+    assert((flown.up - before).toSeconds < 1.1, s"${(flown.up - before).toSeconds} s")
+    assert((flown.simulation.behind + flown.up).toSeconds > 3.9)
+
+  test("answers that take 3 ms slow nothing down; those that take 6 ms slow the simulator's clock"):
+    for (late, seconds) <- Seq(3.0 -> 2.0, 6.0 -> 2.0 * 4 / 6) do
+      val flown     = Flown()
+      val autopilot = SmallAutopilot()
+      flown.hil.join(0, Vector(1), isDatagrams = false)
+      flown.run(Span.ofSeconds(1))(flying(autopilot))
+      val before   = flown.up
+      var underWay = Vector.empty[(Instant, Array[Byte])]
+      for _ <- 1 to 2000 do
+        flown.now = flown.now + Span.ofMillis(1)
+        flown.simulation.advance(flown.now)
+        val (here, later) = underWay.partition(_._1 <= flown.now)
+        here.foreach((_, answer) => flown.hil.receive(0, answer))
+        flown.simulation.advance(flown.now)
+        underWay = later ++ flown.hil.take().flatMap(_.datagrams).map(bytes =>
+          (flown.now + Span.ofMillis(late), autopilot.hear(bytes))
+        )
+      assertEqualsDouble((flown.up - before).toSeconds, seconds, 0.03, s"$late ms")
+
+  test("paused it sends nothing, and a step that is asked for goes on sensor by sensor"):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    flown.run(Span.ofSeconds(2))(flying(autopilot))
+    flown.simulation.setPaused(true)
+    val (heard, before) = (autopilot.heard.size, flown.up)
+    flown.run(Span.ofSeconds(5))(flying(autopilot))
+    assertEquals((autopilot.heard.size, flown.up), (heard, before))
+    flown.simulation.receive(
+      SimulatorCall(1, "simContinueForTime", IndexedSeq(upack.Float64(0.2))),
+      flown.now
+    )
+    assertEquals(flown.simulation.takeAnswers(), Nil)
+    flown.run(Span.ofMillis(100))(flying(autopilot))
+    assertEquals(flown.simulation.takeAnswers().map(_.token), Seq(1L))
+    assertEquals(flown.up - before, Span.ofMillis(200))
+    assertEquals(autopilot.heard.size - heard, 50)
+
+  test("two autopilots wait for one another"):
+    val flown  = Flown(vehicles = 2)
+    val pilots = Map(0L -> SmallAutopilot(), 1L -> SmallAutopilot(Vector3(0, 0, -3)))
+    for (channel, _) <- pilots do flown.hil.join(channel, Vector(channel.toInt + 1), isDatagrams = false)
+    flown.run(Span.ofSeconds(12))((channel, bytes) => flying(pilots(channel))(channel, bytes))
+    assertEqualsDouble(flown.truth(0).positionNed.z, -5, 1)
+    assertEqualsDouble(flown.truth(1).positionNed.z, -3, 1)
+    val before = flown.up
+    flown.run(Span.ofMillis(500))((channel, bytes) =>
+      if channel == 1 then Nil else flying(pilots(channel))(channel, bytes)
+    )
+    assert((flown.up - before).toMillis <= 4)
+
+  test("a vehicle whose autopilot has gone is AirSim's again, and falls"):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    flown.run(Span.ofSeconds(8))(flying(autopilot))
+    flown.hil.leave(0)
+    flown.run(Span.ofSeconds(10))((_, _) => Nil)
+    assertEqualsDouble(flown.truth().positionNed.z, 0, 0.1)
+
+  test("equal seeds give equal flights, to the bit"):
+    def flight() =
+      val flown     = Flown()
+      val autopilot = SmallAutopilot()
+      flown.hil.join(0, Vector(1), isDatagrams = false)
+      flown.run(Span.ofSeconds(8))(flying(autopilot))
+      flown.truth()
+    assertEquals(flight(), flight())
+
+  test("ArduPilot sets the pace: a second of frames takes no time by the clock, and its vehicle hovers"):
+    val flown      = Flown(AutopilotKind.ArduPilot)
+    val controller = SmallController()
+    flown.hil.join(0, Vector(1), isDatagrams = true)
+    var frame  = 0L
+    var pulses = Seq(1000, 1000, 1000, 1000)
+    var line   = ""
+    for _ <- 1 to 20_000 do
+      flown.hil.receive(0, ArduPilotInterfaceSuite.servos(frame, 1000, pulses))
+      flown.simulation.advance(flown.now)
+      val answers = flown.hil.take().flatMap(_.datagrams)
+      assertEquals(answers.size, 1, s"frame $frame")
+      line = String(answers.head)
+      val told                       = ujson.read(line)
+      def vector(value: ujson.Value) = Vector3(value(0).num, value(1).num, value(2).num)
+      val turn                       = told("quaternion")
+      pulses = controller
+        .rotors(
+          Vector3(1, 0, -2),
+          vector(told("position")),
+          vector(told("velocity")),
+          Quaternion(turn(0).num, turn(1).num, turn(2).num, turn(3).num),
+          vector(told("imu")("gyro")),
+          0.001
+        )
+        .map(control => (1000 + control * 1000).round.toInt)
+      frame += 1
+    assertEquals(flown.up, Span.ofSeconds(20))
+    assert((flown.truth().positionNed - Vector3(1, 0, -2)).norm < 0.2, line)
+    flown.run(Span.ofSeconds(5))((_, _) => Nil)
+    assertEquals(flown.up, Span.ofSeconds(20), "nobody asked for more")
+
+  test("Betaflight is told the state every 2 ms, by the clock, and what is late is left out"):
+    val flown = Flown(AutopilotKind.Betaflight)
+    flown.hil.join(0, Vector(1), isDatagrams = true)
+    var told = 0
+    flown.run(Span.ofSeconds(1)): (_, bytes) =>
+      told += 1
+      assertEquals(bytes.length, 144)
+      Nil
+    assertEqualsDouble(told.toDouble, 500, 1)
+    told = 0
+    flown.run(Span.ofSeconds(1), every = Span.ofMillis(10)): (_, _) =>
+      told += 1
+      Nil
+    assertEqualsDouble(told.toDouble, 100, 1)
+
+  test("damaged and strange messages of an autopilot leave the vehicle where it is, and time running"):
+    for kind <- AutopilotKind.values do
+      val random = Random(kind.ordinal)
+      val flown  = Flown(kind)
+      flown.hil.join(0, Vector(1), isDatagrams = kind != AutopilotKind.Px4)
+      for _ <- 1 to 2000 do
+        flown.hil.receive(0, random.nextBytes(random.nextInt(300)))
+        flown.now = flown.now + Span.ofMillis(1)
+        flown.simulation.advance(flown.now)
+        flown.hil.take()
+      assert(flown.truth().isFinite)
+      assertEqualsDouble(flown.truth().positionNed.z, 0, 0.1)
+      if kind != AutopilotKind.ArduPilot then assertEqualsDouble(flown.up.toSeconds, 2, 0.01)
