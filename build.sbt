@@ -48,7 +48,7 @@ lazy val root =
     .in(file("."))
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
-    .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, virtualTime)
+    .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, docs)
     .settings(publish / skip := true)
 
@@ -346,6 +346,12 @@ lazy val virtualTime = project
   .in(file("examples/virtual-time"))
   .dependsOn(vtime % Test)
   .settings(publish / skip := true, underAgent, libraryDependencies ++= pekkoStream ++ munit)
+
+/** A PettingZoo environment, flown by our loops. */
+lazy val foreignEnvironment = project
+  .in(file("examples/foreign-environment"))
+  .dependsOn(cli)
+  .settings(publish / skip := true, underAgent)
 
 /** Ground robots with a simulator and a protocol of their own, driven by our loops. */
 lazy val ownVehicle = project

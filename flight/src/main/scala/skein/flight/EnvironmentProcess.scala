@@ -1,0 +1,108 @@
+package skein.flight
+
+import java.io.IOException
+import java.net.UnixDomainSocketAddress
+import java.nio.ByteBuffer
+import java.nio.channels.{SelectionKey, Selector, SocketChannel}
+import java.nio.charset.StandardCharsets.UTF_8
+import scala.util.control.NonFatal
+import skein.signal.Kinematics
+import skein.units.*
+import ujson.{Arr, Num, Obj, Value}
+
+/** An environment in another process, behind a Unix socket: that of Python's `skein_uav.simulators`. Lines of JSON go to
+  * and fro, a question and its answer:
+  *
+  * {{{
+  * {}                                               begins an episode
+  * {"velocities": {"Evader": [1.0, 0.0, 0.0]}}      one step, each vehicle under this velocity, NED, m/s
+  * {"stepS": 0.1, "vehicles": {"Evader": {"body": [north, east, down, their velocities, heading], "reward": 0.5,
+  *                                        "terminated": false, "truncated": false}}}
+  * {"error": "ValueError: …"}
+  * }}}
+  *
+  * It blocks, up to [[EnvironmentProcess.AnswerWithin]] a call. Not thread-safe.
+  *
+  * @param names
+  *   of the vehicles
+  */
+final class EnvironmentProcess private (channel: SocketChannel, names: Vector[String]):
+  import EnvironmentProcess.*
+  private val selector = Selector.open()
+  channel.configureBlocking(false).register(selector, SelectionKey.OP_READ): Unit
+
+  /** Begins an episode.
+    *
+    * @return
+    *   or what was expected, and what came
+    */
+  def reset(): Either[String, Moment] = ask(Obj())
+
+  /** One step, by velocities NED, m/s, in the order of the names. */
+  def step(velocities: Vector[Vector3]): Either[String, Moment] = ask(Obj(
+    "velocities" -> Obj.from(names.zip(velocities.map(v => Arr(v.x, v.y, v.z))))
+  ))
+
+  def close(): Unit =
+    selector.close()
+    channel.close()
+
+  private def ask(question: Obj): Either[String, Moment] =
+    try
+      channel.write(ByteBuffer.wrap(s"${question.render()}\n".getBytes(UTF_8))): Unit
+      read(ujson.read(line()))
+    catch
+      case lost: IOException => Left(lost.getMessage)
+      case NonFatal(wrong)   => Left(s"expected an environment's answer, came ${wrong.getMessage}")
+
+  private def read(answer: Value): Either[String, Moment] = answer.obj.get("error") match
+    // What another process says must not command a terminal.
+    case Some(error) => Left(error.str.replaceAll("\\p{Cntrl}+", " ").trim)
+    case None        =>
+      val bodies = names.map: name =>
+        val told = answer("vehicles")(name)
+        val body = told("body").arr.collect { case Num(number) if number.isFinite => number }
+        if body.size != 7 then throw IllegalArgumentException(s"${told("body").render()} of $name")
+        val moves = Kinematics(
+          Vector3(body(0), body(1), body(2)),
+          Vector3(body(3), body(4), body(5)),
+          Quaternion.ofYaw(body(6)),
+          Vector3.Zero
+        )
+        Agent(moves, told("reward").num, told("terminated").bool, told("truncated").bool)
+      Right(Moment(Span.ofSeconds(answer("stepS").num), bodies))
+
+  private def line(): String =
+    val until = Clock.system.now() + AnswerWithin
+    val bytes = ByteBuffer.allocate(LongestLine)
+    while bytes.position() == 0 || bytes.get(bytes.position() - 1) != '\n' do
+      val leftMs = until.since(Clock.system.now()).toMillis.ceil.toLong
+      if leftMs <= 0 || selector.select(leftMs) == 0 then
+        throw IOException(s"expected an answer within ${AnswerWithin.toMillis.round} ms, came none")
+      selector.selectedKeys.clear()
+      if channel.read(bytes) < 0 then throw IOException("its process has ended")
+      if !bytes.hasRemaining then throw IOException(s"expected at most $LongestLine bytes, came more")
+    String(bytes.array, 0, bytes.position(), UTF_8)
+
+object EnvironmentProcess:
+  /** @param stepS
+    *   of one step
+    */
+  final case class Moment(step: Span, agents: Vector[Agent])
+
+  /** @param reward
+    *   of the step before
+    */
+  final case class Agent(kinematics: Kinematics, reward: Double, terminated: Boolean, truncated: Boolean)
+
+  /** Enough for a first step that compiles. */
+  val AnswerWithin: Span = Span.ofSeconds(10)
+
+  private val LongestLine = 1 << 20
+
+  /** @return or why nobody is there */
+  def connect(path: String, names: Vector[String]): Either[String, EnvironmentProcess] =
+    try Right(EnvironmentProcess(SocketChannel.open(UnixDomainSocketAddress.of(path)), names))
+    catch
+      case nobody: IOException =>
+        Left(s"expected an environment behind the socket $path: ${nobody.getMessage}")

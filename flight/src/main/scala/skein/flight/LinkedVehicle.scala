@@ -1,0 +1,60 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
+import scala.concurrent.Future
+import skein.policy.Action
+import skein.port.{Sensor, VehicleError, VehiclePort}
+import skein.signal.{Kinematics, LatencyProfile, LatencySampler, Stamped}
+import skein.units.*
+
+/** A vehicle behind an emulated link, where its adapter has no bytes to delay: each call, and each answer, comes as late as
+  * the link's latency says, and none overtakes another.
+  *
+  * @param line
+  *   the vehicle's number among those behind this link
+  */
+final class LinkedVehicle(
+    vehicle: VehiclePort,
+    latency: LatencyProfile,
+    seed: Long,
+    line: Int,
+    clock: Clock
+)(using
+    system: ActorSystem
+) extends VehiclePort:
+  import system.dispatcher
+  private val there = Direction(2 * line)
+  private val back  = Direction(2 * line + 1)
+
+  def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = over(vehicle.read())
+
+  def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
+    called(vehicle.act(action, lasts))
+
+  def hover(): Future[Either[VehicleError, Boolean]] = called(vehicle.hover())
+
+  override def sensors: Map[String, Sensor] = vehicle.sensors.map: (name, sensor) =>
+    name -> new Sensor:
+      def columns: Vector[String]                                       = sensor.columns
+      def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = over(sensor.read())
+
+  private def called[A](call: => Future[A]): Future[A] =
+    there.pass.flatMap(_ => call).flatMap(answer => back.pass.map(_ => answer))
+
+  private def over[A](ask: => Future[Either[VehicleError, Stamped[A]]]) =
+    val sentAt = clock.now()
+    called(ask).map(_.map(_.copy(sentAt = sentAt, receivedAt = clock.now())))
+
+  private final class Direction(number: Int):
+    private val begun   = clock.now()
+    private val sampler = LatencySampler(latency, seed, seed * 1_000_003 + number)
+    private var newest  = begun
+
+    /** Completes when what is sent now arrives. */
+    def pass: Future[Unit] =
+      val in = synchronized:
+        val now = clock.now()
+        newest = newest.max(now + sampler.oneWay(now.since(begun)))
+        newest.since(now)
+      after(in.toDuration)(Future.unit)
