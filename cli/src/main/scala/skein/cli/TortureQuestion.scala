@@ -26,12 +26,7 @@ private[cli] final case class TortureQuestion(
   /** @return or what was expected, what came, and in which option */
   def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
     for
-      task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
-      _    <- Either.cond(
-        task.forall(_.eyes.isEmpty),
-        (),
-        s"--scenario ${scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
-      )
+      task  <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
       scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
 
