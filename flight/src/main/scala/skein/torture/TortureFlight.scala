@@ -99,7 +99,7 @@ object TortureFlight:
         )
         eyes = asked.flatMap(look)
         // Through these policies look; while the simulator stands still, each asks for a picture.
-        sensors = eyes.filter(one => faultPlan.scenario.eyes.contains(one.eye)).map(one =>
+        sensors = eyes.map(one =>
           (one.eye.vehicle, one.eye.sensor, if isPaused then one.looking else one.sensor)
         )
         crafts = multirotors.zip(asked).map((craft, vehicle) =>
