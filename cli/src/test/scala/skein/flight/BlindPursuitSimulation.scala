@@ -64,7 +64,8 @@ class BlindPursuitSimulation extends munit.FunSuite:
       val fit       = SensorFit.of(RecordedSeeing.of(recording)).fold(fail(_), identity)
       assert(fit.model.detection > 0.7 && fit.model.bearingSdRad < 0.01 && fit.model.rangeSd < 0.03, s"$fit")
       assertEqualsDouble(fit.model.rangeBias, 1, 0.01)
-      val again = SensorFile.parse(SensorFile.render(fit, Vector("a recording")), "sensor.conf").fold(fail(_), identity)
+      val again =
+        SensorFile.parse(SensorFile.render(fit, Vector("a recording")), "sensor.conf").fold(fail(_), identity)
       assertEqualsDouble(again.bearingSdRad, fit.model.bearingSdRad, 1e-5)
       assertEqualsDouble(again.takes.mean.toMillis, fit.model.takes.mean.toMillis, 0.1)
       val conditions = Conditions(loop.label, "drag", 100, 20).resolved.fold(fail(_), identity)
