@@ -71,6 +71,7 @@ object TestGroups extends AutoPlugin {
     "skein.loop.planning.PlanSuite",
     "skein.loop.planning.PlanWorkersLiveSuite",
     "skein.recognition.AprilTagsSuite",
+    "skein.recognition.VehicleDetectorSuite",
     "skein.search.LandscapeSuite",
     "skein.search.SearchBlockLaws",
     "skein.search.SearchFileSuite",

@@ -24,6 +24,10 @@ final case class ForwardOptions(
       "at which all fly, in metres (default: 20); a model holds at the altitude of the flights it was fitted to"
     )
     altitude: Option[Double],
+    @arg(doc =
+      "a sensor's FILE of ./skein identify: the pursuer knows of the evader by such a camera alone (default: it is told)"
+    )
+    eye: Option[String],
     @arg(doc = "a policy file or the name of a family: whom the policy plays against (default: the paper's)")
     opponent: Option[String],
     @arg(doc = "of an episode (default: 60s)")
@@ -33,7 +37,8 @@ final case class ForwardOptions(
     @arg(doc = "that fly at once; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
-  def isEmpty: Boolean = Seq(objective, loop, plant, altitude, opponent, duration, seed).forall(_.isEmpty)
+  def isEmpty: Boolean =
+    Seq(objective, loop, plant, altitude, eye, opponent, duration, seed).forall(_.isEmpty)
 
   /** @param otherwise
     *   how long an episode is, unless it is told
@@ -45,7 +50,8 @@ final case class ForwardOptions(
       plant.getOrElse("reduced"),
       period.toMillis,
       duration.toNanos / 1e9,
-      altitude.getOrElse(PaperDuel.AltitudeM)
+      altitude.getOrElse(PaperDuel.AltitudeM),
+      eye
     )
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)
@@ -67,7 +73,11 @@ object ForwardOptions:
 
   /** Options that are a duel's, and were given. */
   def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =
-    val told = (others ++ Seq("--opponent" -> options.opponent, "--altitude" -> options.altitude))
+    val told = (others ++ Seq(
+      "--opponent" -> options.opponent,
+      "--altitude" -> options.altitude,
+      "--eye"      -> options.eye
+    ))
       .collect { case (flag, Some(_)) => flag }
     Either.cond(
       told.isEmpty,

@@ -4,11 +4,11 @@ import java.nio.file.Path
 import mainargs.{Flag, Leftover, ParserForClass, arg}
 import skein.figures.ResponseFigure
 import skein.identify.*
-import skein.measure.FlownVehicles
+import skein.measure.{FlownVehicles, RecordedSeeing}
 import skein.record.{Recording, RecordingReader}
 import skein.report.{Section, TextTable}
-import skein.scenario.PaperDuel
-import skein.settings.{Fit, ModelFile}
+import skein.scenario.{PaperDuel, Scenarios}
+import skein.settings.{Fit, ModelFile, SensorFile}
 import skein.units.Span
 
 /** Options of `./skein identify`. */
@@ -22,17 +22,17 @@ final case class IdentifyOptions(
     @arg(doc = "how far each reading is predicted for the fit")
     horizon: String = "2s",
     @arg(doc =
-      "folder for model.conf, model.svg and model.png; without it, that of the first recording"
+      "folder for model.conf, model.svg, model.png and sensor.conf; without it, that of the first recording"
     )
     out: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
 
-object IdentifyCommand
+final class IdentifyCommand(using Scenarios)
     extends OptionsCommand[IdentifyOptions](
       "identify",
-      "fits a reduced model of the vehicles to recordings, for forward simulation and prediction",
+      "fits a reduced model of the vehicles to recordings, and one of what saw, for forward simulation and prediction",
       ParserForClass[IdentifyOptions]
     ):
 
@@ -59,7 +59,8 @@ object IdentifyCommand
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
       fits       <- fit(flights, horizon.toSeconds)
       shown    = Shown(options.json.value)
-      sections = tables(fits, flights)
+      sensor   = sensorOf(recordings)
+      sections = tables(fits, flights) ++ sensor.map(sensorTable)
       _        = shown.say(clocks(recordings))
       _        = shown.tables(sections, Section.text(sections))
       from     = ModelFile.Provenance(
@@ -73,10 +74,12 @@ object IdentifyCommand
         out,
         ModelFile.render(use, fits, from),
         fits.find(_.identification.structure == use).get,
-        flights
+        flights,
+        sensor.map(SensorFile.render(_, files.zip(recordings).map(described)))
       )
     yield shown.say(
-      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --predictor ${out.resolve("model.conf")}${elsewhere(flights)}"
+      s"\nwritten: ${paths.mkString(", ")}\nfly by it: ./skein fly --loop predictive --predictor ${out.resolve("model.conf")}${elsewhere(flights)}" +
+        sensor.fold("")(_ => s"\nsee by it: ./skein budget --eye ${out.resolve("sensor.conf")}")
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
@@ -107,6 +110,20 @@ object IdentifyCommand
         yield
           Console.err.println(s"fitted ${structure.label}: ${before.size + 1} of ${Structure.values.length}")
           before :+ Fit(found, HorizonErrors.of(found.model, reflown), HorizonErrors.of(found.model, flights))
+
+  /** Of the eyes that the flights had, if any, and if they saw enough. */
+  private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
+    val seeing = recordings.flatMap(RecordedSeeing.of)
+    Option.when(seeing.nonEmpty)(SensorFit.of(seeing)).flatMap: fit =>
+      fit.left.foreach(reason => Console.err.println(s"no sensor is fitted: $reason"))
+      fit.toOption
+
+  private def sensorTable(fit: SensorFit): Section =
+    val takes = fit.model.takes
+    Section(
+      f"What saw: ${fit.detections} detections in ${fit.pictures} pictures, up to ${fit.model.farthestM}%.1f m; recognition took ${takes.quantile(0.5).toMillis}%.0f ms at the median, ${takes.quantile(0.99).toMillis}%.0f at 99 %%",
+      table = Some(TextTable(fit.fitted.map(_.name), Vector(fit.fitted.map(interval))))
+    )
 
   private def described(file: String, recording: Recording): String =
     val flight = recording.flight
@@ -184,11 +201,15 @@ object IdentifyCommand
       out: Path,
       model: String,
       fit: Fit,
-      flights: Vector[Flown]
+      flights: Vector[Flown],
+      sensor: Option[String]
   ): Either[String, Vector[Path]] =
     val drawing     = ResponseFigure(fit.identification.model, flights.take(MostPanels))
     val description = "Measured and modelled velocity over time, and residuals"
     OutFolder.write(
       out,
-      OutFolder.text("model.conf", model) +: OutFolder.picture("model", drawing, description, scale = 2)
+      Vector(OutFolder.text("model.conf", model)) ++ sensor.map(OutFolder.text(
+        "sensor.conf",
+        _
+      )) ++ OutFolder.picture("model", drawing, description, scale = 2)
     )

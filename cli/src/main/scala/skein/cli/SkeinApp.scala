@@ -46,7 +46,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     ReportCommand(),
     ExportCommand,
     ImportCommand,
-    IdentifyCommand,
+    IdentifyCommand(),
     ReplayCommand(),
     DigestCommand,
     TortureCommand(program),

@@ -29,11 +29,6 @@ private[cli] final case class TortureQuestion(
     for
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
       _    <- Either.cond(
-        task.forall(_.eyes.isEmpty),
-        (),
-        s"--scenario ${scenario.getOrElse("")}: its policies know by cameras, which torture does not have"
-      )
-      _ <- Either.cond(
         task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor)),
         (),
         s"--scenario ${scenario.getOrElse("")}: expected multirotors, came cars, whose commands torture does not follow"

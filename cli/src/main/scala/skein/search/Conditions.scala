@@ -5,7 +5,7 @@ import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.scenario.PaperDuel
-import skein.settings.{FlySettings, TextFile, VehicleChoice}
+import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.Span
 import upickle.default.ReadWriter
@@ -15,13 +15,16 @@ import upickle.implicits.key
   *
   * @param plant
   *   see [[VehicleChoice.parse]]
+  * @param eye
+  *   a file of [[SensorFile]]: the pursuer knows of the evader by that alone
   */
 final case class Conditions(
     loop: String,
     @key("model") plant: String,
     periodMs: Double,
     durationS: Double,
-    altitudeM: Double = PaperDuel.AltitudeM
+    altitudeM: Double = PaperDuel.AltitudeM,
+    eye: Option[String] = None
 ) derives ReadWriter:
 
   /** @return the loop, or what was expected and came */
@@ -51,15 +54,21 @@ final case class Conditions(
       kind    <- checked
       vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
       timing  <- Conditions.timing(kind, Span.ofMillis(periodMs), vehicle.response).left.map("--loop: " + _)
-    yield Conditions.Resolved(timing, vehicle, Duel.paperAt(altitudeM, durationS))
+      sensor  <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)
+      duel = Duel.paperAt(altitudeM, durationS)
+    yield Conditions.Resolved(timing, vehicle, duel.copy(pursuer = duel.pursuer.copy(eye = sensor)))
 
 object Conditions:
 
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
     def batch(threads: Int): DuelBatch = DuelBatch(duel, timing, vehicle.response, threads)
 
-    /** The ground truth with the same vehicles: the same period, and a world that waits. */
-    def paused: Resolved = copy(timing = LoopTiming.Paused(timing.periodS))
+    /** The ground truth with the same vehicles: the same period, a world that waits, and a pursuer that is told. */
+    def paused: Resolved =
+      copy(
+        timing = LoopTiming.Paused(timing.periodS),
+        duel = duel.copy(pursuer = duel.pursuer.copy(eye = None))
+      )
 
   /** As `./skein fly` flies the loop, by the best model of the vehicles where it predicts. */
   private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =

@@ -214,6 +214,7 @@ final case class SearchSetup(
 
   /** As a policy file. */
   def file(found: Found): (String, String) =
+    val eye     = question.conditions.eye.fold("")(file => s"  eye = \"$file\"\n")
     val remarks =
       SearchResult.objective(text, unit, found.fresh, baseline.name, found.baseline) +
         s"""found {
@@ -225,7 +226,7 @@ final case class SearchSetup(
            |  link = "${question.link}"
            |  plant = "${question.conditions.plant}"
            |  vehicles = "${conditions.vehicle.description}"
-           |  opponent = "${question.opponent}"
+           |$eye  opponent = "${question.opponent}"
            |  altitudeM = ${question.conditions.altitudeM}
            |  durationS = ${question.conditions.durationS}
            |  candidates = ${question.candidates}

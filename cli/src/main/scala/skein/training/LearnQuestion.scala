@@ -61,9 +61,10 @@ final case class LearnQuestion(
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
       role      <- PolicyFile.role(role).left.map("--side: " + _)
       objective <- Objective.parse(objective, role).left.map("--objective: " + _)
-      flown     <- conditions.resolved
-      delays    <- Conditions.delays(link).left.map("--link: " + _)
-      opponent  <- PolicyFile
+      _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
+      flown    <- conditions.resolved
+      delays   <- Conditions.delays(link).left.map("--link: " + _)
+      opponent <- PolicyFile
         .parse(Role.opponentOf(role), opponent)
         .left
         .map("--opponent: " + _)

@@ -99,7 +99,7 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
 
   flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
     folder =>
-      val (status, text, err) = run(IdentifyCommand, folder.resolve("stream-vpn.duckdb").toString)
+      val (status, text, err) = run(IdentifyCommand(), folder.resolve("stream-vpn.duckdb").toString)
       assertEquals(status, 0, err)
       assert(text.contains("position p50 m") && text.contains("drag-and-turn"), text)
       assert(Files.size(folder.resolve("model.svg")) > 10000)
@@ -122,7 +122,7 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
       run(SpreadCommand("skein.cli.Main"), "--seeds", "1", "--predictor", broken.toString)
     assertEquals(status, 1)
     assert(err.contains("lag-s"), err)
-    val (unfit, _, reason) = run(IdentifyCommand, folder.resolve("paused-none.duckdb").toString)
+    val (unfit, _, reason) = run(IdentifyCommand(), folder.resolve("paused-none.duckdb").toString)
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
 

@@ -2,12 +2,17 @@ package skein.flight
 
 import scala.concurrent.duration.*
 import skein.cli.OurScenarios
+import skein.forward.{DelayTable, Rollout}
+import skein.identify.SensorFit
 import skein.loop.{LoopKind, Outcome, Replay}
-import skein.measure.FlightSummary
+import skein.measure.{FlightSummary, RecordedSeeing}
 import skein.recognition.BlindPursuit
 import skein.scenario.Scenarios
-import skein.settings.FlySettings
+import skein.search.Conditions
+import skein.settings.{FlySettings, SensorFile}
 import skein.signal.LatencyProfile
+import skein.simd.WorldRandom
+import skein.torture.Torture
 import skein.units.*
 
 /** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in virtual time. */
@@ -51,6 +56,34 @@ class BlindPursuitSimulation extends munit.FunSuite:
     assert(clue(seen.tookMs.get.least) >= 15 && clue(seen.tookMs.get.most) <= 120)
     assert(clue(seen.agesMs.get.median) > 60)
     assertEquals(seen.decisive.map(_._1).distinct.size, seen.decisive.size)
+
+  for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
+    test(s"${loop.label}: the sensor fitted to a flight costs in forward simulation what it cost in flight"):
+      val flown     = fly(settings(loop, 20))
+      val recording = flown.recorder.recording
+      val fit       = SensorFit.of(RecordedSeeing.of(recording)).fold(fail(_), identity)
+      assert(fit.model.detection > 0.7 && fit.model.bearingSdRad < 0.01 && fit.model.rangeSd < 0.03, s"$fit")
+      assertEqualsDouble(fit.model.rangeBias, 1, 0.01)
+      val again =
+        SensorFile.parse(SensorFile.render(fit, Vector("a recording")), "sensor.conf").fold(fail(_), identity)
+      assertEqualsDouble(again.bearingSdRad, fit.model.bearingSdRad, 1e-5)
+      assertEqualsDouble(again.takes.mean.toMillis, fit.model.takes.mean.toMillis, 0.1)
+      val conditions = Conditions(loop.label, "drag", 100, 20).resolved.fold(fail(_), identity)
+      val duel       = conditions.duel
+      val rollout    = Rollout(
+        duel.copy(pursuer = duel.pursuer.copy(eye = Some(again))),
+        conditions.timing,
+        DelayTable.vpn,
+        conditions.vehicle.response
+      )
+      val foreseen = (1 to 8).map(world => rollout.fly(WorldRandom.key(1, 0, world)).meanLast10sM).sum / 8
+      val came     = FlightSummary.of(recording).headline.getOrElse(fail("no distance"))
+      assertEqualsDouble(clue(foreseen), came, 0.07 * came)
+
+  test("through faults of the link, the messages and the simulator, control keeps its rules"):
+    for seed <- Seq(3L, 5L) do
+      val verdict = Torture.of(seed, Span.ofSeconds(8), Some(BlindPursuit()))
+      assertEquals(verdict.violations, Vector.empty, verdict.faultPlan.toString)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Paused) do
     test(s"${loop.label}: the pursuer comes near by its camera alone"):

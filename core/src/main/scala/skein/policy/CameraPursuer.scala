@@ -55,11 +55,18 @@ final case class CameraPursuer(steers: Policy, sensor: Option[String], opponentS
         .fold((opponentStartNed, Vector3.Zero)): believed =>
           val value = believed.values
           val moved = Vector3(value(3), value(4), value(5))
-          val ahead =
-            if seen.own.isPredicted then (believed.age + seen.actsIn).min(CameraPursuer.Farthest)
-            else Span.Zero
-          (Vector3(value(0), value(1), value(2)) + moved * ahead.toSeconds, moved)
+          val place = Vector3(value(0), value(1), value(2))
+          val ahead = Option.when(seen.own.isPredicted)((believed.age + seen.actsIn).toSeconds)
+          (CameraPursuer.carried(place, moved, ahead), moved)
 
 object CameraPursuer:
-  /** What was lost from sight longer ago is looked for where it was then expected. */
-  private val Farthest = Span.ofSeconds(1.5)
+  /** What was lost from sight longer ago is looked for where it was then expected, s. */
+  private val FarthestS = 1.5
+
+  /** Where a policy takes something to be that was believed to be there, m, with this velocity, m/s.
+    *
+    * @param aheadS
+    *   since the belief, until what is decided now acts; absent where the own place is not predicted either
+    */
+  private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
+    placeNed + velocityNed * aheadS.fold(0.0)(_.min(FarthestS))

@@ -1,13 +1,13 @@
 package skein.flight
 
-import java.util.concurrent.atomic.AtomicReference
+import java.util.concurrent.atomic.{AtomicReference, LongAdder}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.KillSwitches
 import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.airsim.{Eyes, Image, Pixels}
 import skein.flow.*
 import skein.fusion.{Belief, Fusion, PolarMeasurement}
@@ -51,10 +51,23 @@ private[skein] final class CameraSensor(
   private var pictures, found = 0
   private var newestSeen      = Option.empty[Seen]
   private var fusion          = Fusion(eye.fusion)
+  private val due, lost       = LongAdder()
+  private val missed          = LongAdder()
+  private val over            = Promise[Done]()
+
+  /** Completes when it was closed and all that was asked for has come to something. */
+  def ended: Future[Done] = over.future
+
+  def counts: Counts = Counts(due.sum, missed.sum, lost.sum, pictures)
 
   /** Looks on until it is closed. */
   def run(): Unit =
-    val ticks    = Source.fromGraph(Metronome(clock.now(), eye.every, clock)).via(stop.flow)
+    val ticks = Source
+      .fromGraph(Metronome(clock.now(), eye.every, clock))
+      .via(stop.flow)
+      .map: ticks =>
+        due.add(ticks)
+        ticks
     val (_, end) = Frames
       .at(ticks, inFlight = 2, camera.isNewer)(() => image())(skipped)
       .via(Recognise(
@@ -74,6 +87,7 @@ private[skein] final class CameraSensor(
       ))
       .toMat(Sink.foreach((_, belief) => newest.set(newestSeen.map(_.told(belief)))))(Keep.both)
       .run()
+    over.completeWith(end)
     end.failed.foreach(error => note(EventKind.Aborted, s"${eye.sensor}: $error"))
 
   def close(): Future[Done] =
@@ -90,6 +104,7 @@ private[skein] final class CameraSensor(
   val looking: Sensor = new Sensor:
     def columns: Vector[String]                                       = Eye.Columns
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
+      due.increment()
       image()
         .flatMap:
           case Left(error)  => Future.successful(skipped(Frames.Skipped.Failed(error)))
@@ -104,7 +119,9 @@ private[skein] final class CameraSensor(
               do
                 fusion = joined
                 newest.set(Some(seen.told(belief)))
-        .recover(error => note(EventKind.Refused, s"${eye.sensor}: $error"))
+        .recover: error =>
+          lost.increment()
+          note(EventKind.Refused, s"${eye.sensor}: $error")
         .flatMap(_ => sensor.read())
 
   private def image() = camera
@@ -137,7 +154,13 @@ private[skein] final class CameraSensor(
       found += 1
       Seen(recognised.found.map(_ => image), polar, recognised.took, pictures, found)
 
-  private def skipped(what: Frames.Skipped[Any, Any]): Unit = what match
+  private def skipped(what: Frames.Skipped[Any, Any]): Unit =
+    what match
+      case Frames.Skipped.Missed(frames) => missed.add(frames)
+      case _                             => lost.increment()
+    told(what)
+
+  private def told(what: Frames.Skipped[Any, Any]): Unit = what match
     case Frames.Skipped.Missed(frames) =>
       note(EventKind.Skipped, s"${eye.sensor}: $frames images not taken")
     case Frames.Skipped.Failed(error) => note(EventKind.TimedOut, s"${eye.sensor}: $error")
@@ -146,12 +169,28 @@ private[skein] final class CameraSensor(
     case Frames.Skipped.Replaced(_)   =>
       note(EventKind.Dropped, s"${eye.sensor}: an image replaced by a newer one")
 
-  private def unrecognised(what: Unrecognised[Any]): Unit = what match
+  private def unrecognised(what: Unrecognised[Any]): Unit =
+    lost.increment()
+    told(what)
+
+  private def told(what: Unrecognised[Any]): Unit = what match
     case Unrecognised.Late(_) => note(EventKind.DeadlineMissed, s"${eye.sensor}: recognition was late")
     case Unrecognised.Failed(_, cause) => note(EventKind.Refused, s"${eye.sensor}: $cause")
     case Unrecognised.Overtaken(_)     => note(EventKind.Dropped, s"${eye.sensor}: recognition overtaken")
 
 private[skein] object CameraSensor:
+
+  /** What became of the pictures of an eye. Once it has ended, each that was due is one of the others.
+    *
+    * @param missed
+    *   never asked for, since others were on their way
+    * @param lost
+    *   of which nothing came: the call failed, recognition failed or was late, or a newer one came first
+    * @param searched
+    *   whether or not anything was found in them
+    */
+  final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
+    def asked: Long = due - missed
 
   /** A detection. */
   private final case class Seen(

@@ -17,6 +17,7 @@ object Checks:
       tooFast(seen),
       unended(seen),
       unaccounted(seen),
+      unseen(seen),
       unbounded(seen),
       outOfControl(seen),
       restless(seen),
@@ -72,7 +73,7 @@ object Checks:
   /** What began is what ended, in the client's books, the crafts' and the recording. */
   private def unaccounted(seen: FlightTrace): Vector[String] =
     val called = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong +
-      seen.steps.begun + seen.callsBeside
+      seen.steps.begun + seen.callsBeside + seen.pictures.map(_.asked).sum
     val stats   = seen.stats
     val written = stats.sent - stats.sentAgain
     Vector(
@@ -87,6 +88,11 @@ object Checks:
         s"${seen.arrivals.size} moves arrived of ${seen.crafts.map(_.sendings.size).sum}"
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
+
+  /** Every picture that was due is searched, or counted as what became of it. */
+  private def unseen(seen: FlightTrace): Vector[String] =
+    for counts <- seen.pictures if counts.due != counts.missed + counts.lost + counts.searched
+    yield s"of ${counts.due} pictures that were due ${counts.missed} were missed, ${counts.lost} lost, ${counts.searched} searched"
 
   private def unrecorded(seen: FlightTrace): Vector[String] =
     val recording = seen.recording
@@ -115,7 +121,8 @@ object Checks:
     case _                 => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
-    val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife)
+    val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife) +
+      seen.pictures.size * PicturesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
@@ -209,6 +216,9 @@ object Checks:
 
   /** Asked for when an answer is missed. */
   private val SignsOfLife = 1
+
+  /** Of each eye. */
+  private val PicturesOnTheWay = 2
 
   /** After a connection was lost, its last moves may be at the simulator still when those of the next one come. */
   private val MostUnanswered = 4

@@ -2,7 +2,7 @@ package skein.torture
 
 import skein.link.{Fault, TimedFault}
 import skein.loop.LoopKind
-import skein.scenario.{PaperDuel, Scenario}
+import skein.scenario.{Eye, PaperDuel, Scenario}
 import skein.settings.NamedScene
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
@@ -23,6 +23,8 @@ import skein.units.*
   *   of the simulator against the controller, until it is started again
   * @param scene
   *   what stands in the world
+  * @param looks
+  *   whether the last vehicle looks for the first by a camera, beside what the scenario's eyes do
   */
 final case class FaultPlan(
     seed: Long,
@@ -38,8 +40,13 @@ final case class FaultPlan(
     disk: Disk,
     stopAt: Option[Span],
     clockAhead: Span = Span.Zero,
-    scene: NamedScene = NamedScene.Empty
+    scene: NamedScene = NamedScene.Empty,
+    looks: Boolean = false
 ):
+  /** Through which vehicles look. */
+  def eyes: Vector[Eye] = scenario.eyes ++
+    Option.when(looks)(FaultyEye(scenario.agents.last.name, scenario.agents.head.name, seed))
+
   /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to stand still
     * costs the simulator a worker for each: with many vehicles `stream` flies in their place.
     */
@@ -69,6 +76,7 @@ final case class FaultPlan(
       ),
       Option.when(messageFaults != MessageFaults.None)(messageFaults.toString),
       Option.when(disk != Disk.Sound)(disk.toString),
+      Option.when(looks)("with a camera"),
       stopAt.map(at => s"stopped at ${at.toMillis.round} ms")
     )
     what.flatten.mkString("; ")
@@ -146,7 +154,10 @@ object FaultPlan:
       if added.nextDouble() < 0.1 then
         loses.copy(loop = LoopKind.Paused, scenario = PaperDuel(loses.scenario.agents.size.min(4) / 2))
       else loses
-    looped.copy(clockAhead = Span.ofSeconds(40 * added.nextDouble() - 20))
+    looped.copy(
+      clockAhead = Span.ofSeconds(40 * added.nextDouble() - 20),
+      looks = looped.loop != LoopKind.Paused && added.nextDouble() < 0.2
+    )
 
   private final class Draw(random: SplitMix64, seed: Long, duration: Span):
     private val calmFrom = duration - Calm

@@ -1,5 +1,6 @@
 package skein.torture
 
+import skein.flight.CameraSensor
 import skein.loop.Outcome
 import skein.record.{Record, RecordError, Recording}
 import skein.rpc.{RpcSettings, RpcStats}
@@ -33,6 +34,8 @@ import skein.units.*
   *   how often vehicles were asked for a sign of life
   * @param leftPaused
   *   whether the simulator stood still some time after the end
+  * @param pictures
+  *   of each eye, after it has ended
   */
 final case class FlightTrace(
     faultPlan: FaultPlan,
@@ -58,7 +61,8 @@ final case class FlightTrace(
     drifts: Vector[Metres],
     steps: CallCount,
     callsBeside: Int,
-    leftPaused: Boolean
+    leftPaused: Boolean,
+    pictures: Vector[CameraSensor.Counts]
 ):
   def calmFrom: Instant = startedAt + faultPlan.calmFrom
 

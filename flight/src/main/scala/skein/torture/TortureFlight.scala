@@ -7,7 +7,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.*
-import skein.flight.{Equipped, FlightAssembler}
+import skein.flight.{CameraSensor, Equipped, FlightAssembler}
 import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
@@ -95,9 +95,16 @@ object TortureFlight:
             lost => recorder.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
           )
         )
-        crafts = multirotors.zip(asked).map((craft, vehicle) =>
-          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle), clock)
+        eyes = asked.flatMap(look)
+        // Through these policies look; while the simulator stands still, each asks for a picture.
+        sensors = eyes.map(one =>
+          (one.eye.vehicle, one.eye.sensor, if isPaused then one.looking else one.sensor)
         )
+        crafts = multirotors.zip(asked).map((craft, vehicle) =>
+          val seen = sensors.collect { case (vehicle.name, name, sensor) => name -> sensor }
+          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle, seen.toMap), clock)
+        )
+        _            = if !isPaused then eyes.foreach(_.run())
         stepper      = WatchedTime(AirSimTime(client))
         loopSettings =
           if PaperDuel.isAsPublished(faultPlan.scenario) then LoopSettings().asPublished else LoopSettings()
@@ -112,6 +119,8 @@ object TortureFlight:
         outcome <- flight.outcome
         endedAt = clock.now()
         _       = pending.cancel()
+        _ <-
+          if isPaused then Future.unit else Future.traverse(eyes)(eye => eye.close().flatMap(_ => eye.ended))
         _      <- client.close()
         _      <- restarted
         _      <- at(restOf(endedAt))(Future.unit)
@@ -144,8 +153,21 @@ object TortureFlight:
         before.zip(later).map((from, to) => Metres((to - from).norm)),
         stepper.calls,
         multirotors.map(_.callsBeside).sum,
-        paused
+        paused,
+        eyes.map(_.counts)
       )
+
+    private def isPaused = faultPlan.loop == LoopKind.Paused
+
+    private def look(vehicle: Multirotor): Vector[CameraSensor] =
+      faultPlan.eyes.filter(_.vehicle == vehicle.name).map: eye =>
+        CameraSensor(
+          eye,
+          vehicle.eyes,
+          faultPlan.seed,
+          clock,
+          (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail))
+        )
 
     private var mostPending = 0L
 

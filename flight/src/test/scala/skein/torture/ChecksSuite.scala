@@ -2,6 +2,7 @@ package skein.torture
 
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
+import skein.flight.CameraSensor
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{Decision, Event, EventKind, RecordError, TrueAge}
 import skein.policy.*
@@ -25,7 +26,8 @@ class ChecksSuite extends munit.FunSuite:
         messageFaults = MessageFaults.None,
         restarts = Vector.empty,
         disk = Disk.Sound,
-        stopAt = None
+        stopAt = None,
+        looks = false
       )
   )
 
@@ -145,6 +147,22 @@ class ChecksSuite extends munit.FunSuite:
     assert(found(
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.crafts.map(_.sendings.size).sum}"))
+
+  test("pictures of which nobody tells what became of them"):
+    val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
+    val forged = clean.copy(
+      pictures = Vector(counts),
+      stats = clean.stats.copy(
+        called = clean.stats.called + counts.asked,
+        sent = clean.stats.sent + counts.asked,
+        answered = clean.stats.answered + counts.asked
+      )
+    )
+    assertEquals(found(forged), "")
+    assertEquals(
+      found(forged.copy(pictures = Vector(counts.copy(lost = 4)))),
+      "of 80 pictures that were due 10 were missed, 4 lost, 65 searched"
+    )
 
   test("of what was written each call was answered, refused or lost"):
     val stats = clean.stats

@@ -62,6 +62,8 @@ class FaultPlanSuite extends munit.FunSuite:
       often(loop.label, 0.2, others)(_.loop == loop)
     for link <- faultPlans.map(_.link.name).distinct do often(link, 0.25)(_.link.name == link)
     assertEquals(faultPlans.map(_.link.name).distinct.size, 4)
+    often("a camera", 0.2, others)(_.looks)
+    assert(!faultPlans.exists(plan => plan.looks && plan.loop == LoopKind.Paused))
     often("segments cut", 0.5)(_.cutsSegments)
     often("a fault of the link", 0.6)(_.faults.nonEmpty)
     often("two of them", 0.36)(_.faults.sizeIs >= 2)

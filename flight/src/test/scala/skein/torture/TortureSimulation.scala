@@ -2,6 +2,7 @@ package skein.torture
 
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
+import skein.record.EventKind
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -44,6 +45,22 @@ class TortureSimulation extends munit.FunSuite:
       faultPlan.toString
     )
     assertEquals(Checks.violations(seen), Vector.empty, faultPlan.toString)
+
+  test(
+    "images that are late, lost, wrong and not recognised are counted each, and those that come are searched"
+  ):
+    val plans = Iterator.from(1).map(seed => FaultPlan.of(seed, duration)).filter(_.looks).take(6).toVector
+    val seen  = plans.map(TortureFlight.fly)
+    for flight <- seen do assertEquals(Checks.violations(flight), Vector.empty, flight.faultPlan.toString)
+    val all = seen.flatMap(_.pictures)
+    assertEquals(all.size, plans.size)
+    assert(all.forall(_.due >= 60 / 2), s"$all")
+    assert(all.map(_.searched).sum > 0 && all.map(_.missed).sum > 0 && all.map(_.lost).sum > 0, s"$all")
+    val told = seen.flatMap(_.recording.events).filter(_.detail.startsWith("faulty eye: ")).map(_.kind).toSet
+    assert(
+      Set(EventKind.Skipped, EventKind.DeadlineMissed, EventKind.Refused, EventKind.TimedOut).subsetOf(told),
+      s"$told"
+    )
 
   test("the same seed gives the same flight"):
     for seed <- Seq(3L, 11L) do

@@ -168,29 +168,65 @@ private[skein] final class Controller(
 
   private def heading(policy: Policy, observation: DuelObservation, elapsedS: Double): Double =
     upon = observation
-    val other    = world.assignment.opponentOf(agent, distance)
-    val (dx, dy) = (observation.x(other) - observation.x(agent), observation.y(other) - observation.y(agent))
-    val (dvx, dvy) =
-      (observation.vx(other) - observation.vx(agent), observation.vy(other) - observation.vy(agent))
+    val other = world.assignment.opponentOf(agent, distance)
+    world.views(agent) match
+      case None =>
+        chosen(
+          policy,
+          observation,
+          elapsedS,
+          observation.x(other),
+          observation.y(other),
+          observation.vx(other),
+          observation.vy(other),
+          observation.sent(other),
+          ageS(observation, other)
+        )
+      case Some(view) =>
+        val (place, velocity, sinceS) = view.believed(observation.forecast.map(actsInS))
+        view.turn(place.x - observation.x(agent), place.y - observation.y(agent))
+        chosen(
+          policy,
+          observation,
+          elapsedS,
+          place.x,
+          place.y,
+          velocity.x,
+          velocity.y,
+          StrictMath.atan2(velocity.y, velocity.x),
+          sinceS
+        )
+
+  /** From now until a command acts that is sent now. */
+  private def actsInS(forecast: Forecast): Double =
+    val now = Instant.ofNanos(world.nowNs)
+    forecast.whenActing(now).get(agent).predictedFor.since(now).toSeconds.max(0)
+
+  private def ageS(observation: DuelObservation, vehicle: Int) =
+    (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
+
+  /** What a policy chooses whose opponent is there, flies so, was told this heading, and was known so long ago. */
+  private def chosen(
+      policy: Policy,
+      observation: DuelObservation,
+      elapsedS: Double,
+      x: Double,
+      y: Double,
+      vx: Double,
+      vy: Double,
+      sentRad: Double,
+      otherAgeS: Double
+  ): Double =
+    val (dx, dy)   = (x - observation.x(agent), y - observation.y(agent))
+    val (dvx, dvy) = (vx - observation.vx(agent), vy - observation.vy(agent))
     policy match
       case observing: ObservingPolicy[?] =>
-        def ageS(vehicle: Int) = (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
-        val seen               =
-          PlanarObservation(
-            dx,
-            dy,
-            dvx,
-            dvy,
-            decided,
-            observation.sent(other),
-            elapsedS,
-            ageS(agent),
-            ageS(other)
-          )
+        val seen =
+          PlanarObservation(dx, dy, dvx, dvy, decided, sentRad, elapsedS, ageS(observation, agent), otherAgeS)
         val answer = ObservingPolicy.decide(observing, seen, memory)
         memory = answer.memory
         answer.headingRad
-      case _ => policy.heading(dx, dy, dvx, dvy, decided, observation.sent(other), elapsedS)
+      case _ => policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS)
 
   private def seen(observation: DuelObservation, elapsedS: Double): TeamObservation = TeamObservation(
     agent,

@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.fusion.SensorModel
 import skein.policy.{Agent, Fleet, Policy, Role, TeamPolicy}
 import skein.scenario.PaperDuel
 
@@ -9,6 +10,8 @@ import skein.scenario.PaperDuel
   *   of the velocity it commands, where its policy does not choose one
   * @param policy
   *   see [[skein.policy.Policy]], and [[skein.policy.TeamPolicy]] for engagements; must be a pure function
+  * @param eye
+  *   by which alone it knows of its one opponent, if it is not told
   */
 final case class Duelist(
     speed: Double,
@@ -16,7 +19,8 @@ final case class Duelist(
     startY: Double,
     altitudeDownM: Double,
     startHeadingRad: Double,
-    policy: Policy | TeamPolicy
+    policy: Policy | TeamPolicy,
+    eye: Option[SensorModel] = None
 )
 
 object Duelist:

@@ -7,6 +7,8 @@ import skein.signal.Kinematics
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their way to and from the
   * vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
   *
+  * @param standsStill
+  *   while it is decided
   * @param ring
   *   [[DuelWorld.ringOf]]
   */
@@ -16,6 +18,7 @@ private[skein] final class DuelWorld(
     model: VelocityResponse,
     asking: Asking,
     keepsKinematics: Boolean,
+    val standsStill: Boolean,
     val ring: Int
 ):
   import DuelWorld.*
@@ -57,6 +60,9 @@ private[skein] final class DuelWorld(
 
   /** Is told what happens. */
   def observer: LoopObserver = watching
+
+  /** By which each vehicle knows of its opponent that does not by readings. */
+  val views: Array[Option[OpponentView]] = Array.fill(count)(None)
 
   /** Since the flight's start, ns. */
   def nowNs: Long = time
@@ -187,6 +193,10 @@ private[skein] object DuelWorld:
   val Wake         = 8
   val Patience     = 9
   val Due          = 10
+  val Look         = 11
+  val Exposed      = 12
+  val Pictured     = 13
+  val Recognised   = 14
 
   def kindOf(event: Long): Int    = (event >>> 40).toInt
   def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff

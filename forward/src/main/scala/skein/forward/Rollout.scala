@@ -21,8 +21,17 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     model,
     LoopTiming.askingOf(timing),
     keepsKinematics = timing.isInstanceOf[LoopTiming.Predictive],
+    standsStill = timing.isInstanceOf[LoopTiming.Paused],
     ringOf(timing, engagement.agents.size)
   )
+  private val sights = Array.tabulate(engagement.agents.size)(agent =>
+    engagement.agents(agent).eye.map: eye =>
+      val rivals = engagement.assignment.rivals(agent)
+      require(rivals.sizeIs == 1, s"an eye looks for one opponent, vehicle $agent has ${rivals.size}")
+      Sight(world, agent, rivals.head, eye, link)
+  )
+  for agent <- sights.indices do world.views(agent) = sights(agent)
+
   private val loop                       = LoopRuns.of(timing, world)
   private val periodNs                   = Nanos.of(timing.periodS)
   private val scores                     = (engagement.durationS / timing.periodS).round.toInt
@@ -58,6 +67,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
     watching = observer
     world.start(worldKey, observer)
+    for sight <- sights; eye <- sight do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
     for controller <- loop.controllers do controller.start()
     loop.start()
@@ -114,6 +124,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       case Wake     => loop.controllers(vehicle).goOn()
       case Patience => loop.patienceOver()
       case Due      => loop.due(number)
+      case kind     => sights(vehicle).foreach(Rollout.seeing(kind, number, _))
 
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
@@ -142,6 +153,13 @@ object Rollout:
   private[skein] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
 
   private[skein] val Never: Long = Long.MaxValue
+
+  /** What happens to a vehicle's pictures. */
+  private def seeing(kind: Int, number: Int, sight: Sight): Unit = kind match
+    case DuelWorld.Look       => sight.look(number)
+    case DuelWorld.Exposed    => sight.exposed(number)
+    case DuelWorld.Pictured   => sight.pictured(number)
+    case DuelWorld.Recognised => sight.recognised(number)
 
   private val NoListener: Listener = (_, _, _, _, _) => ()
 

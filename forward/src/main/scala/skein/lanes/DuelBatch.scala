@@ -24,7 +24,11 @@ final class DuelBatch(
   require(threads > 0, s"threads must be positive, got $threads")
 
   private val plant: Either[String, TimetableModel] =
-    LaneSupport.present.flatMap(_ => TimetableModel.of(model, duel))
+    for
+      _     <- LaneSupport.present
+      _     <- DuelBatch.sees(duel).toLeft(())
+      plant <- TimetableModel.of(model, duel)
+    yield plant
 
   /** The vehicles under the loop, if it flies by timetables. */
   private val lanes: Either[String, TimetableModel] =
@@ -129,3 +133,8 @@ final class DuelBatch(
 
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20
+
+object DuelBatch:
+  /** Why no lanes fly a duel in which somebody sees, if so. */
+  private def sees(duel: Duel): Option[String] =
+    Option.when(duel.pursuer.eye.isDefined || duel.evader.eye.isDefined)("the lanes know no eyes")

@@ -7,11 +7,13 @@ import skein.scenario.*
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** The paper's duel, but that the pursuer knows of the evader by its camera alone, which finds the AprilTags on the
-  * evader's sides.
+/** The paper's duel, but that the pursuer knows of the evader by its camera alone.
   *
   * @param blind
   *   false: the pursuer is told where the evader is, and flies by the same policy otherwise
+  * @param recogniser
+  *   `tags`: by the AprilTags on the evader's sides; `detector`: an evader without tags, by the detector that comes with
+  *   this library; or a file: by an ONNX detector of one's own, as [[VehicleDetector.load]] takes it
   * @param takes
   *   how long recognition takes, as latencies are told: `uniform:15ms..120ms`, or `file:PATH` of times that were measured
   * @param everyMs
@@ -19,6 +21,7 @@ import skein.units.*
   */
 final case class BlindPursuit(
     blind: Boolean = true,
+    recogniser: String = "tags",
     takes: String = "uniform:15ms..120ms",
     everyMs: Int = 100,
     widthPx: Int = 800,
@@ -31,7 +34,8 @@ final case class BlindPursuit(
     Scenario.outside("everyMs", everyMs, 20, 1000).toSeq ++
       Scenario.outside("widthPx", widthPx, 64, 4096) ++ Scenario.outside("heightPx", heightPx, 64, 4096) ++
       Scenario.notPositive(this) ++ Option.when(fovDeg >= 180)(s"fovDeg: expected below 180, came $fovDeg") ++
-      recognition.left.toOption.map(mistake => s"takes: $mistake")
+      recognition.left.toOption.map(mistake => s"takes: $mistake") ++
+      recognisers.left.toOption.map(mistake => s"recogniser: $mistake")
 
   def agents: Vector[Agent] =
     val Vector(evader, pursuer) = PaperDuel(altitudeM = altitudeM).agents: @unchecked
@@ -41,22 +45,22 @@ final case class BlindPursuit(
       pursuer.copy(policy = CameraPursuer(PaperPursuer(), sensor, evader.startPositionNed))
     )
 
-  override def scene: String = "pursuit"
+  override def scene: String = if recogniser == BlindPursuit.Tags then "pursuit" else "empty"
 
   override def equipment: Vector[Equipment] =
     Vector(Equipment.Camera("Pursuer", BlindPursuit.Camera, widthPx, heightPx, fovDeg))
 
   override def eyes: Vector[Eye] =
-    val camera = Pinhole(widthPx, heightPx, Radians(StrictMath.toRadians(fovDeg)))
-    for takes <- recognition.toOption.toVector if blind
+    for
+      takes <- recognition.toOption.toVector if blind
+      made  <- recognisers.toOption
     yield Eye(
       "Pursuer",
       BlindPursuit.Sensor,
       BlindPursuit.Camera,
       target = "Evader",
       Span.ofMillis(everyMs),
-      // The evader is the first vehicle, and so bears the first tag.
-      () => VehicleTags(camera, id = 0, BlindPursuit.TagSide),
+      made,
       takes
     )
 
@@ -73,6 +77,19 @@ final case class BlindPursuit(
 
   private def distance = Series("distance", "m")(tracks => tracks.distanceM(1, 0, _))
 
+  private def camera = Pinhole(widthPx, heightPx, Radians(StrictMath.toRadians(fovDeg)))
+
+  private def recognisers: Either[String, () => Recogniser] = recogniser match
+    // The evader is the first vehicle, and so bears the first tag.
+    case BlindPursuit.Tags     => Right(() => VehicleTags(camera, id = 0, BlindPursuit.TagSide))
+    case BlindPursuit.Detector => VehicleDetector.shipped(camera).map(detector => () => detector)
+    case file                  =>
+      VehicleDetector
+        .load(camera, Path.of(file))
+        .map(detector => () => detector)
+        .left
+        .map(mistake => s"expected tags, detector or an ONNX file: $mistake")
+
   private def recognition: Either[String, LatencyProfile] =
     LatencyProfile
       .parse(takes, path => Try(Files.readString(Path.of(path))).toEither.left.map(_.toString))
@@ -82,6 +99,9 @@ final case class BlindPursuit(
 object BlindPursuit:
   /** Of the tags that vehicles bear in the scene `pursuit`. */
   val TagSide: Metres = Metres(1)
+
+  private val Tags     = "tags"
+  private val Detector = "detector"
 
   private val Sensor = "evader"
   private val Camera = "front_center"

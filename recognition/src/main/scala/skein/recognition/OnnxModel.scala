@@ -5,7 +5,7 @@ import java.nio.FloatBuffer
 import java.nio.file.Path
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.airsim.{Image, Pixels}
+import skein.airsim.Image
 
 /** What a model gave, by the names of its outputs: numbers, row by row, and their shape. */
 type Outputs = Map[String, OnnxModel.Output]
@@ -100,42 +100,3 @@ object OnnxModel:
   private def attempt[A](call: => A): Either[String, A] =
     try Right(call)
     catch case error: OrtException => Left(error.getMessage)
-
-/** How an image becomes the tensor 1 × 3 × height × width that a model was trained on: the nearest pixel of each place,
-  * (value − mean) · scale of each channel.
-  *
-  * @param redFirst
-  *   whether red is the first channel; else blue is
-  * @param mean
-  *   of each channel in the model's order, from 0 to 255
-  */
-final case class InputForm(
-    width: Int,
-    height: Int,
-    redFirst: Boolean = true,
-    mean: (Float, Float, Float) = (0, 0, 0),
-    scale: (Float, Float, Float) = (1 / 255f, 1 / 255f, 1 / 255f)
-):
-  require(width > 0 && height > 0, s"a model's picture has pixels: $this")
-
-  def tensor(image: Image): Either[String, Array[Float]] = image.pixels match
-    case Pixels.Bgr(bytes) =>
-      val bgr    = bytes.buffer
-      val plane  = width * height
-      val values = new Array[Float](3 * plane)
-      val means  = Array(mean._1, mean._2, mean._3)
-      val scales = Array(scale._1, scale._2, scale._3)
-      for channel <- 0 until 3 do
-        val byte = if redFirst then 2 - channel else channel
-        var y    = 0
-        while y < height do
-          val row = (2L * y + 1) * image.height / (2L * height) * image.width
-          var x   = 0
-          while x < width do
-            val column = (2L * x + 1) * image.width / (2L * width)
-            val value  = bgr.get((3 * (row + column)).toInt + byte) & 0xff
-            values(channel * plane + y * width + x) = (value - means(channel)) * scales(channel)
-            x += 1
-          y += 1
-      Right(values)
-    case other => Left(s"expected raw pixels, came ${other.productPrefix}")

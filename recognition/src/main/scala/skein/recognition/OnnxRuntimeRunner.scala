@@ -8,13 +8,5 @@ import skein.policy.ModelRunner
 final class OnnxRuntimeRunner extends ModelRunner:
 
   def load(model: Array[Byte]): Either[String, (Array[Float], Vector[Int]) => Either[String, Array[Float]]] =
-    try
-      OnnxModel
-        .read(model)
-        .map: loaded =>
-          (numbers, shape) => loaded.run(numbers, shape).map(_.values.head.values)
-    catch
-      case missing: LinkageError =>
-        Left(
-          s"onnxruntime, which runs other models, is not on the class path (docs/guides/onnx.md says how to add it): $missing"
-        )
+    OnnxRuntime.present(OnnxModel.read(model).map: loaded =>
+      (numbers, shape) => loaded.run(numbers, shape).map(_.values.head.values))

@@ -72,7 +72,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
     finally
       val _ = Await.result(server.close(), 10.seconds)
 
-private val OfficialPythonClient = PythonEnvironment(
+private[simulator] val OfficialPythonClient = PythonEnvironment(
   imports = "airsim",
   scripts = "/airsim-python/fly_square.py",
   Seq("setuptools", "wheel", "msgpack", "numpy"),

@@ -1,8 +1,9 @@
 package skein.simulator
 
 import java.io.File
-import java.nio.file.{Files, Path}
+import java.nio.file.{FileSystems, Files, Path}
 import scala.sys.process.{Process, ProcessLogger}
+import scala.util.Using
 
 /** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions' names.
   *
@@ -14,7 +15,7 @@ import scala.sys.process.{Process, ProcessLogger}
   *   what `pip install` is called with, one call after the other
   */
 private[simulator] final class PythonEnvironment(imports: String, scripts: String, installs: Seq[String]*):
-  private val resources = Path.of(getClass.getResource(scripts).toURI).getParent
+  private val resources = PythonEnvironment.folderOf(scripts)
 
   /** The environment's Python, or why there is none. */
   def install(): Either[String, Path] =
@@ -52,3 +53,19 @@ private[simulator] final class PythonEnvironment(imports: String, scripts: Strin
 
   private def process(command: Seq[String]) =
     Process(command, Option.empty[File], "PYTHONPATH" -> resources.toString)
+
+private object PythonEnvironment:
+
+  /** Where a resource's folder lies: what is in a jar is unpacked, for as long as this process runs. */
+  private def folderOf(resource: String): Path =
+    val found = getClass.getResource(resource).toURI
+    if found.getScheme != "jar" then Path.of(found).getParent
+    else
+      Using.resource(FileSystems.newFileSystem(found, java.util.Map.of[String, String]())): jar =>
+        val folder = Files.createTempDirectory("scripts")
+        folder.toFile.deleteOnExit()
+        Using.resource(Files.list(jar.getPath(resource).getParent)): files =>
+          files.forEach: file =>
+            val copy = Files.copy(file, folder.resolve(file.getFileName.toString))
+            copy.toFile.deleteOnExit()
+        folder

@@ -1,0 +1,86 @@
+package skein.fusion
+
+import skein.signal.{LatencyDistribution, NormalQuantile}
+import skein.units.*
+
+/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether a picture shows the
+  * opponent and it is found, where it is seen, and when that is known. `skein.identify` fits it to flights.
+  * Pictures are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it; detections enter a
+  * [[Fusion]]. The camera looks to where the opponent was believed at the last decision, as
+  * `skein.policy.CameraPursuer` turns it; that the vehicle turns and tilts takes no time here.
+  *
+  * @param everyS
+  *   between pictures
+  * @param fovRad
+  *   horizontal
+  * @param farthestM
+  *   beyond, nothing is found
+  * @param detection
+  *   probability that what is in view is found
+  * @param bearingSdRad
+  *   standard deviation of the bearing
+  * @param rangeBias
+  *   mean of the measured over the true range
+  * @param rangeSd
+  *   standard deviation of the measured range, as a share of it
+  * @param takes
+  *   how long recognition takes
+  * @param workers
+  *   pictures that are recognised at the same time
+  * @param deadlineS
+  *   of each; what takes longer is not used
+  */
+final case class SensorModel(
+    everyS: Double,
+    fovRad: Double,
+    farthestM: Double,
+    detection: Double,
+    bearingSdRad: Double,
+    rangeBias: Double,
+    rangeSd: Double,
+    takes: LatencyDistribution,
+    workers: Int = 2,
+    deadlineS: Double = 0.3,
+    fusion: FusionSettings = FusionSettings()
+):
+  require(
+    everyS > 0 && fovRad > 0 && fovRad < math.Pi && farthestM > 0 && detection >= 0 && detection <= 1 &&
+      bearingSdRad > 0 && rangeBias > 0 && rangeSd > 0 && workers > 0 && deadlineS > 0,
+    s"a sensor takes pictures, sees less than 180° and says how wrong it may be: $this"
+  )
+
+  /** What comes of a picture, if the opponent is found in it.
+    *
+    * @param axisRad
+    *   where the camera looks, from north to the east
+    * @param ownNed
+    *   and the opponent's place at the exposure, m
+    * @param found
+    *   and `bearing`, `range`: three numbers evenly drawn from 0 to 1
+    */
+  def measured(
+      at: Instant,
+      axisRad: Double,
+      ownNed: Vector3,
+      opponentNed: Vector3,
+      found: Double,
+      bearing: Double,
+      range: Double
+  ): Option[Measurement] =
+    val way      = opponentNed - ownNed
+    val distance = way.norm
+    val off      = math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
+    Option.when(math.abs(off) < fovRad / 2 && distance <= farthestM && distance > 0 && found < detection):
+      val seen = distance * math.max(0.1, rangeBias + rangeBias * rangeSd * normal(range))
+      PolarMeasurement(
+        Radians(off + bearingSdRad * normal(bearing)),
+        Radians(StrictMath.asin(-way.z / distance)),
+        Metres(seen),
+        (azimuth = Radians(bearingSdRad), elevation = Radians(bearingSdRad), range = Metres(seen * rangeSd))
+      ).seenFrom(
+        at,
+        ownNed,
+        Quaternion(StrictMath.cos(axisRad / 2), 0, 0, StrictMath.sin(axisRad / 2))
+      )
+
+  private def normal(even: Double) = NormalQuantile(even.max(1e-9).min(1 - 1e-9))

@@ -1,0 +1,44 @@
+package skein.measure
+
+import skein.identify.{Detected, Seeing}
+import skein.record.Recording
+import skein.scene.Placement
+import skein.scenario.{Equipment, Scenarios}
+import skein.units.*
+
+/** What a recording tells of its scenario's eyes, beside the truth: by the readings of who was looked for. */
+object RecordedSeeing:
+
+  /** One for each eye that saw anything through a camera of its scenario's. */
+  def of(recording: Recording)(using Scenarios): Vector[Seeing] =
+    val summary = FlightSummary.of(recording)
+    for
+      seen     <- summary.seeing
+      scenario <- summary.scenario.toVector
+      case camera: Equipment.Camera <- scenario.equipment
+      if camera.vehicle == seen.eye.vehicle && camera.name == seen.eye.camera
+      target <- summary.tracks.find(_.vehicle == seen.eye.target).toVector
+    yield
+      val across = StrictMath.tan(StrictMath.toRadians(camera.fovDeg) / 2)
+      val upward = across * camera.height / camera.width
+      val own    = recording.readings.filter(_.vehicle == seen.eye.vehicle).map(_.state)
+      val inView = own.count: state =>
+        val there =
+          Placement(state.value.positionNed, state.value.orientation).inside(target.at(state.validAt))
+        there.x > 0 && math.abs(there.y) < across * there.x && math.abs(there.z) < upward * there.x
+      Seeing(
+        seen.eye.every.toSeconds,
+        StrictMath.toRadians(camera.fovDeg),
+        seen.eye.workers,
+        seen.eye.deadline.toSeconds,
+        seen.pictures,
+        inView.toDouble / own.size.max(1),
+        seen.sights.map: sight =>
+          val there = Placement(sight.cameraNed, sight.orientation).inside(sight.trueNed)
+          Detected(
+            sight.azimuthRad - StrictMath.atan2(there.y, there.x),
+            sight.rangeM,
+            there.norm,
+            sight.tookMs
+          )
+      )

@@ -1,0 +1,77 @@
+package skein.settings
+
+import com.typesafe.config.ConfigException
+import scala.jdk.CollectionConverters.*
+import skein.fusion.SensorModel
+import skein.identify.SensorFit
+import skein.signal.LatencyDistribution
+
+/** A fitted [[SensorModel]] as a HOCON file: `skein.sensor`, with where it is from. */
+object SensorFile:
+
+  /** The text of a file.
+    *
+    * @param recordings
+    *   it was fitted to
+    */
+  def render(fit: SensorFit, recordings: Vector[String]): String =
+    import fit.model
+    val fitted = fit.fitted.map: parameter =>
+      val bound = if parameter.atBound then "  # at its bound" else ""
+      s"  ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+    s"""# What a pursuer that sees by a camera alone knows of its evader, fitted by `skein identify`.
+       |# least and most: 95 % intervals, as if detections were independent.
+       |skein.sensor {
+       |${fitted.mkString("\n")}
+       |  every-s = ${number(model.everyS)}
+       |  fov-deg = ${number(StrictMath.toDegrees(model.fovRad))}
+       |  farthest-m = ${number(model.farthestM)}
+       |  workers = ${model.workers}
+       |  deadline-s = ${number(model.deadlineS)}
+       |  # Quantiles, evenly spread from the least to the largest.
+       |  takes-ms = [${quantiles(model.takes).map(number).mkString(", ")}]
+       |  pictures = ${fit.pictures}
+       |  detections = ${fit.detections}
+       |  recordings = [
+       |${recordings.map("    " + com.typesafe.config.ConfigUtil.quoteString(_)).mkString("\n")}
+       |  ]
+       |}
+       |""".stripMargin
+
+  /** Reads a file.
+    *
+    * @return
+    *   or what is wrong
+    */
+  def read(path: String): Either[String, SensorModel] = TextFile.read(path).flatMap(parse(_, path))
+
+  private[skein] def parse(text: String, path: String): Either[String, SensorModel] =
+    try
+      for file <- HoconFile.parse(text, path)
+      yield
+        val section              = file.resolve().getConfig("skein.sensor")
+        def fitted(name: String) = section.getDouble(s"$name.value")
+        SensorModel(
+          section.getDouble("every-s"),
+          StrictMath.toRadians(section.getDouble("fov-deg")),
+          section.getDouble("farthest-m"),
+          fitted("detection"),
+          StrictMath.toRadians(fitted("bearing-sd-deg")),
+          fitted("range-bias"),
+          fitted("range-sd"),
+          LatencyDistribution.ofSamples(
+            section.getDoubleList("takes-ms").asScala.map(_.doubleValue).toVector
+          ),
+          section.getInt("workers"),
+          section.getDouble("deadline-s")
+        )
+    catch
+      case wrong: ConfigException          => Left(s"$path is no sensor's file: ${wrong.getMessage}")
+      case wrong: IllegalArgumentException => Left(s"$path: ${wrong.getMessage}")
+
+  private def quantiles(takes: LatencyDistribution): Vector[Double] = takes match
+    case LatencyDistribution.Quantiles(_, ms) => ms
+    case other                                => Vector(0.0, 1.0).map(other.quantile(_).toMillis)
+
+  private def number(value: Double): String =
+    BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString

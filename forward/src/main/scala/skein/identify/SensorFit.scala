@@ -1,0 +1,121 @@
+package skein.identify
+
+import skein.fusion.SensorModel
+import skein.signal.LatencyDistribution
+
+/** One detection beside the truth.
+  *
+  * @param bearingErrorRad
+  *   measured less true azimuth
+  * @param rangeM
+  *   measured
+  * @param trueRangeM
+  *   from the camera
+  * @param tookMs
+  *   recognition
+  */
+final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: Double, tookMs: Double)
+
+/** What an eye did in a flight.
+  *
+  * @param everyS
+  *   between pictures, as asked for
+  * @param fovRad
+  *   horizontal
+  * @param pictures
+  *   that were searched
+  * @param inView
+  *   share of the flight in which the target was in view, by where both truly were
+  */
+final case class Seeing(
+    everyS: Double,
+    fovRad: Double,
+    workers: Int,
+    deadlineS: Double,
+    pictures: Int,
+    inView: Double,
+    detections: Vector[Detected]
+)
+
+/** A [[skein.fusion.SensorModel]] fitted to what a recogniser did: moments of its errors, the frequency of detection in
+  * view, and recognition's times as they were. Deviations and the frequency with their 95 % intervals, as if detections
+  * were independent; what of the error lasts, as a range that is wrong in the same way for as long as the same side is
+  * seen, they do not show.
+  */
+final case class SensorFit(model: SensorModel, pictures: Int, detections: Int, fitted: Vector[Fitted])
+
+object SensorFit:
+  /** Fewer tell too little of deviations. */
+  val LeastDetections = 30
+
+  /** @return
+    *   or what is lacking
+    */
+  def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
+    val all = seeing.flatMap(_.detections)
+    if all.sizeIs < LeastDetections then
+      Left(s"expected at least $LeastDetections detections to identify a sensor, came ${all.size}")
+    else if seeing.map(one => (one.everyS, one.fovRad, one.workers, one.deadlineS)).distinct.sizeIs > 1 then
+      Left("expected flights with one kind of eye, came several")
+    else Right(fit(seeing, all))
+
+  private def fit(seeing: Vector[Seeing], all: Vector[Detected]): SensorFit =
+    val n        = all.size
+    val bearing  = math.sqrt(all.map(one => one.bearingErrorRad * one.bearingErrorRad).sum / n)
+    val ratios   = all.map(one => one.rangeM / one.trueRangeM)
+    val bias     = ratios.sum / n
+    val rangeSd  = math.sqrt(ratios.map(ratio => (ratio - bias) * (ratio - bias)).sum / (n - 1)) / bias
+    val inView   = seeing.map(one => one.pictures * one.inView).sum
+    val detected = if inView > 0 then (n / inView).min(1) else 1.0
+    val one      = seeing.head
+    val model    = SensorModel(
+      one.everyS,
+      one.fovRad,
+      all.map(_.trueRangeM).max,
+      detected,
+      bearing,
+      bias,
+      rangeSd,
+      LatencyDistribution.ofSamples(takes(all.map(_.tookMs).sorted)),
+      one.workers,
+      one.deadlineS
+    )
+    val spread        = Z95 / math.sqrt(2.0 * n)
+    val (least, most) = wilson(detected, inView)
+    val ofBias        = Z95 * rangeSd * bias / math.sqrt(n.toDouble)
+    SensorFit(
+      model,
+      seeing.map(_.pictures).sum,
+      n,
+      Vector(
+        Fitted("detection", detected, least, most, atBound = detected == 1),
+        Fitted(
+          "bearing-sd-deg",
+          deg(bearing),
+          deg(bearing * (1 - spread)),
+          deg(bearing * (1 + spread)),
+          false
+        ),
+        Fitted("range-bias", bias, bias - ofBias, bias + ofBias, false),
+        Fitted("range-sd", rangeSd, rangeSd * (1 - spread), rangeSd * (1 + spread), false)
+      )
+    )
+
+  /** At most so many quantiles are kept. */
+  private def takes(sorted: Vector[Double]): Vector[Double] =
+    if sorted.sizeIs <= Quantiles then sorted
+    else
+      Vector.tabulate(Quantiles)(i => sorted((i.toDouble / (Quantiles - 1) * (sorted.size - 1)).round.toInt))
+
+  private val Quantiles = 41
+
+  private val Z95 = 1.959964
+
+  private def deg(rad: Double) = StrictMath.toDegrees(rad)
+
+  /** Wilson's interval of a frequency. */
+  private def wilson(share: Double, n: Double): (Double, Double) =
+    val z2     = Z95 * Z95
+    val middle = (share + z2 / (2 * n)) / (1 + z2 / n)
+    val half   = Z95 / (1 + z2 / n) * math.sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    (middle - half, middle + half)

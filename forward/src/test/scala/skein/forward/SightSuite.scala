@@ -1,0 +1,117 @@
+package skein.forward
+
+import skein.fusion.SensorModel
+import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.signal.{LatencyDistribution, SplitMix64}
+import skein.simd.WorldRandom
+import skein.units.*
+
+/** Pursuers that know of their evaders by a sensor's model alone. */
+class SightSuite extends munit.FunSuite:
+  private val exact = SensorModel(
+    everyS = 0.02,
+    fovRad = 3.1,
+    farthestM = 1000,
+    detection = 1,
+    bearingSdRad = 1e-6,
+    rangeBias = 1,
+    rangeSd = 1e-6,
+    takes = LatencyDistribution.Constant(Span.Zero)
+  )
+  private val camera = exact.copy(
+    everyS = 0.1,
+    fovRad = StrictMath.toRadians(100),
+    farthestM = 40,
+    detection = 0.95,
+    bearingSdRad = 0.002,
+    rangeSd = 0.03,
+    takes = LatencyDistribution.Uniform(Span.ofMillis(15), Span.ofMillis(120))
+  )
+
+  private def duel(eye: Option[SensorModel]) =
+    val paper = Duel.paper
+    paper.copy(pursuer = paper.pursuer.copy(eye = eye))
+
+  private def flown(
+      eye: Option[SensorModel],
+      timing: LoopTiming,
+      link: Delays = DelayTable.none,
+      seed: Int = 1
+  ) =
+    Rollout(duel(eye), timing, link, Reduced.AirSim).fly(WorldRandom.key(seed, 0, 0))
+
+  private def last10s(eye: Option[SensorModel], timing: LoopTiming, link: Delays) =
+    (1 to 12).map(flown(eye, timing, link, _).meanLast10sM).sum / 12
+
+  private val predictive = LoopTiming.Predictive(predictor = Reduced.AirSim.predictor)
+
+  for timing <- Seq(LoopTiming.Paused(), LoopTiming.stream(0.1), predictive) do
+    test(s"${timing.productPrefix}: who sees exactly and at once flies as one that is told"):
+      val told = flown(None, timing)
+      val seen = flown(Some(exact), timing)
+      assertEqualsDouble(seen.meanLast10sM, told.meanLast10sM, 0.05 * told.meanLast10sM)
+      assertEquals(seen, flown(Some(exact), timing))
+
+  test("what is not in view, too far or not detected is not found; errors are as wide as told"):
+    val random                                                       = SplitMix64(3)
+    val own                                                          = Vector3(3, -2, -20)
+    def seen(model: SensorModel, azimuthRad: Double, rangeM: Double) = model.measured(
+      Instant.Epoch,
+      0.4,
+      own,
+      own + Vector3(StrictMath.cos(0.4 + azimuthRad), StrictMath.sin(0.4 + azimuthRad), 0) * rangeM,
+      random.nextDouble(),
+      random.nextDouble(),
+      random.nextDouble()
+    )
+    assertEquals(seen(exact.copy(fovRad = 1), 0.51, 10), None)
+    assert(seen(exact.copy(fovRad = 1), 0.49, 10).isDefined)
+    assertEquals(seen(exact.copy(farthestM = 9), 0, 10), None)
+    val model = camera.copy(detection = 0.7, bearingSdRad = 0.01, rangeBias = 1.1, rangeSd = 0.05)
+    val found = Vector.fill(4000)(seen(model, 0.2, 10)).flatten
+    assertEqualsDouble(found.size / 4000.0, 0.7, 0.03)
+    val polar = found.map: measured =>
+      val way = measured.positionNed - own
+      (math.IEEEremainder(StrictMath.atan2(way.y, way.x) - 0.6, 2 * math.Pi), way.norm)
+    def spread(values: Vector[Double]) =
+      val mean = values.sum / values.size
+      (mean, math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size))
+    val ((bearing, bearingSd), (range, rangeSd)) = (spread(polar.map(_._1)), spread(polar.map(_._2)))
+    assertEqualsDouble(bearing, 0, 0.001)
+    assertEqualsDouble(bearingSd, 0.01, 0.0005)
+    assertEqualsDouble(range, 11, 0.04)
+    assertEqualsDouble(rangeSd, 0.55, 0.03)
+
+  test("seeing costs: the later and the less, the farther off"):
+    val stream = LoopTiming.stream(0.1)
+    val told   = last10s(None, stream, DelayTable.direct)
+    val sees   = last10s(Some(camera), stream, DelayTable.direct)
+    val slowly =
+      last10s(
+        Some(camera.copy(takes = LatencyDistribution.Constant(Span.ofMillis(290)))),
+        stream,
+        DelayTable.direct
+      )
+    assert(clue(told) < clue(sees) && sees < clue(slowly))
+    // What is late is not used: nothing is ever known but where it started.
+    val never = last10s(Some(camera.copy(deadlineS = 0.01)), stream, DelayTable.direct)
+    assert(clue(never) > slowly)
+
+  test("a batch flies eyes by the scalar engine, says so, and comes to the same"):
+    val batch             = DuelBatch(duel(Some(camera)), predictive, Reduced.AirSim, threads = 1)
+    val (pursuer, evader) = (PaperPursuer(), PaperEvader())
+    assertEquals(
+      batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn)),
+      "scalar: the lanes know no eyes"
+    )
+    val worlds = new DuelWorlds:
+      def size: Int                   = 3
+      def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
+      def link(world: Int): Delays    = DelayTable.vpn
+      def pursuer(world: Int): Policy = PaperPursuer()
+      def evader(world: Int): Policy  = PaperEvader()
+    val outcomes = batch.fly(worlds)
+    for world <- 0 until 3 do
+      val alone = flown(Some(camera), predictive, DelayTable.vpn, world)
+      assertEquals(outcomes.meanLast10sM(world), alone.meanLast10sM.toFloat)

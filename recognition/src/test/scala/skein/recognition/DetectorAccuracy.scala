@@ -1,0 +1,118 @@
+package skein.recognition
+
+import java.nio.ByteBuffer
+import skein.units.*
+
+/** What a detector found in pictures of a range.
+  *
+  * @param plain
+  *   pictures with a quadrotor that should be found
+  * @param bearingsDeg
+  *   errors of what was found, ascending
+  * @param ranges
+  *   measured over true range, ascending
+  * @param inDeviations
+  *   errors of the range over what the measurement says of itself, ascending
+  */
+final case class DetectorAccuracy(
+    plain: Int,
+    bearingsDeg: Vector[Double],
+    ranges: Vector[Double],
+    inDeviations: Vector[Double]
+):
+  def recall: Double = bearingsDeg.size.toDouble / plain
+
+object DetectorAccuracy:
+  /** Of the camera of `blind-pursuit`. */
+  val Camera: Pinhole = Pinhole(800, 600, Radians(StrictMath.toRadians(100)))
+
+  /** Closer to a quadrotor's middle than this, or than half its box, a box is of it; px. */
+  private val NearPx = 8.0
+
+  final case class Result(
+      byRange: Vector[((Double, Double), DetectorAccuracy)],
+      falselyFound: Int,
+      pictures: Int
+  ):
+    def found: Int        = byRange.map(_._2.bearingsDeg.size).sum
+    def recall: Double    = found.toDouble / byRange.map(_._2.plain).sum
+    def precision: Double = found.toDouble / (found + falselyFound)
+
+  /** @param ranges
+    *   nearest and farthest of each row, m
+    * @param count
+    *   pictures of each row
+    */
+  def measured(ranges: Seq[(Double, Double)], count: Int, seed: Long): Result =
+    val detector = OnnxDetector(
+      VehicleDetector.model.fold(sys.error, identity),
+      InputForm(Camera.width / 2, Camera.height / 2)
+    )
+    val told     = VehicleDetector(Camera, detector, VehicleDetector.Looks.Quadrotor)
+    val pictures = DronePictures(Camera, seed)
+    var falsely  = 0
+    val rows     = ranges.toVector.map: range =>
+      val seen = Vector.fill(count)(pictures.next(range)).map: picture =>
+        val boxes =
+          detector.find(Camera.width, Camera.height, ByteBuffer.wrap(picture.bgr)).fold(sys.error, identity)
+        val (right, wrong) = boxes.partition(isOf(picture, _))
+        falsely += wrong.size + (right.size - 1).max(0)
+        (picture, right.headOption)
+      val plain = seen.filter(_._1.isPlain)
+      val polar =
+        for
+          case (picture, Some(box)) <- plain
+          at <- picture.positionFrd
+        yield (at, told.polar(box))
+      range -> DetectorAccuracy(
+        plain.size,
+        polar.map((at, seen) => StrictMath.toDegrees(angle(at, seen))).sorted,
+        polar.map((at, seen) => seen.range.value / at.norm).sorted,
+        polar.map((at, seen) => (seen.range.value - at.norm) / seen.deviation.range.value).sorted
+      )
+    Result(rows, falsely, ranges.size * count)
+
+  private def isOf(picture: DronePicture, box: Box): Boolean = picture.box.exists: whole =>
+    val x = (box.left + box.right) / 2 - (whole.left + whole.right) / 2.0
+    val y = (box.top + box.bottom) / 2 - (whole.top + whole.bottom) / 2.0
+    math.abs(x) < NearPx.max((whole.right - whole.left) / 2.0) &&
+    math.abs(y) < NearPx.max((whole.bottom - whole.top) / 2.0)
+
+  private def angle(at: Vector3, seen: skein.fusion.PolarMeasurement): Double =
+    import StrictMath.{cos, sin}
+    val (az, el) = (seen.azimuth.value, seen.elevation.value)
+    val looked   = Vector3(cos(el) * cos(az), cos(el) * sin(az), -sin(el))
+    val true1    = at * (1 / at.norm)
+    2 * StrictMath.asin((looked - true1).norm / 2)
+
+/** How well the shipped detector sees, by range, and how long it takes: `recognition/Test/runMain
+  * skein.recognition.measureDetector COUNT SEED`. Seed 1 drew what it was taught by.
+  */
+@main def measureDetector(count: Int, seed: Long): Unit =
+  val ranges = Seq((1.5, 3.0), (3.0, 6.0), (6.0, 10.0), (10.0, 15.0), (15.0, 20.0), (20.0, 30.0))
+  val result = DetectorAccuracy.measured(ranges, count, seed)
+  def at(sorted: Vector[Double], q: Double) =
+    if sorted.isEmpty then Double.NaN else sorted((q * (sorted.size - 1)).round.toInt)
+  println(
+    "range, m     plain  recall  bearing, °: median  95 %   measured / true range: 16 %  median  84 %   deviations: 16 %  84 %"
+  )
+  for ((from, to), row) <- result.byRange do
+    println(
+      f"$from%4.1f to $to%4.1f ${row.plain}%6d ${row.recall}%7.3f ${at(row.bearingsDeg, 0.5)}%19.2f ${at(row.bearingsDeg, 0.95)}%5.2f ${at(row.ranges, 0.16)}%28.3f ${at(row.ranges, 0.5)}%7.3f ${at(row.ranges, 0.84)}%5.3f ${at(row.inDeviations, 0.16)}%18.2f ${at(row.inDeviations, 0.84)}%5.2f"
+    )
+  println(
+    f"of ${result.pictures} pictures: recall ${result.recall}%.3f, precision ${result.precision}%.3f, ${result.falselyFound} boxes where nothing is"
+  )
+  val camera   = DetectorAccuracy.Camera
+  val detector = VehicleDetector.shipped(camera).fold(sys.error, identity)
+  val pictures = DronePictures(camera, seed)
+  val some     = Vector.fill(32)(ByteBuffer.wrap(pictures.next().bgr))
+  val times    =
+    for _ <- 1 to 12; picture <- some yield
+      val began = System.nanoTime()
+      detector.find(camera.width, camera.height, picture).fold(sys.error, identity): Unit
+      (System.nanoTime() - began) * 1e-6
+  val warm = times.drop(64).toVector.sorted
+  println(
+    f"time of one ${camera.width} × ${camera.height} picture, one thread: median ${at(warm, 0.5)}%.1f ms, 99 %% ${at(warm, 0.99)}%.1f ms"
+  )

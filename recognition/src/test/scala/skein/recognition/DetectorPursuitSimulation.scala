@@ -1,0 +1,32 @@
+package skein.recognition
+
+import scala.concurrent.duration.*
+import skein.flight.VirtualFlights
+import skein.loop.{LoopKind, Outcome}
+import skein.measure.FlightSummary
+import skein.scenario.{ScenarioKind, Scenarios}
+import skein.settings.FlySettings
+import skein.signal.LatencyProfile
+import skein.units.*
+
+/** A whole flight whose pursuer knows of its evader by the shipped detector alone, in virtual time. */
+class DetectorPursuitSimulation extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+
+  private given Scenarios = Scenarios(Vector(ScenarioKind(BlindPursuit())))
+
+  test("the detector finds an evader without tags, and the pursuer comes near"):
+    val settings = FlySettings(
+      List(LoopKind.Predictive),
+      List(LatencyProfile.direct),
+      Span.ofSeconds(8),
+      Span.ofMillis(100),
+      seed = 3,
+      BlindPursuit(recogniser = "detector")
+    )
+    val flown = VirtualFlights.fly(settings, settings.plans.last).fold(fail(_), identity)
+    assertEquals(flown.landed.outcome, Outcome.Completed)
+    val summary = FlightSummary.of(flown.recorder.recording)
+    val seen    = summary.seeing.headOption.getOrElse(fail("nothing was seen"))
+    assert(clue(seen.sights.size) > 0.6 * clue(seen.pictures))
+    assert(clue(summary.result.flatMap(_.measured(1).value)).exists(_ < 12))

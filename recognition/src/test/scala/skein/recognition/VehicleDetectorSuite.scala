@@ -1,0 +1,49 @@
+package skein.recognition
+
+import java.nio.ByteBuffer
+import java.nio.file.Path
+import scala.concurrent.duration.*
+
+/** The shipped detector on pictures of a seed that it was not taught by. `measureDetector` has more of them. */
+class VehicleDetectorSuite extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+
+  private val camera = DetectorAccuracy.Camera
+
+  test("quadrotors at 2 to 15 m are found, hardly anything else is, and errors are as told"):
+    val seed   = 20261123L
+    val result = DetectorAccuracy.measured(Seq((2.0, 6.0), (6.0, 15.0)), count = 25, seed)
+    assert(result.recall > 0.85, s"seed $seed: recall ${result.recall}")
+    assert(result.precision > 0.9, s"seed $seed: precision ${result.precision}")
+    // The nearer, the larger, and the less is the box's middle the quadrotor's.
+    for ((range, row), mostDeg) <- result.byRange.zip(Seq(1.0, 0.4)) do
+      val median = row.bearingsDeg(row.bearingsDeg.size / 2)
+      assert(median < mostDeg, s"seed $seed: $range m: $median°")
+      val within = row.inDeviations.count(math.abs(_) < 2).toDouble / row.inDeviations.size
+      assert(within > 0.85, s"seed $seed: $range m: ${row.inDeviations}")
+
+  test(
+    "a box in the middle is ahead, one to the right and above is there, and what the border cuts is less certain"
+  ):
+    val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
+    val ahead    = detector.polar(Box(380, 290, 420, 310, 0, 1))
+    assertEqualsDouble(ahead.azimuth.value, 0, 1e-9)
+    assertEqualsDouble(ahead.elevation.value, 0, 1e-9)
+    val aside = detector.polar(Box(580, 190, 620, 210, 0, 1))
+    assert(aside.azimuth.value > 0.4 && aside.elevation.value > 0.2, aside)
+    val cut = detector.polar(Box(0, 290, 40, 310, 0, 1))
+    assert(cut.deviation.range.value >= cut.range.value, cut)
+
+  test("what is no picture of the camera, and what is no model, is told"):
+    val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
+    assertEquals(
+      detector.find(640, 480, ByteBuffer.allocate(640 * 480 * 3)).left.toOption,
+      Some("expected 800 × 600 pixels, came 640 × 480")
+    )
+    assertEquals(
+      BlindPursuit(recogniser = "missing.onnx").mistakes,
+      Seq(
+        "recogniser: expected tags, detector or an ONNX file: missing.onnx: expected an ONNX model, there is no such file"
+      )
+    )
+    assert(VehicleDetector.load(camera, Path.of("missing.onnx")).isLeft)
