@@ -67,6 +67,7 @@ object TestGroups extends AutoPlugin {
     "skein.cli.LearnCommandSuite",
     "skein.cli.OwnFamilySuite",
     "skein.cli.SearchCommandSuite",
+    "skein.cli.ShippedProgramLiveSuite",
     "skein.cli.TortureQuestionSuite",
     "skein.loop.planning.PlanSuite",
     "skein.loop.planning.PlanWorkersLiveSuite",

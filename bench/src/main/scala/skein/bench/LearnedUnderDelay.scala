@@ -76,7 +76,7 @@ object LearnedUnderDelay:
       case Left(_)     => (question(side, loop, link), LearnState())
     val setup = asked.setup.fold(sys.error, identity)
     val cpu   = ProcessHandle.current.info.totalCpuDuration
-    val state = LearnRun(setup, setup.batch(2), Some(folder), () => System.nanoTime())
+    val state = LearnRun(setup, setup.evaluator(setup.batch(2)), Some(folder), () => System.nanoTime())
       .run(from, 2, () => false)(state =>
         if state.rounds % 10 == 0 then
           Console.err.println(

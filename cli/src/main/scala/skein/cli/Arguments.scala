@@ -1,5 +1,7 @@
 package skein.cli
 
+import java.util.Locale
+import mainargs.Flag
 import skein.link.Address
 import skein.settings.{ConfigKeys, TextFile}
 import skein.signal.LatencyProfile
@@ -25,6 +27,28 @@ private[cli] object Arguments:
   def all[A, B](each: Seq[A])(read: A => Either[String, B]): Either[String, Seq[B]] =
     val (wrong, right) = each.map(read).partitionMap(identity)
     Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
+
+  /** Options that were given, also those of a group of options. One that has a value of its own is not told from it. */
+  def told(options: Product): Set[String] =
+    options.productElementNames.zip(options.productIterator).toSet.flatMap:
+      case (name, Some(_))         => Set(flag(name))
+      case (name, several: Seq[?]) => Option.when(several.nonEmpty)(flag(name)).toSet
+      case (name, switch: Flag)    => Option.when(switch.value)(flag(name)).toSet
+      case (_, None)               => Set.empty
+      case (_, group: Product)     => told(group)
+      case _                       => Set.empty
+
+  private def flag(name: String) =
+    "--" + "[A-Z]".r.replaceAllIn(name, letter => "-" + letter.matched.toLowerCase(Locale.ROOT))
+
+  /** All but these is taken from the folder that is gone on with. */
+  def resumed(options: Product, may: Set[String], what: String): Either[String, Unit] =
+    val others = told(options) -- may - "--resume"
+    Either.cond(
+      others.isEmpty,
+      (),
+      s"--resume: everything but $what is taken from the folder; expected no other option, came ${others.toSeq.sorted.mkString(", ")}"
+    )
 
   def latency(text: String): Either[String, LatencyProfile] =
     LatencyProfile.parse(text, TextFile.read).left.map(_.message)

@@ -19,7 +19,7 @@ final case class ClusterCommandOptions(
 object ClusterCommand
     extends OptionsCommand[ClusterCommandOptions](
       "cluster",
-      "makes certificates for searches on several machines",
+      "makes certificates for searches and solvers on several machines",
       ParserForClass[ClusterCommandOptions]
     ):
 

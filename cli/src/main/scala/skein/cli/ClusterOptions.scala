@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.nio.file.Path
-import mainargs.{ParserForClass, arg}
+import mainargs.{Flag, ParserForClass, arg}
 import skein.cluster.{Endpoint, Tls}
 import skein.search.SearchBlock
 
@@ -18,6 +18,10 @@ final case class ClusterOptions(
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
+      "gives this program, with your own classes, to workers of another that accept it (./skein worker --accept-jars)"
+    )
+    ship: Flag,
+    @arg(doc =
       "port, or HOST:PORT, at which Prometheus reads how it goes, of this machine alone unless HOST says otherwise; 0 for any that is free"
     )
     metrics: Option[String]
@@ -28,9 +32,9 @@ final case class ClusterOptions(
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(
-        block.isEmpty && tls.isEmpty && metrics.isEmpty,
+        block.isEmpty && tls.isEmpty && metrics.isEmpty && !ship.value,
         None,
-        "--block, --tls, --metrics: expected with --workers or --cluster"
+        "--block, --tls, --ship, --metrics: expected with --workers or --cluster"
       )
     else
       for
@@ -44,10 +48,15 @@ final case class ClusterOptions(
           (),
           s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
         )
+        _ <- Either.cond(
+          !ship.value || cluster.isDefined,
+          (),
+          "--ship: expected with --cluster; workers on this machine have this program already"
+        )
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
         seen   <- metrics.fold(Right(None))(portOrEndpoint(_).map(Some(_)))
-      yield Some(Checked(workers.getOrElse(0), listen, block, tls, seen))
+      yield Some(Checked(workers.getOrElse(0), listen, block, tls, ship.value, seen))
 
 object ClusterOptions:
   given ParserForClass[ClusterOptions] = ParserForClass[ClusterOptions]
@@ -57,6 +66,7 @@ object ClusterOptions:
       listen: Endpoint,
       block: Option[Int],
       tls: Option[Tls],
+      ship: Boolean,
       metrics: Option[Endpoint]
   )
 

@@ -33,7 +33,8 @@ final case class DecideOptions(
     )
     broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
-    scenario: Option[String]
+    scenario: Option[String],
+    secured: SolverSecurity
 )
 
 final class DecideCommand(using scenarios: Scenarios)
@@ -49,12 +50,13 @@ final class DecideCommand(using scenarios: Scenarios)
       _  <- options.scenario.fold(Right(()))(name =>
         scenarios.kind(name).left.map("--scenario: " + _).map(_ => ())
       )
-      _ <- at match
+      secured <- options.secured.checked(Some(at))
+      _       <- at match
         case SolverChoice.Kafka(at, prefix) =>
-          served(options)(kafka(KafkaTopics(at, prefix), options.broker.value))
+          served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka), options.broker.value))
         case _ if options.broker.value =>
           Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
-        case SolverChoice.Tcp(address) => served(options)(tcp(address))
+        case SolverChoice.Tcp(address) => served(options)(tcp(address, secured))
         case SolverChoice.Link(_)      =>
           Left(
             s"--at: expected tcp://HOST:PORT, such as tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
@@ -66,23 +68,20 @@ final class DecideCommand(using scenarios: Scenarios)
 
   private given ExecutionContext = ExecutionContext.global
 
-  private def tcp(address: Address): Serving = desk =>
-    if !Endpoint(address.host, address.port).isLoopback then
-      Left(
-        s"--at: expected an address of this machine, such as tcp://127.0.0.1:7400, since whoever reaches it may ask, came $address; " +
-          "flights of other machines come through a tunnel, such as ssh -L 7400:127.0.0.1:7400"
-      )
-    else
-      try
-        val server = Edge.await(SolverServer.start(address, TcpTransport(), desk))
-        Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
-        Right(() => server.close())
-      catch case error: TransportError => Left(error.getMessage)
+  private def tcp(address: Address, secured: SolverSecurity.Checked): Serving = desk =>
+    try
+      val transport = TcpTransport(certificates = secured.certificates)
+      val server    = Edge.await(SolverServer.start(address, transport, desk))
+      Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
+      Right(() => server.close())
+    catch case error: TransportError => Left(error.getMessage)
 
   private def kafka(topics: KafkaTopics, withBroker: Boolean): Serving = desk =>
     import topics.broker as at
     def started(folder: Path): Either[String, Option[KafkaBroker]] =
       if !withBroker then Right(None)
+      else if topics.security.nonEmpty then
+        Left("--broker: the broker in this process speaks to this machine alone, without --kafka-security")
       else if !Endpoint(at.host, at.port).isLoopback || at.port == 0 then
         Left(s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, came $at")
       else

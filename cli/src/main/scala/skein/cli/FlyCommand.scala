@@ -43,6 +43,7 @@ final case class FlyOptions(
     out: Option[String],
     beside: RecordOptions,
     learning: LearnInFlight,
+    secured: SolverSecurity,
     view: ViewOptions,
     @arg(doc = Shown.Doc)
     json: Flag
@@ -74,7 +75,8 @@ final class FlyCommand(using Scenarios)
       _     <- options.beside.checked(clock)
       _     <-
         if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
-      _ <- Either.cond(
+      secured <- options.secured.checked(settings.solver)
+      _       <- Either.cond(
         settings.solver.isEmpty || learning.isEmpty,
         (),
         "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
@@ -108,7 +110,8 @@ final class FlyCommand(using Scenarios)
                 out,
                 Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.sights)),
                 sinks,
-                requests
+                requests,
+                secured
               ))
           yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), options.twins, out)))
         case ClockKind.Virtual =>
@@ -162,7 +165,8 @@ final class FlyCommand(using Scenarios)
       out: Path,
       shown: Option[OnShow],
       sinks: RecordOptions.Sinks,
-      requests: OutsideRequests
+      requests: OutsideRequests,
+      secured: SolverSecurity.Checked
   ): Either[String, Flown] =
     given system: ActorSystem = ActorSystem("skein")
     val assembler             = FlightAssembler(
@@ -172,7 +176,7 @@ final class FlyCommand(using Scenarios)
       simulator,
       tell = tell,
       calledOff = requests.calledOff,
-      solvers = SolverOptions.reached(settings),
+      solvers = SolverOptions.reached(settings, secured),
       isWatched = shown.isDefined
     )
     try

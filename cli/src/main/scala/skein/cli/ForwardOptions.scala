@@ -37,9 +37,6 @@ final case class ForwardOptions(
     @arg(doc = "that fly at once; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
-  def isEmpty: Boolean =
-    Seq(objective, loop, plant, altitude, eye, opponent, duration, seed).forall(_.isEmpty)
-
   /** @param otherwise
     *   how long an episode is, unless it is told
     */

@@ -103,33 +103,13 @@ final class LearnCommand(program: String)(using Scenarios)
   private type Begun = (Path, LearnQuestion, LearnState)
 
   private def resume(options: LearnOptions, folder: String): Either[String, Begun] =
-    import options.*
-    val others = Seq(
-      algorithm,
-      scenario,
-      side,
-      link,
-      period,
-      steps,
-      network,
-      environments,
-      lesson,
-      start,
-      turnRate,
-      learningRate,
-      discount,
-      batch,
-      updatesPerStep,
-      episodes,
-      fresh,
-      out
+    val may = Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set(
+      "--threads",
+      "--flights",
+      "--json"
     )
     for
-      _ <- Either.cond(
-        others.forall(_.isEmpty) && forward.isEmpty,
-        (),
-        "--resume: everything but --threads, --flights and who measures is taken from the folder; expected no other option"
-      )
+      _    <- Arguments.resumed(options, may, "--threads, --flights and who judges")
       file <- LearnFile.read(Path.of(folder)).left.map("--resume: " + _)
     yield (Path.of(folder), file.question, file.state)
 
@@ -157,7 +137,6 @@ final class LearnCommand(program: String)(using Scenarios)
       onShow: LearnOnShow
   ): Either[String, Unit] =
     import setup.question
-    val batch = setup.batch(threads)
     shown.say(
       s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} against ${setup.opponent.label}
          |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
@@ -169,7 +148,8 @@ final class LearnCommand(program: String)(using Scenarios)
     Edge.untilInterrupted(() => stopped = true):
       val startedAt = System.nanoTime()
       val line      = ProgressLine(setup.rounds, Console.err, from.rounds)
-      val learned   = LearnRun(setup, batch, Some(folder), () => System.nanoTime())
+      val judge     = measure.judge(Judge.Candidates)
+      val learned   = LearnRun(setup, judge, Some(folder), () => System.nanoTime(), measure.isElsewhere)
         .run(from, threads, () => stopped): state =>
           line.show(state.rounds, progress(setup, state))
           onShow.step(state, progress(setup, state))
@@ -235,7 +215,12 @@ final class LearnCommand(program: String)(using Scenarios)
       threads: Int,
       shown: Shown
   )(body: Measuring => Either[String, Unit]): Either[String, Unit] = options match
-    case None => body(Measuring(LearnWork.judges(setup, threads), LearnCommand.flown(setup.question, _, _)))
+    case None =>
+      body(Measuring(
+        LearnWork.judges(setup, threads),
+        LearnCommand.flown(setup.question, _, _),
+        isElsewhere = false
+      ))
     case Some(asked) =>
       val posed = Questions.learn(LearnWork.question(setup))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
@@ -245,9 +230,12 @@ final class LearnCommand(program: String)(using Scenarios)
           LearnWork.episodes(run),
           from,
           asked.block.getOrElse(Effort.blockEpisodes(byLanes = true, setup.conditions.vehicle)),
-          _ => wait()
+          // Learning, which goes on meanwhile, has a line of its own.
+          _ => if from != Judge.Candidates then wait()
         )
-        try body(Measuring(judge, LearnWork.distances(run, _, _)(wait()).map(_.flatten)))
+        def distances(policy: PolicyFile, count: Int) =
+          LearnWork.distances(run, policy, count)(wait()).map(_.flatten)
+        try body(Measuring(judge, distances, isElsewhere = true))
         finally line.end()
 
 object LearnCommand:
@@ -307,10 +295,13 @@ object LearnCommand:
 
   /** @param distances
     *   means of the last 10 s, m, of so many flights in virtual time with a policy, against the paper's
+    * @param isElsewhere
+    *   whether workers do it
     */
   private final case class Measuring(
       judge: Judge => Evaluator,
-      distances: (PolicyFile, Int) => Either[String, Vector[Double]]
+      distances: (PolicyFile, Int) => Either[String, Vector[Double]],
+      isElsewhere: Boolean
   )
 
   /** Means of the last 10 s, m, of flights in virtual time with a policy against the paper's, flown by this process. */

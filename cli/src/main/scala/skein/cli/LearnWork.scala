@@ -4,11 +4,13 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.{BufferUnderflowException, ByteBuffer}
 import scala.collection.immutable.ArraySeq
 import skein.cluster.{Solver, Solvers}
+import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
-import skein.scenario.Scenarios
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
+import skein.units.Span
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
 
 /** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in virtual time. */
@@ -72,16 +74,24 @@ private[cli] object LearnWork:
     * @return
     *   settings, and a plan for each flight; or why there are none
     */
-  def flights(question: LearnQuestion, policy: PolicyFile, count: Int)(using
-      Scenarios
+  def flights(
+      question: LearnQuestion,
+      policy: PolicyFile,
+      count: Int
   ): Either[String, (FlySettings, Vector[FlightPlan])] =
-    val conditions = question.conditions
-    val options    = mainargs.ParserForClass[FlightOptions].constructOrThrow(
-      Seq("--scenario", "duel", "--loop", conditions.loop, "--link", question.link) ++
-        Seq("--duration", s"${conditions.durationS}s", "--period", s"${conditions.periodMs}ms") ++
-        Seq("--altitude", conditions.altitudeM.toString, "--seed", question.seed.toString)
-    )
-    options.settings.map: settings =>
+    import question.conditions
+    for
+      loop <- LoopKind.parse(conditions.loop)
+      link <- Arguments.latency(question.link)
+    yield
+      val settings = FlySettings(
+        List(loop),
+        List(link),
+        Span.ofSeconds(conditions.durationS),
+        Span.ofMillis(conditions.periodMs),
+        question.seed,
+        PaperDuel(altitudeM = conditions.altitudeM)
+      )
       val plans =
         for plan <- settings.plansWith(ChosenPolicy(policy.name, policy)); number <- 0 until count
         yield plan.copy(seed = settings.seed + number)

@@ -1,16 +1,15 @@
 package skein.cli
 
-import com.typesafe.config.ConfigFactory
 import java.util.concurrent.Executors
 import org.apache.pekko.Done
-import org.apache.pekko.actor.{ActorSystem, BootstrapSetup}
+import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
 import org.apache.pekko.http.scaladsl.model.headers.Origin
 import org.apache.pekko.stream.scaladsl.Sink
 import scala.concurrent.{ExecutionContext, Future}
 import skein.cluster.{CoordinatorNode, Endpoint}
-import skein.view.Access
+import skein.view.{Access, HttpSystem}
 
 /** Tells how it goes to whoever asks over HTTP, `GET /metrics`: Prometheus, or a person. It has an actor system and a
   * thread of its own.
@@ -33,10 +32,9 @@ private[cli] object MetricsServer:
   ): Either[String, A] =
     val threads = Executors.newSingleThreadExecutor(Thread.ofPlatform.daemon.name("skein-metrics").factory)
     try
-      given system: ActorSystem = ActorSystem(
-        "skein-metrics",
-        BootstrapSetup(None, Some(configured), Some(ExecutionContext.fromExecutorService(threads)))
-      )
+      val few                   = "max-connections = 32\nrequest-timeout = 10s"
+      given system: ActorSystem =
+        HttpSystem("skein-metrics", ExecutionContext.fromExecutorService(threads), few)
       given ExecutionContext = ExecutionContext.parasitic
       val bound              = Http()
         .newServerAt(listen.host, listen.port)
@@ -78,21 +76,3 @@ private[cli] object MetricsServer:
       wrong => throw IllegalStateException(wrong.toString),
       identity
     )
-
-  private def configured = ConfigFactory
-    .parseString("""
-      |pekko.http.server {
-      |  max-connections = 32
-      |  idle-timeout = 60s
-      |  request-timeout = 10s
-      |  pipelining-limit = 1
-      |  server-header = ""
-      |  parsing.max-content-length = 4k
-      |  parsing.max-header-count = 64
-      |}
-      |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
-      |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
-      |pekko.loglevel = OFF
-      |pekko.stdout-loglevel = OFF
-      |""".stripMargin)
-    .withFallback(ConfigFactory.load())

@@ -96,15 +96,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
-    import options.*
-    val others =
-      Seq(family, role, method, link, period, candidates, episodes, population, fresh, scenario, out)
+    val may = Seq(options.cluster, options.view).flatMap(Arguments.told).toSet ++ Set("--threads", "--json")
     for
-      _ <- Either.cond(
-        others.forall(_.isEmpty) && set.isEmpty && vary.isEmpty && forward.isEmpty,
-        (),
-        "--resume: everything but --threads and who computes is taken from the folder; expected no other option"
-      )
+      _    <- Arguments.resumed(options, may, "--threads and who computes")
       file <- SearchFile.read(Path.of(folder)).left.map("--resume: " + _)
     yield (Path.of(folder), file.question, Some(file.state))
 

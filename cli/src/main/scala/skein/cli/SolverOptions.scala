@@ -27,14 +27,14 @@ private[cli] object SolverOptions:
     case _ => Right(())
 
   /** To every solver that a flight can name in real time. To name the build takes a while, and only they ask for it. */
-  def reached(settings: FlySettings)(using ActorSystem): Solvers =
-    if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current)
+  def reached(settings: FlySettings, secured: SolverSecurity.Checked)(using ActorSystem): Solvers =
+    if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current, secured)
 
-  private def reachedBy(build: String)(using ActorSystem): Solvers = Solvers(
+  private def reachedBy(build: String, secured: SolverSecurity.Checked)(using ActorSystem): Solvers = Solvers(
     build,
     {
-      case SolverChoice.Tcp(at)               => Right(TcpLink(TcpTransport(), at))
-      case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)))
+      case SolverChoice.Tcp(at) => Right(TcpLink(TcpTransport(certificates = secured.certificates), at))
+      case SolverChoice.Kafka(broker, prefix) => Right(KafkaLink(KafkaTopics(broker, prefix)(secured.kafka)))
       case SolverChoice.Link(_)               => Left("a link of a profile is for --clock virtual")
     }
   )

@@ -5,6 +5,7 @@ import java.time.LocalTime
 import java.time.format.DateTimeFormatter
 import mainargs.{Flag, ParserForClass, arg}
 import scala.concurrent.duration.DurationLong
+import skein.cluster.jars.{Acceptance, JarStore, Sha256}
 import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
 import skein.units.Span
@@ -23,6 +24,10 @@ final case class WorkerOptions(
     patience: String = "60s",
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
+    @arg(doc =
+      "SHA-256 of a program that is run in the place of this one if the coordinator ships it (--ship, which prints it); several with commas between"
+    )
+    acceptJars: Option[String],
     @arg(doc = "ends when its standard input does: with the process that started it")
     attached: Flag
 )
@@ -56,14 +61,42 @@ final class WorkerCommand(using Scenarios)
         (),
         s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
       )
-      node = WorkerNode(join, listen, tls, threads, Questions.solvers, patience.toNanos.nanos)(say)
-      _    = if options.attached.value then
+      programs <- accepted(options.acceptJars)
+      node = WorkerNode(
+        join,
+        listen,
+        tls,
+        threads,
+        Questions.solvers,
+        patience.toNanos.nanos,
+        programs = programs
+      )(say)
+      child = FetchedWorker(again(options), programs.store.folder)
+      stop  = () =>
+        node.stop()
+        child.stop()
+      _ = if options.attached.value then
         WorkerProcesses.endWithParent: () =>
-          node.stop()
+          stop()
           Thread.sleep(Grace)
           Runtime.getRuntime.halt(1)
-      _ <- Edge.untilInterrupted(() => node.stop(), Grace)(node.run())
+      _ <- Edge.untilInterrupted(stop, Grace)(node.run().flatMap(_.map(child.run).getOrElse(Right(()))))
     yield ()
+
+  /** What a worker is told that works in the place of this one. */
+  private def again(options: WorkerOptions): Seq[String] =
+    import options.*
+    val told =
+      Seq("--join" -> Some(join), "--listen" -> listen, "--threads" -> threads.map(_.toString)) ++
+        Seq("--patience" -> Some(patience), "--tls" -> tls)
+    "worker" +: "--attached" +: told.collect { case (flag, Some(value)) => Seq(flag, value) }.flatten
+
+  private def accepted(digests: Option[String]): Either[String, Acceptance] = digests match
+    case None       => Right(Acceptance.none)
+    case Some(text) =>
+      Arguments
+        .all(text.split(',').toSeq)(Sha256.parse(_).left.map("--accept-jars: " + _))
+        .map(accepted => Acceptance(accepted.toSet, JarStore.ofUser))
 
   private def say(line: String): Unit =
     Console.out.println(s"${LocalTime.now().format(WorkerCommand.Time)} $line")

@@ -1,16 +1,28 @@
 package skein.training
 
 import java.nio.file.Path
-import skein.lanes.DuelBatch
+import scala.concurrent.duration.Duration
+import scala.concurrent.{Await, ExecutionContext, Future, blocking}
+import scala.util.Try
 import skein.learn.{DuelTask, Learner, Training, Workers}
-import skein.optimise.Direction
+import skein.optimise.{Direction, Evaluator, RunningStats}
 
 /** Learns round by round, judges the policy now and then, and keeps its state on disk.
   *
+  * @param judge
+  *   of policies, by their parameters
   * @param folder
   *   without one, nothing is kept
+  * @param isElsewhere
+  *   whether others judge: then learning goes on meanwhile, and comes to the same
   */
-final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], nanoTime: () => Long):
+final class LearnRun(
+    setup: LearnSetup,
+    judge: Evaluator,
+    folder: Option[Path],
+    nanoTime: () => Long,
+    isElsewhere: Boolean = false
+):
   import LearnRun.*
   import setup.question
 
@@ -49,11 +61,17 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
       isStopped: () => Boolean,
       onRound: LearnState => Unit
   ): Either[String, LearnState] =
-    val training  = Training(task, learner, setup.stepsPerRound)
-    val evaluator = setup.evaluator(batch)
-    var state     = from
-    def save()    = folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
-    var savedAt   = nanoTime()
+    val training = Training(task, learner, setup.stepsPerRound)
+    var state    = from
+    var judging  = Option.empty[Judging]
+    // What is on disk or returned waits for nothing.
+    def judged(): Unit =
+      judging.foreach(policy => state = scored(state, policy))
+      judging = None
+    def save() =
+      judged()
+      folder.fold(Right(()))(LearnFile.write(_, question, state, learner))
+    var savedAt = nanoTime()
 
     var mistake: Either[String, Unit] = if from.rounds == 0 then save() else Right(())
     while mistake.isRight && state.rounds < setup.rounds && !isStopped() do
@@ -64,23 +82,40 @@ final class LearnRun(setup: LearnSetup, batch: DuelBatch, folder: Option[Path], 
           state = state.copy(rounds = state.rounds + 1)
           val isLast = state.rounds == setup.rounds
           if isLast || state.rounds % setup.roundsPerScore == 0 then
-            val weights = DuelTask.parameters(learner.actor)
-            val tally   =
-              evaluator.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head
-            val steps  = state.rounds * setup.stepsOfRound
-            val better = state.best.forall: best =>
-              if setup.objective.direction == Direction.Minimise then tally.mean < best.mean
-              else tally.mean > best.mean
-            state = state.copy(
-              scores = state.scores :+ LearnScore(steps, tally.mean, tally.sd),
-              best = if better then Some(LearnBest(steps, tally.mean, weights)) else state.best
-            )
+            judged()
+            judging = Some(judgingOf(state.rounds * setup.stepsOfRound, DuelTask.parameters(learner.actor)))
+            if isLast || !isElsewhere then judged()
           if isLast || nanoTime() - savedAt > SaveNanos then
             mistake = save()
             savedAt = nanoTime()
           onRound(state)
     // A round that was given up is in the learner already, and so is not saved: it is learned again.
-    mistake.map(_ => state)
+    mistake.map: _ =>
+      judged()
+      state
+
+  private def judgingOf(steps: Long, weights: Vector[Double]): Judging =
+    def tally = judge.tallies(Vector(setup.policy(weights).parameters), 0 until question.episodes).head
+    Judging(
+      steps,
+      weights,
+      if isElsewhere then Future(blocking(tally))(using ExecutionContext.global)
+      else Future.fromTry(Try(tally))
+    )
+
+  private def scored(state: LearnState, policy: Judging): LearnState =
+    import policy.*
+    val tally  = Await.result(came, Duration.Inf)
+    val better = state.best.forall: best =>
+      if setup.objective.direction == Direction.Minimise then tally.mean < best.mean
+      else tally.mean > best.mean
+    state.copy(
+      scores = state.scores :+ LearnScore(steps, tally.mean, tally.sd),
+      best = if better then Some(LearnBest(steps, tally.mean, weights)) else state.best
+    )
 
 object LearnRun:
+  /** A policy as it was after these steps, and how good it turns out to be. */
+  private final case class Judging(steps: Long, weights: Vector[Double], came: Future[RunningStats])
+
   private val SaveNanos = 10_000_000_000L

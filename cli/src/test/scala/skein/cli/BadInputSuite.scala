@@ -128,7 +128,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
           Seq("--solver", "tcp://127.0.0.1:7400"),
           "in virtual time expected link:PROFILE"
         ),
-        (DecideCommand(), Seq("--at", "tcp://10.0.0.1:7400"), "expected an address of this machine"),
+        (DecideCommand(), Seq("--at", "tcp://10.0.0.1:7400"), "--tls: expected certificates of both sides"),
+        (FlyCommand(), Seq("--solver", "tcp://10.0.0.1:7400"), "--tls: expected certificates of both sides"),
+        (FlyCommand(), Seq("--tls", "certificates"), "--tls, --kafka-security: expected with a solver"),
         (DecideCommand(), Seq("--at", "link:vpn"), "expected tcp://HOST:PORT"),
         (DecideCommand(), Seq("--broker"), "--broker: expected with --at kafka://"),
         (DecideCommand(), Seq("--scenario", "moon"), "--scenario: ")

@@ -9,8 +9,8 @@ import scala.util.Random
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 
-/** A search by five workers whose coordinator is killed twice, and of whom one is killed now and then; each time it goes
-  * on with `--resume`. Then its files are held to those of one process:
+/** A search by two workers, and the next by five, whose coordinator is killed twice, and of whom one is killed now and
+  * then; each time it goes on with `--resume`. Then its files are held to those of one process:
   * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 20 5 DIR"`. Ends with an error where they differ, or where a
   * block counts twice.
   *
@@ -24,10 +24,9 @@ import skein.cluster.WorkerProcesses
     s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
       .split(' ')
       .toSeq
-  val elsewhere = "--workers 5 --threads 5 --block 1024".split(' ').toSeq
-  val alone     = Path.of(out).resolve("alone")
-  val said      = ByteArrayOutputStream()
-  val status    =
+  val alone  = Path.of(out).resolve("alone")
+  val said   = ByteArrayOutputStream()
+  val status =
     Console.withOut(said)(Console.withErr(said)(Main.run(question ++ Seq("--out", alone.toString))))
   require(status == 0, said.toString(UTF_8))
 
@@ -37,6 +36,8 @@ import skein.cluster.WorkerProcesses
     val folder                     = Path.of(out).resolve(s"run-$run")
     val ledger                     = folder.resolve(Ledger.Name)
     def blocks                     = if Files.exists(ledger) then Ledger.audit(ledger).blocks else 0
+    val count                      = if run % 2 == 1 then 2 else 5
+    val elsewhere                  = Seq("--workers", s"$count", "--threads", s"$count", "--block", "1024")
     var (killed, workers, resumed) = (0, 0, 0)
 
     /** From its start until it ends, or until the ledger has so many blocks more, when it is killed. */
@@ -79,5 +80,5 @@ import skein.cluster.WorkerProcesses
     val audit = Ledger.audit(ledger)
     require(audit.repeats == 0 && audit.broken == 0, audit.toString)
     println(
-      f"run $run: coordinator killed $killed times, $workers workers killed; the same files to the bit; ${audit.blocks} blocks, each counted once; the last life found $resumed in the ledger; ${(System.nanoTime() - begun) * 1e-9}%.0f s"
+      f"run $run: $count workers, of whom $workers were killed, coordinator killed $killed times; the same files to the bit; ${audit.blocks} blocks, each counted once; the last life found $resumed in the ledger; ${(System.nanoTime() - begun) * 1e-9}%.0f s"
     )

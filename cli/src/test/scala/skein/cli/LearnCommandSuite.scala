@@ -84,7 +84,7 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       def later()     =
         now += 60_000_000_000L
         now
-      LearnRun(setup, setup.batch(1), Some(folder), () => later())
+      LearnRun(setup, setup.evaluator(setup.batch(1)), Some(folder), () => later())
         .run(from, 1, () => done >= rounds)(state => done = state.rounds)
         .fold(fail(_), identity)
     val whole  = learn(temporaryFolder(), LearnState(), setup.rounds)
@@ -123,7 +123,7 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     val setup    = question.setup.fold(fail(_), identity)
-    val rounds   = LearnRun(setup, setup.batch(1), Some(folder), () => 0)
+    val rounds   = LearnRun(setup, setup.evaluator(setup.batch(1)), Some(folder), () => 0)
     var done     = 0
     assertEquals(
       rounds.run(LearnState(), 1, () => done == setup.rounds)(_ => done += 1).map(_.rounds),

@@ -1,12 +1,15 @@
 package skein.cli
 
 import java.nio.charset.StandardCharsets.UTF_8
+import java.util.concurrent.{CountDownLatch, TimeUnit}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.Future
 import scala.concurrent.duration.*
+import skein.optimise.Evaluator
 import skein.scenario.Scenarios
 import skein.search.{ClusterEvaluator, Elsewhere, Judge}
 import skein.settings.PolicyFile
+import skein.training.{LearnRun, LearnState}
 
 class LearnWorkSuite extends munit.FunSuite:
   override def munitTimeout: Duration = 2.minutes
@@ -46,6 +49,25 @@ class LearnWorkSuite extends munit.FunSuite:
     val here = LearnCommand.flown(question, policy, 2).fold(fail(_), identity)
     assertEquals(LearnWork.distances(worker, policy, 2)(()).map(_.flatten), Right(here))
     assertEquals(here.size, 2)
+
+  test("learning goes on while a worker judges what was learned, and comes to the same, to the bit"):
+    val words =
+      "--steps 2000 --environments 16 --lesson 5s --network 4 --episodes 4 --duration 12s --updates-per-step 0.02"
+    val short = LearnCommand
+      .question(mainargs.ParserForClass[LearnOptions].constructOrThrow(words.split(' ').toSeq))
+      .flatMap(_.setup)
+      .fold(fail(_), identity)
+    assert(short.rounds >= 3, short.rounds.toString)
+    val here                 = short.evaluator(short.batch(1))
+    val round                = CountDownLatch(1)
+    val elsewhere: Evaluator = (candidates, episodes) =>
+      assert(round.await(60, TimeUnit.SECONDS), "learning waited for its judge")
+      here.tallies(candidates, episodes)
+    def learned(judge: Evaluator, isElsewhere: Boolean)(onRound: LearnState => Unit) =
+      LearnRun(short, judge, None, () => 0, isElsewhere).run(LearnState(), 1, () => false)(onRound)
+    val beside = learned(elsewhere, isElsewhere = true)(_ => round.countDown())
+    assertEquals(beside, learned(here, isElsewhere = false)(_ => ()))
+    assert(beside.exists(_.scores.sizeIs >= 3), beside.toString)
 
   test("a worker to whom the question comes to something else refuses"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")

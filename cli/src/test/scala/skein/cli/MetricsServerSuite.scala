@@ -2,6 +2,7 @@ package skein.cli
 
 import java.net.URI
 import java.net.http.{HttpClient, HttpRequest, HttpResponse}
+import mainargs.Flag
 import scala.concurrent.duration.*
 import scala.util.Using
 import skein.cluster.Endpoint
@@ -40,8 +41,8 @@ class MetricsServerSuite extends munit.FunSuite:
 
   test("a port stands for this machine's alone"):
     def checked(metrics: String) =
-      ClusterOptions(Some(1), None, None, None, Some(metrics)).checked.map(_.get.metrics)
+      ClusterOptions(Some(1), None, None, None, Flag(), Some(metrics)).checked.map(_.get.metrics)
     assertEquals(checked("9100"), Right(Some(Endpoint("127.0.0.1", 9100))))
     assertEquals(checked("0.0.0.0:9100"), Right(Some(Endpoint("0.0.0.0", 9100))))
     assert(clue(checked("x")).left.exists(_.contains("expected a port")))
-    assert(ClusterOptions(None, None, None, None, Some("9100")).checked.isLeft)
+    assert(ClusterOptions(None, None, None, None, Flag(), Some("9100")).checked.isLeft)

@@ -9,6 +9,7 @@ import scala.collection.mutable
 import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
 import skein.blocks.{Answer, Block, BlockKey, Coordinator, Ledger}
+import skein.cluster.jars.Shipment
 
 /** What a coordinator works on.
   *
@@ -16,8 +17,15 @@ import skein.blocks.{Answer, Block, BlockKey, Coordinator, Ledger}
   *   names this coordinator's life; not 0
   * @param build
   *   that workers must have
+  * @param shipment
+  *   of that build, for workers that have another
   */
-private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
+private[cluster] final case class Job(
+    run: Long,
+    build: String,
+    question: ArraySeq[Byte],
+    shipment: Option[Shipment] = None
+)
 
 /** The edge of [[Coordinator]], which decides: hears workers, keeps answers, tells how it goes. One call at a time.
   *
@@ -52,8 +60,8 @@ private[cluster] final class CoordinatorBehavior private (
   /** Who has room, and nothing was there. */
   private var hungry = Set.empty[String]
 
-  /** Whose refusal was told. */
-  private var refused = Set.empty[String]
+  /** What is told once. */
+  private var told = Set.empty[News]
 
   def onMessage(command: Command): Behavior[Command] =
     command match
@@ -64,7 +72,8 @@ private[cluster] final class CoordinatorBehavior private (
       case ToCoordinator.Done(job.run, worker, number, busy, answer) => answered(worker, number, busy, answer)
       case ToCoordinator.Failed(job.run, worker, number, reason)     =>
         ended(Left(s"a block cannot be computed, told by $worker: $reason"))
-      case ToCoordinator.Unable(job.run, worker, reason) => refuse(worker, reason)
+      case ToCoordinator.Unable(job.run, worker, reason) => once(News.Refused(worker, reason))
+      case fetch: ToCoordinator.Fetch                    => fetched(fetch)
       case _: ToCoordinator                              => () // Of an earlier run.
       case asked: Compute                                => compute(asked)
       case Cancel                                        =>
@@ -93,8 +102,11 @@ private[cluster] final class CoordinatorBehavior private (
   private def asked(ask: ToCoordinator.Ask): Unit =
     if ask.build != job.build then
       val reason = s"its build is ${ask.build}, expected the coordinator's, ${job.build}"
-      say(ask.replyTo, ToWorker.Refused(reason))
-      refuse(ask.worker, reason)
+      job.shipment match
+        case Some(shipment) => say(ask.replyTo, ToWorker.Offered(job.run, reason, shipment.program.digest))
+        case None           =>
+          say(ask.replyTo, ToWorker.Refused(reason))
+          once(News.Refused(ask.worker, reason))
     else if isDone then say(ask.replyTo, ToWorker.Goodbye)
     else
       addresses += ask.worker -> ask.replyTo
@@ -108,10 +120,20 @@ private[cluster] final class CoordinatorBehavior private (
     traffic = traffic.saying(message)
     to ! message
 
-  private def refuse(worker: String, reason: String): Unit =
-    if !refused(worker) && refused.size < MostRefused then
-      refused += worker
-      tell(News.Refused(worker, reason))
+  private def fetched(fetch: ToCoordinator.Fetch): Unit = for shipment <- job.shipment do
+    import fetch.*
+    once(News.Fetching(worker))
+    val bytes = shipment.piece(content, offset) match
+      case Right(piece) => piece
+      case Left(reason) =>
+        once(News.Unread(worker, reason))
+        ArraySeq.empty[Byte]
+    say(replyTo, ToWorker.Piece(content, offset, bytes))
+
+  private def once(news: News): Unit =
+    if !told(news) && told.size < MostTold then
+      told += news
+      tell(news)
 
   private def serve(worker: String, holding: Set[Long]): Unit =
     val (after, block) = state.asked(worker, holding, System.nanoTime())
@@ -230,7 +252,8 @@ private[cluster] object CoordinatorBehavior:
 
   type Command = ToCoordinator | Local
 
-  private val MostRefused = 1000
+  /** What comes from workers that are none of this run is told for so long. */
+  private val MostTold = 1000
 
   /** A block that is out for longer goes to a second worker, when nothing else waits. */
   private val Slow = 1_000_000_000L

@@ -18,6 +18,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future, Promise}
 import scala.util.control.NonFatal
 import skein.blocks.Ledger
+import skein.cluster.jars.Shipment
 
 /** The process that hands out blocks and keeps their answers. */
 final class CoordinatorNode private (
@@ -78,6 +79,8 @@ object CoordinatorNode:
     *   port 0 for any that is free
     * @param ledger
     *   of this question
+    * @param shipment
+    *   this program, for workers of another that accept it
     * @param tell
     *   on a thread of the node's own
     * @return
@@ -88,7 +91,8 @@ object CoordinatorNode:
       tls: Option[Tls],
       question: ArraySeq[Byte],
       ledger: Ledger,
-      build: String = BuildId.current
+      build: String = BuildId.current,
+      shipment: Option[Shipment] = None
   )(tell: News => Unit): Either[String, CoordinatorNode] =
     for
       _ <- Either.cond(
@@ -102,7 +106,7 @@ object CoordinatorNode:
         catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${reason(failed)}")
     yield
       val latest  = AtomicReference(Progress())
-      val job     = Job(SecureRandom().nextLong() | 1, build, question)
+      val job     = Job(SecureRandom().nextLong() | 1, build, question, shipment)
       val manager = Cluster(system.toTyped).manager
       val actor   =
         system.spawn(CoordinatorBehavior(job, ledger, tell, latest.set, manager ! Down(_)), Name)

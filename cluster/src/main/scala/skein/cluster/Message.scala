@@ -2,6 +2,7 @@ package skein.cluster
 
 import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
+import skein.cluster.jars.Sha256
 
 /** What workers say. Any message may come late, twice or never.
   *
@@ -32,8 +33,11 @@ private[cluster] enum ToCoordinator:
   /** A block cannot be computed: nobody could. */
   case Failed(run: Long, worker: String, number: Long, reason: String)
 
-  /** This worker cannot answer the run's question. */
+  /** This worker cannot answer the run's question, or does not run its program. */
   case Unable(run: Long, worker: String, reason: String)
+
+  /** A worker wants bytes of the program that it was offered: of its text or of one of its jars, from an offset on. */
+  case Fetch(worker: String, content: Sha256, offset: Long, replyTo: ActorRef[ToWorker])
 
 /** What the coordinator says. */
 private[cluster] enum ToWorker:
@@ -42,6 +46,12 @@ private[cluster] enum ToWorker:
 
   /** Its build is another. */
   case Refused(reason: String)
+
+  /** Its build is another, and it may have the coordinator's. */
+  case Offered(run: Long, reason: String, program: Sha256)
+
+  /** Of the coordinator's program, as it was asked for; empty where there are no such bytes. */
+  case Piece(content: Sha256, offset: Long, bytes: ArraySeq[Byte])
 
   /** All is done. */
   case Goodbye

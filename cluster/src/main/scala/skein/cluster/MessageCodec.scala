@@ -3,6 +3,7 @@ package skein.cluster
 import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, DataOutputStream, IOException}
 import org.apache.pekko.actor.typed.ActorRef
 import scala.collection.immutable.ArraySeq
+import skein.cluster.jars.Sha256
 
 /** Messages as bytes: a byte for the kind, then the fields in their order, big-endian; texts and byte strings behind
   * their length, 4 bytes. No size that a peer states is believed before it is seen to be within its bound.
@@ -67,7 +68,23 @@ private[cluster] final class MessageCodec(
       case ToWorker.Refused(reason) =>
         data.writeByte(7)
         text(reason)
-      case ToWorker.Goodbye => data.writeByte(8)
+      case ToWorker.Goodbye                       => data.writeByte(8)
+      case ToWorker.Offered(run, reason, program) =>
+        data.writeByte(9)
+        data.writeLong(run)
+        text(reason)
+        text(program.hex)
+      case ToWorker.Piece(content, offset, bytes) =>
+        data.writeByte(10)
+        text(content.hex)
+        data.writeLong(offset)
+        blob(bytes)
+      case ToCoordinator.Fetch(worker, content, offset, replyTo) =>
+        data.writeByte(11)
+        text(worker)
+        text(content.hex)
+        data.writeLong(offset)
+        text(nameOf(replyTo))
     out.toByteArray
 
   /** @return or what was expected, and what came */
@@ -84,6 +101,7 @@ private[cluster] final class MessageCodec(
       in.readNBytes(length)
     def text()                 = String(part(MostText), "UTF-8")
     def blob(): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(part(MostBytes))
+    def sha256()               = Sha256.parse(text()).fold(wrong => throw IOException(wrong), identity)
     try
       val read: ToCoordinator | ToWorker = in.readByte().toInt match
         case 1 =>
@@ -102,7 +120,10 @@ private[cluster] final class MessageCodec(
         case 6     => ToWorker.Give(in.readLong(), in.readLong(), blob())
         case 7     => ToWorker.Refused(text())
         case 8     => ToWorker.Goodbye
-        case other => throw IOException(s"expected a kind of message from 1 to 8, came $other")
+        case 9     => ToWorker.Offered(in.readLong(), text(), sha256())
+        case 10    => ToWorker.Piece(sha256(), in.readLong(), blob())
+        case 11    => ToCoordinator.Fetch(text(), sha256(), in.readLong(), actorOf(text()))
+        case other => throw IOException(s"expected a kind of message from 1 to 11, came $other")
       Either.cond(in.available == 0, read, s"expected the message's end, came ${in.available} more bytes")
     catch
       case _: java.io.EOFException         => Left(s"the message is cut off after ${bytes.length} bytes")

@@ -11,13 +11,13 @@ private[cluster] object NodeConfig:
 
   /** @param listen
     *   port 0 for any that is free
+    * @param joins
+    *   whom it connects to
     */
-  def of(listen: Endpoint, tls: Option[Tls]): Either[String, Config] =
-    for _ <- Either.cond(
-        listen.isLoopback || tls.isDefined,
-        (),
-        s"expected certificates of both sides (--tls DIR) where other machines get to ${listen.host}; " +
-          "./skein cluster certificates DIR makes a lab's, and without them only 127.0.0.1 is listened at"
+  def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
+    for _ <- (listen +: joins.toSeq).find(!_.isLoopback && tls.isEmpty).toLeft(()).left.map(beyond =>
+        s"expected certificates of both sides (--tls DIR) where ${beyond.host} is of another machine, or reached by others; " +
+          "./skein cluster certificates DIR makes a lab's, and without them only 127.0.0.1 is used"
       )
     yield ConfigFactory
       .defaultOverrides()

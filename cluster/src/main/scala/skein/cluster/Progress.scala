@@ -47,3 +47,5 @@ enum News(val text: String):
   case Lost(worker: String, blocks: Int)
       extends News(s"$worker is gone; $blocks blocks that it had wait again")
   case Refused(worker: String, reason: String) extends News(s"refused $worker: $reason")
+  case Fetching(worker: String) extends News(s"$worker fetches this program, for its own is another")
+  case Unread(worker: String, reason: String) extends News(s"$worker cannot have this program: $reason")

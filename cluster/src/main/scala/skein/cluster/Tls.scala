@@ -1,7 +1,10 @@
 package skein.cluster
 
 import com.typesafe.config.{Config, ConfigFactory, ConfigUtil}
+import java.io.IOException
 import java.nio.file.{Files, Path}
+import java.security.{GeneralSecurityException, KeyStore}
+import javax.net.ssl.{KeyManagerFactory, SSLContext, TrustManagerFactory}
 
 /** Certificates of a node: its own, and those that it trusts. Both sides show theirs, and hosts' names are verified.
   *
@@ -11,6 +14,26 @@ import java.nio.file.{Files, Path}
   *   PKCS #12, with the certificate of whoever signs
   */
 final case class Tls(keyStore: Path, trustStore: Path, password: String):
+
+  /** For connections that are not Pekko's own: who shows what, and whom it trusts.
+    *
+    * @return
+    *   or what is wrong with the files
+    */
+  def context: Either[String, SSLContext] =
+    def store(file: Path) = KeyStore.getInstance(file.toFile, password.toCharArray)
+    try
+      val keys = KeyManagerFactory.getInstance(KeyManagerFactory.getDefaultAlgorithm)
+      keys.init(store(keyStore), password.toCharArray)
+      val trusted = TrustManagerFactory.getInstance(TrustManagerFactory.getDefaultAlgorithm)
+      trusted.init(store(trustStore))
+      val made = SSLContext.getInstance("TLSv1.3")
+      made.init(keys.getKeyManagers, trusted.getTrustManagers, null)
+      Right(made)
+    catch
+      case failed: (IOException | GeneralSecurityException) =>
+        Left(s"--tls: cannot read the certificates in ${keyStore.getParent}: ${failed.getMessage}")
+
   private[cluster] def config: Config =
     def quoted(text: Any) = ConfigUtil.quoteString(text.toString)
     ConfigFactory.parseString(s"""

@@ -7,6 +7,7 @@ import org.apache.pekko.actor.typed.{ActorRef, Behavior}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.util.control.NonFatal
+import skein.cluster.jars.{Acceptance, Sha256}
 
 /** Asks the coordinator for blocks, has them computed by a pool of threads, and answers. It asks for the question before
   * it is a member, and for blocks once it is: whoever is no member would not be missed.
@@ -81,10 +82,16 @@ private[cluster] final class WorkerBehavior private (
         case Left(reason) => coordinator ! ToCoordinator.Failed(run, self.name, number, reason)
       ask()
       this
-    case ToWorker.Refused(reason) => end(End.Refused(reason))
-    case ToWorker.Goodbye         => end(End.Finished)
-    case Unreachable              => end(End.Lost)
-    case _                        => this // Of an earlier run, or a block that it has.
+    case ToWorker.Refused(reason)              => end(End.Refused(reason))
+    case ToWorker.Offered(of, reason, program) =>
+      self.programs.of(program) match
+        case Right(accepted) => end(End.Offered(of, accepted))
+        case Left(why)       =>
+          coordinator ! ToCoordinator.Unable(of, self.name, s"$reason; $why")
+          end(End.Refused(s"$reason; $why"))
+    case ToWorker.Goodbye => end(End.Finished)
+    case Unreachable      => end(End.Lost)
+    case _                => this // Of an earlier run, or a block that it has.
 
   private def askIfReady(): Unit = if member && solvers.isDefined then ask()
 
@@ -138,8 +145,17 @@ private[cluster] final class WorkerBehavior private (
 private[cluster] object WorkerBehavior:
   /** @param build
     *   see [[BuildId]]
+    * @param programs
+    *   that it runs in the place of its own
     */
-  final case class Self(name: String, cores: Int, build: String, solvers: Solvers, startedAt: Long):
+  final case class Self(
+      name: String,
+      cores: Int,
+      build: String,
+      solvers: Solvers,
+      startedAt: Long,
+      programs: Acceptance = Acceptance.none
+  ):
     /** For a person; it started at `startedAt` by `System.nanoTime`. */
     def age: String =
       String.format(
@@ -151,6 +167,9 @@ private[cluster] object WorkerBehavior:
   enum End:
     case Finished, Lost
     case Refused(reason: String)
+
+    /** The coordinator of this run has a program that this worker is to run. */
+    case Offered(run: Long, program: Sha256)
 
   sealed trait Local
   private case object Beat                                                                       extends Local

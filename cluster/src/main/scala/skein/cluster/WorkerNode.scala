@@ -3,6 +3,7 @@ package skein.cluster
 import com.typesafe.config.Config
 import java.net.InetAddress
 import java.util.concurrent.{ExecutorService, Executors, TimeUnit, TimeoutException}
+import org.apache.pekko.actor.typed.scaladsl.AskPattern.*
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.{ActorRef, ActorRefResolver, Behavior}
@@ -14,16 +15,21 @@ import org.apache.pekko.cluster.ClusterEvent.{
   UnreachableMember
 }
 import org.apache.pekko.cluster.typed.{Cluster, JoinSeedNodes, SelfUp, Subscribe}
-import scala.concurrent.duration.{Duration, DurationLong, FiniteDuration}
+import org.apache.pekko.util.Timeout
+import scala.collection.immutable.ArraySeq
+import scala.concurrent.duration.{Duration, DurationInt, DurationLong, FiniteDuration}
 import scala.concurrent.{Await, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.cluster.WorkerBehavior.End
+import skein.cluster.jars.{Acceptance, Fetched, NotFetched, Sha256}
 
 /** A process that computes blocks.
   *
   * @param patience
   *   for how long it tries to reach a coordinator that it has not reached yet, or has lost
+  * @param programs
+  *   that it runs in the place of its own
   * @param tell
   *   what it does, in lines for a person
   */
@@ -35,7 +41,8 @@ final class WorkerNode(
     solvers: Solvers,
     patience: FiniteDuration,
     name: String = WorkerNode.nameOf(ProcessHandle.current().pid()),
-    build: String = BuildId.current
+    build: String = BuildId.current,
+    programs: Acceptance = Acceptance.none
 )(tell: String => Unit):
   require(
     cores >= 1 && cores <= MessageCodec.MostCores,
@@ -56,26 +63,32 @@ final class WorkerNode(
   /** Works until the coordinator has no more to do. Blocks the calling thread.
     *
     * @return
-    *   or why it could not
+    *   the coordinator's program, where that is another, and is accepted: it is to work in the place of this one. Or why
+    *   it could not
     */
-  def run(): Either[String, Unit] =
-    NodeConfig.of(listen, tls).flatMap: config =>
+  def run(): Either[String, Option[Fetched]] =
+    NodeConfig.of(listen, tls, joins = Some(coordinator)).flatMap: config =>
       val pool = Executors.newFixedThreadPool(cores, WorkerNode.thread(_))
-      val self = WorkerBehavior.Self(name, cores, build, solvers, System.nanoTime())
+      val self = WorkerBehavior.Self(name, cores, build, solvers, System.nanoTime(), programs)
       try
         tell(s"$name, $cores ${if cores == 1 then "core" else "cores"}, build $build: joining $coordinator")
         contactAt = self.startedAt
-        var outcome = Option.empty[Either[String, Unit]]
+        var outcome = Option.empty[Either[String, Option[Fetched]]]
         while outcome.isEmpty do
           val how    = once(config, self, pool)
           val waited = System.nanoTime() - contactAt
           outcome = how match
-            case _ if stopped => Some(Right(tell("told to end")))
-            case End.Finished => Some(Right(tell("the work is done: the coordinator has all that it asked")))
-            case End.Refused(reason)                   => Some(Left(reason))
-            case End.Lost if waited > patience.toNanos =>
+            case _ if stopped =>
+              tell("told to end")
+              Some(Right(None))
+            case End.Finished =>
+              tell("the work is done: the coordinator has all that it asked")
+              Some(Right(None))
+            case End.Refused(reason)            => Some(Left(reason))
+            case program: Fetched               => Some(Right(Some(program)))
+            case _ if waited > patience.toNanos =>
               Some(Left(s"no coordinator at $coordinator for ${patience.toSeconds} s"))
-            case End.Lost =>
+            case _ =>
               val left = (patience.toNanos - waited) / 1_000_000_000
               tell(s"cannot reach the coordinator at $coordinator; joining again, for $left s at most")
               None
@@ -84,7 +97,7 @@ final class WorkerNode(
       finally pool.shutdownNow(): Unit
 
   /** From joining to the end, once. */
-  private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End =
+  private def once(config: Config, self: WorkerBehavior.Self, pool: ExecutorService): End | Fetched =
     val promise            = Promise[End]()
     @volatile var isMember = false
     ending = promise
@@ -110,11 +123,56 @@ final class WorkerNode(
       val how  = WorkerNode.within(left)(promise).getOrElse:
         if isMember then Await.result(promise.future, Duration.Inf) else End.Lost
       if isMember then contactAt = System.nanoTime()
-      how
+      how match
+        case End.Offered(run, program) => fetched(run, program, to, system)
+        case other                     => other
     finally
       val _ = Try(Await.result(system.terminate(), Duration(10, TimeUnit.SECONDS)))
 
+  private def fetched(
+      run: Long,
+      program: Sha256,
+      from: ActorRef[ToCoordinator],
+      system: ActorSystem
+  ): End | Fetched =
+    tell(s"fetches the coordinator's program, $program")
+    val came = programs.fetch(program, tell): (content, offset) =>
+      Iterator
+        .continually(piece(content, offset, from, system))
+        .take(WorkerNode.Attempts)
+        .takeWhile(_ => !stopped)
+        .collectFirst { case Some(bytes) => bytes }
+        .toRight(NotFetched.CutOff)
+    contactAt = System.nanoTime()
+    came match
+      case Right(program)                   => program
+      case Left(NotFetched.CutOff)          => End.Lost
+      case Left(NotFetched.Refused(reason)) =>
+        from ! ToCoordinator.Unable(run, name, reason)
+        End.Refused(reason)
+
+  private def piece(
+      content: Sha256,
+      offset: Long,
+      from: ActorRef[ToCoordinator],
+      system: ActorSystem
+  ): Option[ArraySeq[Byte]] =
+    // It fails at once where this node ended meanwhile, since nobody let it join.
+    Try(Await.result(
+      from.ask[ToWorker](ToCoordinator.Fetch(name, content, offset, _))(
+        using
+        Timeout(WorkerNode.AnswerWithin),
+        system.toTyped.scheduler
+      ),
+      Duration.Inf
+    )).toOption.collect:
+      case ToWorker.Piece(`content`, `offset`, bytes) => bytes
+
 object WorkerNode:
+  /** Pieces of a program are asked for so often, each time for so long, until the coordinator counts as lost. */
+  private val Attempts     = 5
+  private val AnswerWithin = 3.seconds
+
   /** A worker's name, by its process. */
   def nameOf(pid: Long): String = s"$host-$pid"
 

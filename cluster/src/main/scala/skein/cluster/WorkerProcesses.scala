@@ -1,10 +1,12 @@
 package skein.cluster
 
+import java.io.File
 import java.lang.management.ManagementFactory
 import java.nio.file.Path
 import java.util.concurrent.TimeUnit
 import java.util.concurrent.atomic.AtomicInteger
 import scala.jdk.CollectionConverters.*
+import skein.cluster.jars.Fetched
 
 /** Workers as processes of this machine. They end with this process, however it ends: each has a pipe from it, whose end
   * it watches for ([[WorkerProcesses.endWithParent]]).
@@ -82,10 +84,11 @@ object WorkerProcesses:
 
   /** What `X.jsa` is to this program, `X-worker.jsa` is to its workers. */
   private[cluster] def ofWorkers(option: String): String =
-    if option.startsWith("-XX:SharedArchiveFile=") && !option.endsWith(OfWorkers) then
+    if option.startsWith(Archive) && !option.endsWith(OfWorkers) then
       option.stripSuffix(".jsa") + OfWorkers
     else option
 
+  private val Archive   = "-XX:SharedArchiveFile="
   private val OfWorkers = "-worker.jsa"
 
   /** In a worker: calls `end` once the process that started it has ended, or closed its pipe. */
@@ -106,8 +109,21 @@ object WorkerProcesses:
     *   the class with `main`
     */
   def likeThis(program: String, words: Seq[String]): Seq[String] =
+    command(ofWorkers, sys.props("java.class.path"), program, words)
+
+  /** A command that runs a program that was fetched as this one runs, by classes of its own.
+    *
+    * @param archives
+    *   folder for what the JVM keeps of them
+    */
+  def fetched(program: Fetched, archives: Path, words: Seq[String]): Seq[String] =
+    val archive                = archives.resolve(s"${program.digest}.jsa")
+    def option(ofThis: String) = if ofThis.startsWith(Archive) then s"$Archive$archive" else ofThis
+    command(option, program.classPath.mkString(File.pathSeparator), program.main, words)
+
+  private def command(option: String => String, classPath: String, main: String, words: Seq[String]) =
     val options = ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
       .filterNot(option => option.startsWith("-agentlib") || option.startsWith("-Xrun"))
-      .map(ofWorkers)
+      .map(option)
     val java = Path.of(sys.props("java.home"), "bin", "java").toString
-    (java +: options.toSeq) ++ Seq("-cp", sys.props("java.class.path"), program) ++ words
+    (java +: options.toSeq) ++ Seq("-cp", classPath, main) ++ words

@@ -9,6 +9,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
+import skein.cluster.jars.{Acceptance, Fetched, JarStore, Sha256, Shipment}
 import skein.testing.TemporaryFolders
 
 /** Coordinator and workers as nodes of their own in one JVM, over loopback. */
@@ -42,12 +43,17 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
         "no such question"
       )
 
-  private final class Coordinating(val folder: Path, port: Int = 0, tls: Option[Tls] = None):
+  private final class Coordinating(
+      val folder: Path,
+      port: Int = 0,
+      tls: Option[Tls] = None,
+      shipment: Option[Shipment] = None
+  ):
     val news   = ConcurrentLinkedQueue[News]()
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
-      .start(loopback.copy(port = port), tls, question, ledger, build = "one")(heard)
+      .start(loopback.copy(port = port), tls, question, ledger, "one", shipment)(heard)
       .fold(fail(_), identity)
 
     private def heard(one: News): Unit =
@@ -70,10 +76,12 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
       build: String = "one",
       cores: Int = 1,
       tls: Option[Tls] = None,
-      patience: FiniteDuration = 60.seconds
+      patience: FiniteDuration = 60.seconds,
+      programs: Acceptance = Acceptance.none
   ) =
     val told = ConcurrentLinkedQueue[String]()
-    val node = WorkerNode(to, loopback, tls, cores, solvers, patience, name, build)(told.add(_): Unit)
+    val node =
+      WorkerNode(to, loopback, tls, cores, solvers, patience, name, build, programs)(told.add(_): Unit)
     (node, Future(blocking(node.run())), told)
 
   /** Folders of a lab, of a host each. Made by other processes while other tests run, which mostly wait. */
@@ -103,12 +111,12 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(solvers.solved.get, solved, "nothing is computed twice")
       assertEquals(coordinator.ledger.size, works.size)
       coordinator.node.close(): Unit
-      for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(()))
+      for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(None))
 
   test("a worker that is not ready yet when all is done is told so, and ends at once"):
     val asked = CountDownLatch(1)
     val never = CountDownLatch(1)
-    var ended = Option.empty[(Future[Either[String, Unit]], ConcurrentLinkedQueue[String])]
+    var ended = Option.empty[(Future[Either[String, Option[Fetched]]], ConcurrentLinkedQueue[String])]
     coordinating: coordinator =>
       val (_, end, told) = worker(
         coordinator.node.address,
@@ -121,7 +129,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
       ended = Some((end, told))
       asked.await()
     for (end, told) <- ended do
-      assertEquals(Await.result(end, 15.seconds), Right(()))
+      assertEquals(Await.result(end, 15.seconds), Right(None))
       assert(clue(told.asScala.last).contains("the work is done"))
 
   test("a worker of another build is refused with both told, and one that cannot answer the question too"):
@@ -134,6 +142,31 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(unable).contains("no scenario 'ridge'"))
       val told = coordinator.news.asScala.map(_.text).toVector
       assert(clue(told).exists(_.contains("refused anna: its build is two")))
+
+  test(
+    "a worker of another build has the coordinator's program from it if it accepts that one, and else is refused"
+  ):
+    val jar = Files.write(temporaryFolder().resolve("ridge.jar"), scala.util.Random(1).nextBytes(3 << 20))
+    val shipment = Shipment.of("ridge.Main", Vector(jar)).fold(fail(_), identity)
+    val shipping = Coordinating(temporaryFolder(), shipment = Some(shipment))
+    try
+      def ended(name: String, digests: Sha256*) =
+        val programs = Acceptance(digests.toSet, JarStore(temporaryFolder()), Vector.empty)
+        val to       = shipping.node.address
+        Await.result(worker(to, name, Reversing(), build = "two", programs = programs)._2, 60.seconds)
+      val fetched = ended("anna", shipment.program.digest).fold(fail(_), _.get)
+      assertEquals(fetched.main, "ridge.Main")
+      assertEquals(fetched.classPath.map(Files.mismatch(_, jar)), Vector(-1L))
+      val refusal = ended("ben").swap.getOrElse(fail("was taken"))
+      assert(clue(refusal).contains("its build is two") && refusal.contains("--accept-jars"))
+      val other = ended("cleo", Sha256.of(Array[Byte](1))).swap.getOrElse(fail("was taken"))
+      assert(clue(other).contains("another program than those"))
+      val told = shipping.news.asScala.map(_.text).toVector
+      assert(clue(told).exists(_.startsWith("anna fetches this program")))
+      assert(told.exists(_.startsWith("refused ben")))
+    finally
+      shipping.close()
+      shipment.close()
 
   test("a stranger's garbage at the port harms nothing"):
     coordinating: coordinator =>
@@ -207,12 +240,14 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
       second.close()
     assert(clue(told.asScala.toVector).exists(_.contains("joined")))
 
-  test("beyond loopback nobody listens without certificates"):
+  test("beyond loopback nobody listens, and nobody is joined, without certificates"):
     val folder  = temporaryFolder()
     val ledger  = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val refused = CoordinatorNode.start(Endpoint("0.0.0.0", 0), None, question, ledger, "one")(_ => ())
     assert(clue(refused.swap.getOrElse("started")).contains("certificates"))
     ledger.close()
+    val joined = WorkerNode(Endpoint("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
+    assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
   test(
     "with certificates of one set nodes work together; without, of another set, or of another host, nobody joins"

@@ -9,9 +9,10 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Try
 import skein.link.{Address, Incoming, Listening, Transport}
+import skein.units.Span
 
-/** A solver that flights connect to; see [[TcpLink]]. Whoever sends what is no message loses the connection, and nothing
-  * else happens.
+/** A solver that flights connect to; see [[TcpLink]]. Whoever sends what is no message, or says nothing at first, loses
+  * the connection, and nothing else happens.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch):
   /** With the actual port. */
@@ -25,6 +26,9 @@ final class SolverServer private (listening: Listening, switch: SharedKillSwitch
 object SolverServer:
   /** Open at the same time; further ones wait to be accepted. */
   val MostConnections = 64
+
+  /** A flight says hello as soon as it is connected. */
+  private val FirstWithin = Span.ofSeconds(10)
 
   /** Fails with a [[skein.link.TransportError]] where it cannot listen. */
   def start(at: Address, transport: Transport, desk: SolverDesk)(using ActorSystem): Future[SolverServer] =
@@ -43,6 +47,7 @@ object SolverServer:
       replies
         .via(switch.flow)
         .via(TcpLink.framed.join(incoming.flow))
+        .initialTimeout(FirstWithin.toDuration)
         .via(taken)
         .runWith(Sink.ignore)
         .recover(_ => Done)

@@ -13,8 +13,10 @@ import skein.link.Address
   *
   * @param prefix
   *   of their names
+  * @param security
+  *   Kafka's own settings of clients: `security.protocol`, `ssl.…`, `sasl.…`; passwords among them are shown nowhere
   */
-final case class KafkaTopics(broker: Address, prefix: String):
+final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[String, String] = Map.empty):
   def questions: String = s"$prefix.questions"
   def answers: String   = s"$prefix.answers"
 
@@ -45,7 +47,7 @@ object KafkaTopics:
   private[kafka] def settings(topics: KafkaTopics)(own: (String, String)*): Properties =
     val settings = Properties()
     for
-      (key, value) <- own ++ Seq(
+      (key, value) <- topics.security.toSeq ++ own ++ Seq(
         "bootstrap.servers"                  -> topics.broker.toString,
         "reconnect.backoff.ms"               -> "50",
         "reconnect.backoff.max.ms"           -> "250",

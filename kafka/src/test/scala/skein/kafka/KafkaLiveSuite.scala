@@ -47,7 +47,7 @@ class KafkaLiveSuite extends munit.FunSuite:
       at: Address,
       repeats: Int = 1
   )(meanwhile: MemoryRecorder => Unit): Recording =
-    val topics   = KafkaTopics(at, prefix)
+    val topics   = KafkaTopics(at, prefix)()
     val settings = FlySettings(
       List(LoopKind.Predictive),
       List(LatencyProfile.none),

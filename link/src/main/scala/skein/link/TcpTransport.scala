@@ -1,40 +1,59 @@
 package skein.link
 
 import java.net.{BindException, ConnectException, InetSocketAddress, UnknownHostException}
+import javax.net.ssl.{SSLContext, SSLEngine, SSLException}
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.io.Inet.SocketOption
 import org.apache.pekko.io.Tcp.SO
-import org.apache.pekko.stream.{BindFailedException, StreamTcpException}
+import org.apache.pekko.stream.{BindFailedException, EagerClose, StreamTcpException}
 import org.apache.pekko.stream.scaladsl.{Flow, Source, Tcp}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.Duration
 import scala.concurrent.{ExecutionContext, Future}
+import scala.util.Success
 import skein.units.Span
 
-/** Real sockets. Small messages leave at once (no Nagle), and each direction closes for itself: a side that has
-  * finished sending still receives what is on its way.
+/** Real sockets. Small messages leave at once (no Nagle).
+  *
+  * Without certificates each direction closes for itself: a side that has finished sending still receives what is on its
+  * way. With them a connection is TLS 1.3, both sides show theirs, and the host that is connected to must be named in its
+  * own; a connection that is open may prove not to be trusted with its first bytes, and whichever side ends, ends it.
   *
   * @param connectTimeout
   *   after this long without an answer a connection fails with [[TransportError.NoAnswer]]
   * @param backlog
   *   connections that may wait to be accepted; the operating system refuses more
+  * @param certificates
+  *   of this side, and those that it trusts
   */
-final class TcpTransport(connectTimeout: Span = Span.ofSeconds(5), backlog: Int = 256)(using
-    system: ActorSystem
-) extends Transport:
+final class TcpTransport(
+    connectTimeout: Span = Span.ofSeconds(5),
+    backlog: Int = 256,
+    certificates: Option[SSLContext] = None
+)(using system: ActorSystem)
+    extends Transport:
   import TcpTransport.*
 
   def connect(to: Address): Flow[ByteString, ByteString, Future[Done]] =
     val explain = connectError(to, connectTimeout)
-    Tcp(system)
-      .outgoingConnection(
-        InetSocketAddress.createUnresolved(to.host, to.port),
-        options = options,
-        halfClose = true,
-        connectTimeout = connectTimeout.toDuration,
-        idleTimeout = Duration.Inf
-      )
+    val at      = InetSocketAddress.createUnresolved(to.host, to.port)
+    val within  = connectTimeout.toDuration
+    val made    = certificates match
+      case None =>
+        Tcp(system).outgoingConnection(at, None, options, halfClose = true, within, Duration.Inf)
+      case Some(context) =>
+        Tcp(system).outgoingConnectionWithTls(
+          at,
+          () => connecting(context, to),
+          None,
+          options,
+          within,
+          Duration.Inf,
+          _ => Success(()),
+          EagerClose
+        )
+    made
       .mapError(explain)
       .mapMaterializedValue(
         _.transform(_ => Done, explain.applyOrElse(_, identity))(using ExecutionContext.parasitic)
@@ -42,8 +61,21 @@ final class TcpTransport(connectTimeout: Span = Span.ofSeconds(5), backlog: Int 
 
   def listen(at: Address): Source[Incoming, Future[Listening]] =
     val explain = listenError(at)
-    Tcp(system)
-      .bind(at.host, at.port, backlog, options, halfClose = true, idleTimeout = Duration.Inf)
+    val made    = certificates match
+      case None =>
+        Tcp(system).bind(at.host, at.port, backlog, options, halfClose = true, Duration.Inf)
+      case Some(context) =>
+        Tcp(system).bindWithTls(
+          at.host,
+          at.port,
+          () => accepting(context),
+          backlog,
+          options,
+          Duration.Inf,
+          _ => Success(()),
+          EagerClose
+        )
+    made
       .map: connection =>
         val from = addressOf(connection.remoteAddress)
         Incoming(from, connection.flow.mapError(lost(from)))
@@ -55,6 +87,27 @@ final class TcpTransport(connectTimeout: Span = Span.ofSeconds(5), backlog: Int 
 object TcpTransport:
   private val options = List[SocketOption](SO.TcpNoDelay(true))
 
+  private val Protocols = Array("TLSv1.3")
+
+  private def connecting(context: SSLContext, to: Address): SSLEngine =
+    val engine = context.createSSLEngine(to.host, to.port)
+    engine.setUseClientMode(true)
+    val asked = engine.getSSLParameters
+    asked.setProtocols(Protocols)
+    // The name is verified as a browser does.
+    asked.setEndpointIdentificationAlgorithm("HTTPS")
+    engine.setSSLParameters(asked)
+    engine
+
+  private def accepting(context: SSLContext): SSLEngine =
+    val engine = context.createSSLEngine()
+    engine.setUseClientMode(false)
+    val asked = engine.getSSLParameters
+    asked.setProtocols(Protocols)
+    asked.setNeedClientAuth(true)
+    engine.setSSLParameters(asked)
+    engine
+
   private type Explain = PartialFunction[Throwable, Throwable]
 
   private def connectError(to: Address, timeout: Span): Explain =
@@ -65,6 +118,7 @@ object TcpTransport:
         case null                                                 => TransportError.Lost(to, e.getMessage)
         case c if rootCause(c).isInstanceOf[UnknownHostException] => TransportError.UnknownHost(to)
         case c                                                    => TransportError.Failed(to, c)
+    case e: SSLException => TransportError.NotTrusted(to, e)
 
   private def listenError(at: Address): Explain =
     case e: BindFailedException => e.getCause match
@@ -74,6 +128,7 @@ object TcpTransport:
 
   private def lost(from: Address): Explain =
     case e: StreamTcpException => TransportError.Lost(from, e.getMessage)
+    case e: SSLException       => TransportError.NotTrusted(from, e)
 
   private def rootCause(e: Throwable): Throwable =
     Iterator.iterate(e)(_.getCause).takeWhile(_ != null).toSeq.last

@@ -33,6 +33,13 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
   /** The connection was there and broke: reset by the other side, or by the network. */
   case Lost(to: Address, reason: String) extends TransportError(s"connection to $to lost: $reason")
 
+  /** One side does not trust the other, or shows nothing to be trusted by. */
+  case NotTrusted(at: Address, reason: Throwable)
+      extends TransportError(
+        s"no trusted connection to $at: ${reason.getMessage}; expected certificates of one set at both sides, which name the host",
+        reason
+      )
+
   /** Anything else on the way to a connection. */
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)

@@ -1,9 +1,8 @@
 package skein.view
 
-import com.typesafe.config.ConfigFactory
 import java.util.concurrent.atomic.AtomicInteger
 import org.apache.pekko.Done
-import org.apache.pekko.actor.{ActorSystem, BootstrapSetup}
+import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.http.scaladsl.Http
 import org.apache.pekko.http.scaladsl.model.*
 import org.apache.pekko.http.scaladsl.model.headers.Origin
@@ -60,10 +59,8 @@ object ViewServer:
       token: Token = Token.drawn(),
       limits: Limits = Limits()
   ): Future[ViewServer] =
-    given system: ActorSystem = ActorSystem(
-      "skein-view",
-      BootstrapSetup(None, Some(configured), Some(threads))
-    )
+    given system: ActorSystem =
+      HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
     import system.dispatcher
     val counts = Counts()
     val open   = AtomicInteger()
@@ -90,24 +87,6 @@ object ViewServer:
       .recoverWith { case error => system.terminate().transformWith(_ => Future.failed(error)) }
 
   private val TurnEvery = 25.millis
-
-  private def configured = ConfigFactory
-    .parseString("""
-      |pekko.http.server {
-      |  idle-timeout = 60s
-      |  pipelining-limit = 1
-      |  server-header = ""
-      |  parsing.max-content-length = 4k
-      |  parsing.max-header-count = 64
-      |  websocket.periodic-keep-alive-max-idle = 20s
-      |}
-      |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
-      |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
-      |# Nobody who connects can fill a terminal: what is turned away is counted.
-      |pekko.loglevel = OFF
-      |pekko.stdout-loglevel = OFF
-      |""".stripMargin)
-    .withFallback(ConfigFactory.load())
 
   private def answer(
       request: HttpRequest,

@@ -1,0 +1,91 @@
+package skein.cli
+
+import java.io.{IOException, StringReader}
+import java.nio.file.{Files, Path}
+import java.util.Properties
+import javax.net.ssl.SSLContext
+import mainargs.{ParserForClass, arg}
+import scala.jdk.CollectionConverters.*
+import skein.cluster.{Endpoint, Tls}
+import skein.link.Address
+import skein.settings.SolverChoice
+
+/** How a flight and a solver trust one another. */
+final case class SolverSecurity(
+    @arg(doc =
+      "for a solver of another machine: folder of ./skein cluster with this machine's certificate; without it, loopback alone"
+    )
+    tls: Option[String],
+    @arg(doc =
+      "for a Kafka broker of another machine: file with its clients' security.protocol, ssl.… and sasl.…; without it, loopback alone"
+    )
+    kafkaSecurity: Option[String]
+):
+  import SolverSecurity.*
+
+  /** @return or what is missing for this way to a solver, or not of it */
+  def checked(way: Option[SolverChoice]): Either[String, Checked] = way match
+    case Some(SolverChoice.Tcp(at)) =>
+      for
+        _    <- notOf(at, "--kafka-security" -> kafkaSecurity)
+        read <- tls match
+          case Some(folder) => Tls.of(Path.of(folder)).flatMap(_.context).map(Some(_))
+          case None         =>
+            Either.cond(
+              isLoopback(at),
+              None,
+              s"--tls: expected certificates of both sides where the solver at $at is reached by other machines; " +
+                "./skein cluster certificates DIR makes a lab's. Without them it is of this machine alone, such as tcp://127.0.0.1:7400"
+            )
+      yield Checked(read, Map.empty)
+    case Some(SolverChoice.Kafka(broker, _)) =>
+      for
+        _    <- notOf(broker, "--tls" -> tls)
+        read <- kafkaSecurity match
+          case Some(file) => properties(Path.of(file))
+          case None       =>
+            Either.cond(
+              isLoopback(broker),
+              Map.empty[String, String],
+              s"--kafka-security: expected a file that says how to trust the broker at $broker, for example by " +
+                "security.protocol=SSL, and how to be trusted by it"
+            )
+      yield Checked(None, read)
+    case Some(SolverChoice.Link(_)) | None =>
+      Either.cond(
+        tls.isEmpty && kafkaSecurity.isEmpty,
+        Checked(None, Map.empty),
+        "--tls, --kafka-security: expected with a solver at tcp://HOST:PORT or kafka://HOST:PORT/PREFIX"
+      )
+
+object SolverSecurity:
+  given ParserForClass[SolverSecurity] = ParserForClass[SolverSecurity]
+
+  /** @param certificates
+    *   for a solver behind TCP
+    * @param kafka
+    *   of Kafka's clients
+    */
+  final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])
+
+  private def isLoopback(at: Address) = Endpoint(at.host, at.port).isLoopback
+
+  private def notOf(at: Address, option: (String, Option[String])): Either[String, Unit] =
+    Either.cond(option._2.isEmpty, (), s"${option._1}: is of another kind of solver than the one at $at")
+
+  private val Kinds = Seq("security.", "ssl.", "sasl.")
+
+  private[cli] def properties(file: Path): Either[String, Map[String, String]] =
+    def wrong(reason: String) = Left(s"--kafka-security: $reason in $file")
+    try
+      val read = Properties()
+      read.load(StringReader(Files.readString(file)))
+      val all = read.asScala.toMap
+      all.keys.find(key => !Kinds.exists(key.startsWith(_))) match
+        case Some(other) => wrong(s"expected ${Kinds.mkString("…, ")}…, came '$other'")
+        case None if !all.contains("security.protocol") =>
+          wrong("expected security.protocol, for example SSL,")
+        case None => Right(all)
+    catch
+      case failed: (IOException | IllegalArgumentException) =>
+        Left(s"--kafka-security: cannot read $file: ${failed.getMessage}")

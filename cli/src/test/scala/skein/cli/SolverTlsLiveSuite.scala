@@ -1,0 +1,121 @@
+package skein.cli
+
+import java.nio.file.Path
+import java.util.concurrent.atomic.AtomicInteger
+import javax.net.ssl.{SSLContext, SSLSocket}
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, Future}
+import skein.cluster.{Certificates, Tls}
+import skein.flight.{FlightAssembler, Solvers}
+import skein.link.{Address, Listening, TcpTransport, TransportError}
+import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.record.MemoryRecorder
+import skein.scenario.Scenarios
+import skein.settings.{FlySettings, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.solver.*
+import skein.testing.TemporaryFolders
+import skein.units.*
+
+/** Solvers that show certificates, and ask for them, on loopback. */
+class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders:
+  override val munitTimeout: Duration = 2.minutes
+  private given system: ActorSystem   = ActorSystem("SolverTlsLiveSuite")
+  private given Scenarios             = Scenarios.ours
+  import system.dispatcher
+
+  override def afterAll(): Unit =
+    Await.result(system.terminate(), 20.seconds): Unit
+    super.afterAll()
+
+  private def certificates(hosts: String*): Vector[SSLContext] =
+    def context(folder: Path) = Tls.of(folder).flatMap(_.context).fold(fail(_), identity)
+    Certificates.make(temporaryFolder(), hosts).fold(fail(_), identity).map(context)
+
+  private lazy val Vector(own, elsewhere) = certificates("127.0.0.1", "*.workers.lab"): @unchecked
+  private lazy val stranger               = certificates("127.0.0.1").head
+
+  private def transport(certificates: Option[SSLContext]) = TcpTransport(certificates = certificates)
+
+  private val loopback = Address("127.0.0.1", 0)
+
+  /** Answers what it hears, and counts it. */
+  private def echoing[A](shows: SSLContext)(body: (Listening, AtomicInteger) => A): A =
+    val heard = AtomicInteger()
+    val echo  = Flow[ByteString].map: bytes =>
+      heard.addAndGet(bytes.size): Unit
+      bytes
+    val server = Await.result(
+      transport(Some(shows)).listen(loopback).to(Sink.foreach(_.flow.join(echo).run(): Unit)).run(),
+      20.seconds
+    )
+    try body(server, heard)
+    finally Await.result(server.close(), 20.seconds): Unit
+
+  private def exchanged(to: Address, by: Option[SSLContext]): Future[String] =
+    Source
+      .single(ByteString("geese"))
+      .concat(Source.maybe)
+      .via(transport(by).connect(to))
+      .take(1)
+      .runFold(ByteString.empty)(_ ++ _)
+      .map(_.utf8String)
+
+  private def failure(exchange: Future[String]): Throwable = Await.result(exchange.failed, 30.seconds)
+
+  test("with certificates of one set both sides hear one another"):
+    echoing(own): (server, _) =>
+      assertEquals(Await.result(exchanged(server.address, Some(own)), 30.seconds), "geese")
+
+  test("nothing is heard of who shows no certificate, one of another set, or speaks an older TLS"):
+    echoing(own): (server, heard) =>
+      assert(clue(failure(exchanged(server.address, Some(stranger)))).isInstanceOf[TransportError.NotTrusted])
+      // Who does not speak TLS is cut off, and sees no answer.
+      val plain = Await.ready(exchanged(server.address, None), 30.seconds).value.get
+      assertNotEquals(plain.getOrElse(""), "geese")
+      val socket = own.getSocketFactory.createSocket("127.0.0.1", server.address.port).asInstanceOf[SSLSocket]
+      try
+        socket.setEnabledProtocols(Array("TLSv1.2"))
+        intercept[java.io.IOException](socket.startHandshake()): Unit
+      finally socket.close()
+      assertEquals(heard.get, 0)
+
+  test("who listens with the certificate of another host, or of another set, is told nothing"):
+    for shown <- Seq(elsewhere, stranger) do
+      echoing(shown): (server, heard) =>
+        val why = failure(exchanged(server.address, Some(own)))
+        assert(clue(why).isInstanceOf[TransportError.NotTrusted])
+        assertEquals(heard.get, 0)
+
+  test("a flight is decided by a solver over TLS"):
+    val desk     = SolverDesk(1, "same", Briefing.plan(_).map(_.fleet), Clock.system, system.dispatcher)
+    val server   = Await.result(SolverServer.start(loopback, transport(Some(own)), desk), 20.seconds)
+    val settings = FlySettings(
+      List(LoopKind.Stream),
+      List(LatencyProfile.none),
+      duration = Span.ofSeconds(3),
+      period = Span.ofMillis(100),
+      seed = 7,
+      fallback = Fallback.Hover,
+      solver = Some(SolverChoice.Tcp(server.address))
+    )
+    val assembler = FlightAssembler(
+      TcpTransport(),
+      Clock.system,
+      settings,
+      None,
+      solvers = Solvers("same", _ => Right(TcpLink(transport(Some(own)), server.address)))
+    )
+    val plan     = settings.plans.last
+    val recorder = MemoryRecorder(assembler.heading(plan, "real"))
+    val flown    =
+      for
+        started <- assembler.start(plan, recorder)
+        landed  <- started.fold(fail(_), _.landed)
+        _       <- server.close()
+      yield landed.outcome
+    assertEquals(Await.result(flown, 60.seconds), Outcome.Completed)
+    assert(recorder.recording.solved.sizeIs > 10)

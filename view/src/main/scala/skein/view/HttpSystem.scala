@@ -1,0 +1,34 @@
+package skein.view
+
+import com.typesafe.config.ConfigFactory
+import org.apache.pekko.actor.{ActorSystem, BootstrapSetup}
+import scala.concurrent.ExecutionContext
+
+/** What a small HTTP server runs on: an actor system of its own, with bounds for whoever connects. */
+object HttpSystem:
+
+  /** @param threads
+    *   all that it has
+    * @param more
+    *   of `pekko.http.server`
+    */
+  def apply(name: String, threads: ExecutionContext, more: String): ActorSystem =
+    val bounds = ConfigFactory.parseString(more).atPath("pekko.http.server")
+    ActorSystem(name, BootstrapSetup(None, Some(bounds.withFallback(common)), Some(threads)))
+
+  private def common = ConfigFactory
+    .parseString("""
+      |pekko.http.server {
+      |  idle-timeout = 60s
+      |  pipelining-limit = 1
+      |  server-header = ""
+      |  parsing.max-content-length = 4k
+      |  parsing.max-header-count = 64
+      |}
+      |pekko.actor.internal-dispatcher = pekko.actor.default-dispatcher
+      |pekko.coordinated-shutdown.run-by-jvm-shutdown-hook = off
+      |# Nobody who connects can fill a terminal: what is turned away is counted.
+      |pekko.loglevel = OFF
+      |pekko.stdout-loglevel = OFF
+      |""".stripMargin)
+    .withFallback(ConfigFactory.load())
