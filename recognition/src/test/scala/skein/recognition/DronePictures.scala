@@ -3,7 +3,7 @@ package skein.recognition
 import skein.scene.*
 import skein.scene.render.*
 import skein.signal.SplitMix64
-import skein.simulator.VehicleBody
+import skein.simulator.MultirotorBody
 import skein.units.*
 import skein.vehicle.Airframe
 
@@ -66,7 +66,7 @@ final class DronePictures(camera: Pinhole, seed: Long):
       if ned.z > -0.3 then next(rangesM, 0) // below the ground
       else
         val turned = Placement.turned(ned, normal(10), normal(10), among(-180, 180))
-        val body   = SceneObject("Drone", VehicleBody.parts(airframe, 0, 0), turned)
+        val body   = SceneObject("Drone", MultirotorBody.parts(airframe, 0, 0), turned)
         val moment = Moment(scene, Vector(body))
         val alone  = Moment(Scene.Empty, Vector(body))
         val whole  = extent(alone, view)
