@@ -49,13 +49,13 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       .find(_.toString.endsWith("scenario.conf"))
       .get
 
-  private lazy val sensor: Path =
-    val flown =
-      made("fly", "--scenario", "blind-pursuit", "--clock", "virtual", "--loop", "stream", "--link", "none")(
-        "--duration",
-        "12s"
-      )
-    made("identify", flown.resolve("stream-none.duckdb").toString)().resolve("sensor.conf")
+  /** Of a pursuer that sees; as long as a model needs to be identified. */
+  private lazy val seeing: Path =
+    made("fly", "--scenario", "blind-pursuit", "--clock", "virtual", "--loop", "stream", "--link", "none")(
+      "--duration",
+      "30s"
+    ).resolve("stream-none.duckdb")
+  private lazy val sensor: Path = made("identify", seeing.toString)().resolve("sensor.conf")
 
   override def afterAll(): Unit =
     val _ = Edge.await(system.terminate())
@@ -176,6 +176,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case "HOST:PORT"                                                => server.address.toString
         case "NAME"                                                     => "patrol"
         case "FILE" if command.startsWith("policy")                     => learned.toString
+        case "FILE…" if command.startsWith("identify")                  => seeing.toString
         case "FILE" | "FILE…"                                           => recording.toString
         case "settings.json"                                            => settings.toString
         case "searches/…/policy.conf"                                   => policy.toString
