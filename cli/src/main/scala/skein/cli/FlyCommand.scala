@@ -6,6 +6,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Future, Promise}
 import skein.flight.{
+  AirSimFleet,
   FlightAssembler,
   FlightResult,
   LiveFlights,
@@ -336,5 +337,5 @@ private[cli] object FlyCommand:
     Either.cond(
       idle.isEmpty,
       (),
-      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${FlightAssembler.askTimeout.toMillis.round} ms?"
+      s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"
     )

@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.flight.FlightAssembler
+import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.DuelBatch
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -74,7 +74,7 @@ object Conditions:
   private def timing(loop: LoopKind, period: Span, vehicles: VelocityResponse): Either[String, LoopTiming] =
     val settings = LoopSettings.every(period).copy(model = _ => vehicles.predictor)
     LoopTimings
-      .of(loop, settings, FlightAssembler.askTimeout)
+      .of(loop, settings, AirSimFleet.askTimeout)
       .toRight(
         s"forward simulation has no ${loop.label} loop; expected paused, sequential, futures, stream or predictive"
       )

@@ -124,8 +124,8 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders:
       ),
       (
         "model",
-        question("cma-es").copy(conditions = Conditions("stream", "car", 100, 12)),
-        Seq("--plant", "quadrotor", "'car'")
+        question("cma-es").copy(conditions = Conditions("stream", "balloon", 100, 12)),
+        Seq("--plant", "quadrotor", "'balloon'")
       ),
       (
         "duration",

@@ -1,7 +1,7 @@
 package skein.environment
 
 import scala.jdk.CollectionConverters.*
-import skein.flight.FlightAssembler
+import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
@@ -71,7 +71,7 @@ final case class EnvironmentSettings(
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
       timing <- LoopTimings
-        .of(kind, loopSettings, FlightAssembler.askTimeout)
+        .of(kind, loopSettings, AirSimFleet.askTimeout)
         .toRight(
           s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
         )

@@ -61,7 +61,8 @@ object Checks:
     val calls =
       for
         (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
-        (what, count)    <- Seq("read" -> craft.reads, "command" -> craft.commands)
+        (what, count)    <-
+          Seq("read" -> craft.reads, "command" -> craft.commands, "sensor" -> craft.measurements)
         if count.begun != count.ended
       yield s"$vehicle: ${count.begun} $what calls began, ${count.ended} ended"
     calls ++ Option.when(seen.steps.begun != seen.steps.ended)(
@@ -72,7 +73,9 @@ object Checks:
 
   /** What began is what ended, in the client's books, the crafts' and the recording. */
   private def unaccounted(seen: FlightTrace): Vector[String] =
-    val called = seen.crafts.map(craft => craft.reads.begun + craft.commands.begun).sum.toLong +
+    val called = seen.crafts.map(craft =>
+      craft.reads.begun + craft.commands.begun + craft.measurements.begun
+    ).sum.toLong +
       seen.steps.begun + seen.callsBeside + seen.pictures.map(_.asked).sum
     val stats   = seen.stats
     val written = stats.sent - stats.sentAgain
@@ -121,8 +124,10 @@ object Checks:
     case _                 => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
-    val most = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife) +
-      seen.pictures.size * PicturesOnTheWay
+    // Each sensor that a policy reads is asked beside the vehicle.
+    val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
+    val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife) +
+      sensors * seen.window + seen.pictures.size * PicturesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)

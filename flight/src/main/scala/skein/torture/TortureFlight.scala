@@ -7,7 +7,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.*
-import skein.flight.{CameraSensor, Equipped, FlightAssembler}
+import skein.flight.{AirSimFleet, CameraSensor, Equipped}
 import skein.link.*
 import skein.loop.*
 import skein.record.{Flight as FlightRow, *}
@@ -77,9 +77,9 @@ object TortureFlight:
       network.host("supervisor"),
       clock
     )
-    private val settings = FlightAssembler.rpcSettings(faultPlan.loop)
+    private val settings = AirSimFleet.rpcSettings(faultPlan.loop)
     private val rpc      = RpcClient(network.host("controller"), address, clock, settings, faultPlan.seed)
-    private val client   = AirSimClient(rpc, FlightAssembler.askTimeout)
+    private val client   = AirSimClient(rpc, AirSimFleet.askTimeout)
     private val memory   = MemoryRecorder(heading)
     private val recorder = FaultyRecorder(memory, faultPlan.disk, clock, start)
 
@@ -102,7 +102,7 @@ object TortureFlight:
         )
         crafts = multirotors.zip(asked).map((craft, vehicle) =>
           val seen = sensors.collect { case (vehicle.name, name, sensor) => name -> sensor }
-          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle, seen.toMap), clock)
+          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle), clock, seen.toMap)
         )
         _            = if !isPaused then eyes.foreach(_.run())
         stepper      = WatchedTime(AirSimTime(client))

@@ -22,14 +22,22 @@ final case class Sending(at: Instant, north: Float, east: Float)
   */
 final case class Answer(question: Long, state: Stamped[Kinematics])
 
-/** A craft that keeps account of every call: how it began, that it ended, what it told, how many were outstanding. */
-final class WatchedVehicle(craft: VehiclePort, clock: Clock)(using ExecutionContext) extends VehiclePort:
+/** A craft that keeps account of every call: how it began, that it ended, what it told, how many were outstanding.
+  *
+  * @param eyes
+  *   sensors besides, which keep account of their calls themselves
+  */
+final class WatchedVehicle(craft: VehiclePort, clock: Clock, eyes: Map[String, Sensor] = Map.empty)(using
+    ExecutionContext
+) extends VehiclePort:
   private val moves = mutable.ArrayBuffer.empty[Sending]
   private val told  = mutable.ArrayBuffer.empty[Answer]
 
-  override def sensors: Map[String, Sensor] = craft.sensors
+  val reads, commands, measurements = CallCount()
 
-  val reads, commands     = CallCount()
+  override val sensors: Map[String, Sensor] =
+    craft.sensors.map((name, sensor) => name -> WatchedSensor(sensor, measurements)) ++ eyes
+
   private var lastIsHover = false
 
   def sendings: Vector[Sending] = moves.toVector
@@ -59,6 +67,11 @@ final class WatchedVehicle(craft: VehiclePort, clock: Clock)(using ExecutionCont
   def hover(): Future[Either[VehicleError, Boolean]] =
     lastIsHover = true
     commands.count(craft.hover())
+
+/** A sensor that counts its calls. */
+private final class WatchedSensor(sensor: Sensor, calls: CallCount)(using ExecutionContext) extends Sensor:
+  export sensor.columns
+  def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = calls.count(sensor.read())
 
 /** A stepper that counts its calls. */
 final class WatchedTime(stepper: SteppedTime)(using ExecutionContext) extends SteppedTime:

@@ -51,7 +51,7 @@ class RolloutParitySimulation extends munit.FunSuite:
         .of(
           loop,
           if PaperDuel.isAsPublished(scenario) then every.asPublished else every,
-          FlightAssembler.askTimeout
+          AirSimFleet.askTimeout
         )
         .getOrElse(fail(s"${loop.label} has no timing"))
     val fleet    = asked.fleet

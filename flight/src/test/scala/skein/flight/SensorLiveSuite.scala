@@ -52,7 +52,7 @@ class SensorLiveSuite extends munit.FunSuite:
           TcpTransport(),
           server.address,
           Clock.system,
-          FlightAssembler.rpcSettings(kind)
+          AirSimFleet.rpcSettings(kind)
         ))
       ready <-
         Preparation(client, Clock.system).place(fleet).map(_.fold(fail(_), identity))

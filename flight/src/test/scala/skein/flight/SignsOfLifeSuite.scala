@@ -31,10 +31,10 @@ class SignsOfLifeSuite extends munit.FunSuite:
     )
 
   test("a simulator that answers within a flight's period is never silent, however long that is"):
-    assert(SimulatorWatchdog.within(Span.ofMillis(100), FlightAssembler.askTimeout) < Span.ofMillis(850))
+    assert(SimulatorWatchdog.within(Span.ofMillis(100), AirSimFleet.askTimeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do
       val period = Span.ofSeconds(seconds)
       assert(SimulatorWatchdog.within(
         period,
-        FlightAssembler.askTimeout
-      ) > period + FlightAssembler.askTimeout)
+        AirSimFleet.askTimeout
+      ) > period + AirSimFleet.askTimeout)

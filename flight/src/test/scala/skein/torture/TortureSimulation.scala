@@ -3,6 +3,7 @@ package skein.torture
 import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.EventKind
+import skein.scenario.Forest
 import skein.signal.LatencyProfile
 import skein.units.*
 
@@ -26,6 +27,11 @@ class TortureSimulation extends munit.FunSuite:
         val again = s"./skein torture --first ${verdict.faultPlan.seed} --seeds 1 --duration 8s"
         failed :+= (verdict.faultPlan.toString +: verdict.violations :+ again).mkString("\n  ")
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
+
+  test("a team that knows by its lidars, through the same faults, breaks no rule"):
+    for seed <- 1L to 3L do
+      val verdict = Torture.of(seed, duration, Some(Forest()), None)
+      assert(verdict.isClean, (verdict.faultPlan.toString +: verdict.violations).mkString("\n  "))
 
   test("a disk that is full when the last answers come has failed the flight"):
     val full      = Disk.Fails(duration - Span.ofMillis(8))

@@ -1,0 +1,193 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.*
+import skein.link.*
+import skein.loop.LoopKind
+import skein.record.*
+import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
+import skein.settings.{FlightPlan, FlySettings}
+import skein.signal.LatencyProfile
+import skein.units.*
+import skein.units.Decimals.fixed
+
+/** The vehicles of flights in a simulator that speaks AirSim's wire.
+  *
+  * @param startsAirborne
+  *   whether the simulator can put vehicles into the air; otherwise they climb to their starts
+  * @param calledOff
+  *   why a flight, by its name, goes no further while its vehicles are brought to their starts
+  * @param isWatched
+  *   whether images and clouds are offered that are not recorded
+  */
+private[flight] final class AirSimFleet(
+    transport: Transport,
+    clock: Clock,
+    settings: FlySettings,
+    startsAirborne: Boolean,
+    calledOff: String => Option[String],
+    isWatched: Boolean
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  private val recorded: Set[ImagingSensor] = settings.recordedImaging
+
+  /** Brings them to their starts, and connects them over the link of the plan. What is opened for that is to be closed. */
+  def connect(
+      plan: FlightPlan,
+      address: Address,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Future[ConnectedFleet] =
+    for
+      ready <- prepare(plan, address)
+      proxy <- between(plan, address)
+      client = opened.closing(
+        fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), monitor)
+      )(_.close())
+      vehicles = ready.zipWithIndex.map((vehicle, index) =>
+        // Altitudes count from where each vehicle starts, as in its own frame.
+        vehicle.over(client, vehicle.originNed.copy(z = 0), index)
+      )
+      logs    = vehicles.map(ImageRecorder(_, monitor, sight => isWatched || recorded(sight)))
+      cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
+      films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
+      ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
+        val (vehicle, eyes) = looking
+        val port            = Vehicles.port(
+          vehicle,
+          lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+        )
+        val isPaused = plan.loop == LoopKind.Paused
+        val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
+        Equipped.by(settings.scenario, port, vehicle, seen.toMap, log.scan)
+      _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
+    yield ConnectedFleet(
+      ports,
+      Some(AirSimTime(client)),
+      address.toString,
+      () => client.ping(),
+      () => AirSimFleet.startedAgain(vehicles, address),
+      cameras.flatten,
+      films
+    )
+
+  /** What the scenario's eyes make of a vehicle's cameras. */
+  private def look(
+      plan: FlightPlan,
+      vehicle: VehicleClient,
+      recorder: Recorder,
+      log: ImageRecorder
+  ): Vector[CameraSensor] =
+    settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
+      if isWatched || recorded.nonEmpty then log.ask(eye.camera)
+      CameraSensor(
+        eye,
+        vehicle.eyes,
+        plan.seed,
+        clock,
+        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+        log.image
+      )
+
+  /** Its cameras that nobody decides by. */
+  private def film(vehicle: VehicleClient, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
+    settings.filmed.filter(_.sight.vehicle == vehicle.name).map: (sight, every) =>
+      log.ask(sight.name)
+      FilmedCamera(
+        sight.name,
+        every,
+        vehicle.eyes,
+        clock,
+        log.image,
+        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail))
+      )
+
+  private def watchContacts(
+      opened: Opened,
+      address: Address,
+      vehicles: Vector[VehicleClient],
+      recorder: Recorder
+  ): Future[Unit] =
+    ContactWatch
+      .start(
+        AirSimClient(RpcClient(transport, address, clock), AirSimFleet.askTimeout),
+        vehicles,
+        settings.period,
+        clock,
+        recorder
+      )
+      .map(contacts => opened.closing(contacts)(_.close()): Unit)
+
+  /** Over a connection of its own, without the link: this is not part of the flight. */
+  private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
+    val client      = AirSimClient(RpcClient(transport, address, clock))
+    val preparation = Preparation(client, clock, () => calledOff(plan.id))
+    val prepared    =
+      if startsAirborne then preparation.place(settings.fleet) else preparation.climb(settings.fleet)
+    prepared
+      .flatMap(result => client.close().map(_ => result))
+      .map(_.fold(reason => throw CannotFly(reason), identity))
+
+  /** The emulated link, if the flight is to have one. */
+  private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
+    if plan.link == LatencyProfile.none then Future.successful(None)
+    else
+      val link = EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+      LinkProxy.start(AirSimFleet.anyPort, simulator, link, transport).map(Some(_))
+
+  private def fly(plan: FlightPlan, address: Address, recorder: Recorder): AirSimClient =
+    val rpc = RpcClient(
+      transport,
+      address,
+      clock,
+      AirSimFleet.rpcSettings(plan.loop),
+      plan.seed,
+      event =>
+        AirSimFleet.eventOf(event).foreach((kind, detail) =>
+          recorder.offer(Event(clock.now(), kind, None, detail))
+        )
+    )
+    AirSimClient(rpc, timeout = AirSimFleet.askTimeout)
+
+object AirSimFleet:
+  /** The paper's, of every question. */
+  val askTimeout: Span = Span.ofMillis(500)
+
+  /** Of the client that flies a loop. */
+  def rpcSettings(loop: LoopKind): RpcSettings = loop match
+    // Each command must reach the simulator before the step that follows it: one ordered connection.
+    case LoopKind.Paused => RpcSettings(controlConnections = 1)
+    case _               => RpcSettings()
+
+  /** Whether a simulator has been started again since it let these vehicles be flown: then nobody has api control of
+    * them. Its clock need not tell, since AirSim's begins with the time of day.
+    *
+    * @return
+    *   `Left` where it did not answer, else why a flight cannot go on
+    */
+  private def startedAgain(vehicles: Vector[VehicleClient], simulator: Address)(using
+      ExecutionContext
+  ): Future[Either[String, Option[String]]] =
+    Future
+      .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(_.map((vehicle.name, _))))
+      .map: answers =>
+        answers.collectFirst { case Right((name, false)) => name } match
+          case Some(name) =>
+            Right(Some(
+              s"the simulator at $simulator no longer gives $name to this flight: it was started again, or another took api control away"
+            ))
+          case None => answers.collectFirst { case Left(error) => error.message }.toLeft(None)
+
+  private val anyPort = Address("127.0.0.1", 0)
+
+  /** What of the client's events a recording keeps; failed calls are recorded by whoever called. */
+  private def eventOf(event: RpcEvent): Option[(EventKind, String)] = event match
+    case RpcEvent.Disconnected(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.ConnectFailed(lane, connection, reason) =>
+      Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")
+    case RpcEvent.LateReply(method, _, _, after) =>
+      Some(EventKind.LateReply -> s"$method answered after ${after.toMillis.fixed(0)} ms")
+    case _ => None

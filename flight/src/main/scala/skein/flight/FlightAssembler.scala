@@ -1,0 +1,282 @@
+package skein.flight
+
+import java.util.concurrent.Executors
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.Flow
+import org.apache.pekko.util.ByteString
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.{Vehicles, WorldSettings}
+import skein.link.*
+import skein.loop.*
+import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
+import skein.loop.planning.{BackgroundThread, PlanWorkers, ThreadedPlanWorkers}
+import skein.policy.Fleet
+import skein.record.{Flight as FlightRow, *}
+import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
+import skein.signal.LatencyProfile
+import skein.solver.{Briefing, SolverClient}
+import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
+import skein.units.*
+
+/** Puts flights together.
+  *
+  * @param simulator
+  *   the address of a simulator that runs already; without one, each flight has a built-in simulator of its own
+  * @param workers
+  *   what a flight that plans searches with
+  * @param tell
+  *   a line for a person, of what goes wrong in flight, as soon as it does
+  * @param learnsOn
+  *   what policies learn on that learn in flight; without it, each on a thread of its own that gives way to all others
+  * @param solvers
+  *   the links to solvers, for flights that are not decided for here
+  * @param calledOff
+  *   why a flight, by its name, goes no further while its vehicles are brought to their starts
+  * @param isWatched
+  *   whether its records are shown, so that images and clouds are offered that are not recorded
+  */
+final class FlightAssembler(
+    transport: Transport,
+    clock: Clock,
+    settings: FlySettings,
+    simulator: Option[Address],
+    workers: PlanSettings => PlanWorkers = FlightAssembler.threads,
+    tell: String => Unit = _ => (),
+    learnsOn: Option[ExecutionContext] = None,
+    calledOff: String => Option[String] = _ => None,
+    solvers: Solvers = Solvers.none,
+    isWatched: Boolean = false
+)(using system: ActorSystem):
+  import system.dispatcher
+
+  /** Whether a record is kept, and not only shown. */
+  private[flight] def keeps(record: Record): Boolean =
+    ImagingSensor.of(record).forall(settings.recordedImaging)
+
+  private val airSim = AirSimFleet(
+    transport,
+    clock,
+    settings,
+    startsAirborne = simulator.isEmpty,
+    calledOff,
+    isWatched
+  )
+
+  /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
+  private val fleet: Fleet = settings.fleet
+
+  /** What a recording of this flight begins with. */
+  def heading(plan: FlightPlan, clockKind: String): RecordingHeader = RecordingHeader(
+    FlightRow(
+      plan.id,
+      plan.loop.label,
+      plan.link.name,
+      plan.seed,
+      settings.period,
+      settings.duration,
+      clockKind,
+      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else ""),
+      settings.scenario.title +
+        plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
+      FlightAssembler.version,
+      clock.now()
+    ),
+    fleet.agents.map(Vehicle.of),
+    RecordedPlan.parameters(settings, plan)
+  )
+
+  /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
+    *
+    * @return
+    *   or why it cannot be flown
+    */
+  def start(plan: FlightPlan, recorder: Recorder): Future[Either[String, FlightAssembly]] =
+    val opened   = Opened()
+    val starting =
+      for
+        server <- serve()
+        _       = server.foreach(opened.closing(_)(_.close()))
+        monitor = FlightMonitor(recorder)
+        solver  <- solverOf(plan, opened, monitor)
+        reached <- settings.wire match
+          case Wire.AirSim  => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
+          case Wire.Mavlink => overMavlink(plan, server, opened)
+        _ <- Team.missingSensor(fleet, reached.vehicles).fold(reached.ping())(missing =>
+          Future.failed(CannotFly(missing))
+        )
+      yield
+        val loopSettings = settings.loopSettings(plan)
+        val planners     =
+          if plan.loop != LoopKind.Plan then PlanWorkers.none
+          else
+            opened.closing(workers(settings.planningByModel)): threads =>
+              threads.close()
+              Future.successful(Done)
+        val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
+        val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
+        val team         = Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver)
+        val startedAt    = clock.now()
+        val watchdog     = SimulatorWatchdog(
+          monitor,
+          clock,
+          startedAt,
+          SimulatorWatchdog.within(settings.period, AirSimFleet.askTimeout),
+          reached.where,
+          reached.isOther,
+          () => team.underDecision,
+          line => tell(s"${plan.id}: $line")
+        )
+        val flight = Flight.start(
+          plan.loop,
+          team,
+          reached.time,
+          settings.duration,
+          clock,
+          endCondition,
+          () => watchdog.onTime
+        )
+        endCondition.isOver.foreach(_ => flight.complete())
+        if plan.loop != LoopKind.Paused then
+          for one <- reached.cameras do
+            opened.closing(one)(_.close()): Unit
+            one.run()
+          for one <- reached.films do
+            opened.closing(one)(_.close()): Unit
+            one.run()
+        watchdog.over(flight)
+        Right(FlightAssembly(
+          plan,
+          flight,
+          RunningGraph(team.meters),
+          team.hold,
+          monitor,
+          watchdog,
+          startedAt,
+          clock,
+          () => opened.close(),
+          solver
+        ))
+    starting
+      .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
+      .recover { case error: (TransportError | CannotFly | SolverClient.NoSolver) => Left(error.getMessage) }
+
+  /** Who decides in this process' place, when it has welcomed the flight. */
+  private def solverOf(
+      plan: FlightPlan,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Future[Option[SolverClient]] =
+    plan.solver match
+      case None         => Future.successful(None)
+      case Some(choice) =>
+        solvers.link(choice) match
+          case Left(reason) => Future.failed(CannotFly(s"--solver ${choice.text}: $reason"))
+          case Right(link)  =>
+            val agents = fleet.agents
+            val client = opened.closing(SolverClient(
+              link,
+              solvers.number(plan, clock),
+              solvers.build,
+              Briefing.of(settings, plan),
+              agents.size,
+              clock,
+              (kind, vehicle, detail) =>
+                monitor.offer(Event(clock.now(), kind, vehicle.map(agents(_).name), detail))
+                if FlightAssembler.told(kind) then tell(s"${plan.id}: $detail")
+            ))(_.close())
+            client
+              .ready(solvers.patience)
+              .recoverWith:
+                case no: SolverClient.NoSolver =>
+                  Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
+              .map(_ => Some(client))
+
+  /** Who flies, with a policy that may learn. */
+  private def learning(
+      plan: FlightPlan,
+      chosen: ChosenPolicy,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Fleet =
+    def taught(lessons: Lessons, explore: Double) =
+      chosen.learningIn(plan.fleet(settings), lessons, explore, plan.seed): (vehicle, decision, news) =>
+        RecordedPlan.learned(clock.now(), vehicle, decision, news).foreach(monitor.offer)
+    chosen.learning match
+      case None                                  => plan.fleet(settings)
+      case Some(Learning.Again(explore, news))   => taught(LessonsAgain(news), explore)
+      case Some(Learning.Beside(explore, begun)) =>
+        val on = learnsOn.getOrElse:
+          val thread = Executors.newSingleThreadExecutor(BackgroundThread.factory("skein-learn"))
+          // It may hang in a lesson: nobody waits for that.
+          opened.closing(ExecutionContext.fromExecutorService(thread)): _ =>
+            thread.shutdownNow()
+            Future.successful(Done)
+        val lessons = opened.closing(LessonsBeside(begun(plan.seed), on)): lessons =>
+          lessons.close()
+          Future.successful(Done)
+        taught(lessons, explore)
+
+  /** By a connection of bytes to a simulator of its own, by datagrams to any other. */
+  private def overMavlink(
+      plan: FlightPlan,
+      server: Option[SimulatorServer],
+      opened: Opened
+  ): Future[ConnectedFleet] =
+    val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
+    val by      = if server.isDefined then transport else UdpTransport()
+    def plain() = by.connect(at)
+    def linked: Flow[ByteString, ByteString, ?] =
+      if plan.link == LatencyProfile.none then plain()
+      else
+        EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
+          .connection(TransportError.Lost(at, "the link broke"))
+          .join(plain())
+    val origin  = server.map(_ => WorldSettings.DefaultOrigin)
+    val mavlink =
+      MavlinkFleet(fleet, clock, origin, plain, isDatagrams = server.isEmpty, () => calledOff(plan.id))
+    def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
+    for
+      _ <-
+        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps))
+        else Future.unit
+      _                <- mavlink.prepare().map(right)
+      (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
+    yield
+      val _ = opened.closing(link)(_.close())
+      ConnectedFleet(vehicles, None, at.toString, () => Future.unit, () => Future.successful(Right(None)))
+
+  private def serve(): Future[Option[SimulatorServer]] =
+    if simulator.isDefined then Future.successful(None)
+    else
+      val vehicles = fleet.agents.map(Vehicles.settings)
+      SimulatorServer
+        .start(
+          SimulatorSettings(
+            WorldSettings(vehicles, text = WorldSettings.render(vehicles, settings.scenario.equipment)),
+            FlightAssembler.anyPort,
+            scene = settings.world.scene,
+            mavlink =
+              Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
+                Some(FlightAssembler.anyPort)
+              ))
+          ),
+          transport,
+          clock
+        )
+        .map(Some(_))
+
+object FlightAssembler:
+  /** Threads to plan on, no more than there are cores. */
+  private def threads(planning: PlanSettings): PlanWorkers =
+    new ThreadedPlanWorkers(planning.searches.min(Runtime.getRuntime.availableProcessors))
+
+  private val noSteps =
+    "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"
+
+  /** What of a solver's events a person is told at once. */
+  private val told = Set(EventKind.Disconnected, EventKind.Reconnected, EventKind.Refused)
+
+  private val anyPort = Address("127.0.0.1", 0)
+
+  private[flight] val version = Option(getClass.getPackage.getImplementationVersion).getOrElse("development")
