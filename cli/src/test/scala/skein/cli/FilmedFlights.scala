@@ -8,10 +8,10 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 
 /** The same flight of two vehicles, in turns: without images; with four cameras at 30 Hz in the recording; and with an MCAP
-  * file beside that: `cli/Test/runMain skein.cli.filmedFlights 20 3`. How late control's questions leave, and the processor
+  * file beside that: `cli/Test/runMain skein.cli.filmedFlights stream 20 3`. How late control's questions leave, and the processor
   * time of this whole process, simulator and its drawing included.
   */
-@main def filmedFlights(seconds: Int, rounds: Int): Unit =
+@main def filmedFlights(loop: String, seconds: Int, rounds: Int): Unit =
   given Scenarios = DuelReport.scenarios
   val folder      = Files.createTempDirectory("filmed")
   val cameras     = Seq("--images", "front_center@30", "--images", "bottom_center@30")
@@ -25,13 +25,13 @@ import skein.scenario.Scenarios
     for round <- 1 to rounds; ((what, options), number) <- kinds.zipWithIndex do
       val out   = folder.resolve(s"$round-$number")
       val fixed =
-        Seq("--loop", "predictive", "--link", "none", "--duration", s"${seconds}s", "--scene", "street")
+        Seq("--loop", loop, "--link", "none", "--duration", s"${seconds}s", "--scene", "street")
       val flying = ViewLiveSuite.Flying.start(out, fixed ++ options*)
-      flying.awaitStart("predictive-none")
+      flying.awaitStart(s"$loop-none")
       val (from, began) = (cpu.getProcessCpuTime, System.nanoTime())
       flying.land()
       val spent  = (cpu.getProcessCpuTime - from).toDouble / (System.nanoTime() - began)
-      val file   = out.resolve("predictive-none.duckdb")
+      val file   = out.resolve(s"$loop-none.duckdb")
       val late   = Lateness.of(file)
       val rows   = RecordingReader.records(file).fold(error => sys.error(error.message), identity).map(_._2)
       val images = rows.collect { case picture: Picture => picture }
