@@ -50,9 +50,10 @@ final class FlightAssembler(
 )(using system: ActorSystem):
   import system.dispatcher
 
+  private val recorded: Set[ImagingSensor] = settings.recordedImaging
+
   /** Whether a record is kept, and not only shown. */
-  private[flight] def keeps(record: Record): Boolean =
-    ImagingSensor.of(record).forall(settings.recordedImaging)
+  private[flight] def keeps(record: Record): Boolean = ImagingSensor.of(record).forall(recorded)
 
   private val airSim = AirSimFleet(
     transport,
