@@ -148,7 +148,7 @@ final class FlyCommand(using Scenarios)
     }.toLeft(())
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
-    given system: ActorSystem = ActorSystem("skein-warm-up")
+    given system: ActorSystem = LiveSystem("skein-warm-up")
     try
       for
         flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
@@ -169,7 +169,7 @@ final class FlyCommand(using Scenarios)
       requests: OutsideRequests,
       secured: SolverSecurity.Checked
   ): Either[String, Flown] =
-    given system: ActorSystem = ActorSystem("skein")
+    given system: ActorSystem = LiveSystem("skein")
     val assembler             = FlightAssembler(
       TcpTransport(),
       Clock.system,
