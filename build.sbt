@@ -40,6 +40,8 @@ Global / concurrentRestrictions := TestGroups.restrictions
 // Every part on this machine, without the archives: what a project of a user's own builds from, minutes sooner.
 addCommandAlias("installLocal", "publishLocal")
 
+val publishCheck = taskKey[Unit]("fails where a part lacks what a release needs")
+
 // No sockets, no wall clock, no whole flights: for while one works.
 addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
 
@@ -50,7 +52,7 @@ lazy val root =
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, docs)
-    .settings(publish / skip := true)
+    .settings(publish / skip := true, publishCheck := Publishing.check.value)
 
 /** What a part is published as: `skein-core` and so on. */
 def artifact(part: String, does: String): Seq[Setting[?]] = Seq(name := s"skein-$part", description := does)

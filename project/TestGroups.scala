@@ -50,25 +50,36 @@ object TestGroups extends AutoPlugin {
     * their JVM to give way, for good, as is done before a live flight: on a busy machine everything behind them would be
     * interpreted.
     */
-  private val alone = Set(
-    "skein.cli.DocumentedClustersLiveSuite",
-    "skein.cli.DocumentedCommandsLiveSuite",
-    "skein.cli.DocumentedFlightsLiveSuite",
-    "skein.flight.WarmUpSimulation",
-    "skein.loop.planning.BackgroundThreadLiveSuite"
+  private val alone = Map(
+    "skein.cli.DocumentedClustersLiveSuite"         -> Jvm.oneCollector,
+    "skein.cli.DocumentedCommandsLiveSuite"         -> Jvm.oneCollector,
+    "skein.cli.DocumentedFlightsLiveSuite"          -> Jvm.brief,
+    "skein.flight.WarmUpSimulation"                 -> Jvm.brief,
+    "skein.loop.planning.BackgroundThreadLiveSuite" -> Jvm.oneCollector
   )
 
-  /** By vectors, which are slow until they are optimised, or for long. So are most simulations. */
+  /** By vectors, which are slow until they are optimised, or for long. */
   private val computing = Set(
     "skein.budget.BudgetSuite",
-    "skein.budget.ClusterSweptSuite",
-    "skein.budget.ScenarioSweptSuite",
+    "skein.budget.ClusterSubjectSuite",
+    "skein.budget.ScenarioSubjectSuite",
     "skein.cli.ClusterCommandsLiveSuite",
     "skein.cli.LearnCommandSuite",
     "skein.cli.OwnFamilySuite",
     "skein.cli.SearchCommandSuite",
     "skein.cli.ShippedProgramLiveSuite",
     "skein.cli.TortureQuestionSuite",
+    "skein.flight.ConvoySimulation",
+    "skein.flight.FailureTellingSimulation",
+    "skein.flight.FilmedFlightSimulation",
+    "skein.flight.HeldFlightSimulation",
+    "skein.flight.KeptLimitsSimulation",
+    "skein.flight.LearningFlightSimulation",
+    "skein.flight.ReplaySimulation",
+    "skein.flight.TeamSimulation",
+    "skein.loop.PlanLoopSimulation",
+    "skein.loop.ReplaySuite",
+    "skein.loop.SensorSimulation",
     "skein.loop.planning.PlanSuite",
     "skein.loop.planning.PlanWorkersLiveSuite",
     "skein.recognition.AprilTagsSuite",
@@ -78,8 +89,6 @@ object TestGroups extends AutoPlugin {
     "skein.search.SearchFileSuite",
     "skein.search.TeamSearchSuite"
   )
-
-  private def isComputing(suite: String) = computing(suite) || suite.endsWith("Simulation")
 
   override val projectSettings: Seq[Setting[?]] = Seq(
     testsCompute := false,
@@ -91,8 +100,8 @@ object TestGroups extends AutoPlugin {
       val groups = (Test / definedTests).value.groupBy { suite =>
         if (timing(suite.name)) "timing"
         else if (waiting(suite.name)) "waiting"
-        else if (alone(suite.name)) suite.name
-        else if (computes || isComputing(suite.name)) "computing"
+        else if (alone.contains(suite.name)) suite.name
+        else if (computes || computing(suite.name)) "computing"
         else "others"
       }
       groups.toSeq.sortBy(_._1).map {
@@ -100,7 +109,7 @@ object TestGroups extends AutoPlugin {
         case ("waiting", suites)   => new Tests.Group("waiting", suites, jvm(Jvm.brief), Seq(Waiting -> 1))
         case ("others", suites)    => new Tests.Group("others", suites, jvm(Jvm.brief), Nil)
         case ("computing", suites) => new Tests.Group("computing", suites, jvm(Jvm.oneCollector), Nil)
-        case (name, suites)        => new Tests.Group(name, suites, jvm(Nil), Nil)
+        case (name, suites)        => new Tests.Group(name, suites, jvm(alone(name)), Nil)
       }
     }
   )

@@ -26,7 +26,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
     * @return
     *   or why there is none
     */
-  def answer(swept: Vector[Swept]): Either[String, ArraySeq[Byte]] =
+  def answer(swept: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for
       one <- swept.lift(number).toRight(s"expected one of ${swept.size} that are swept, came number $number")
       tallies <- one.tallies(links, episodes, _ => (), () => false)

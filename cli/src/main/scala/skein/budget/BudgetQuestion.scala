@@ -10,7 +10,7 @@ import upickle.default.ReadWriter
 /** What a budget is asked of, in the words of the user: enough for another process to fly the same. */
 sealed trait BudgetQuestion derives ReadWriter:
   /** @return or what was expected, what came, and in which option */
-  def swept(threads: Int)(using Scenarios): Either[String, Swept]
+  def swept(threads: Int)(using Scenarios): Either[String, BudgetSubject]
 
 object BudgetQuestion:
 
@@ -29,14 +29,14 @@ object BudgetQuestion:
       conditions: Conditions,
       seed: Long
   ) extends BudgetQuestion:
-    def swept(threads: Int)(using Scenarios): Either[String, Swept] =
+    def swept(threads: Int)(using Scenarios): Either[String, BudgetSubject] =
       for
         role      <- PolicyFile.role(role)
         policy    <- PolicyFile.parse(role, policy).left.map("--policy: " + _)
         opponent  <- PolicyFile.parse(Role.opponentOf(role), opponent).left.map("--opponent: " + _)
         objective <- Objective.parse(objective, role).left.map("--objective: " + _)
         flown     <- conditions.resolved
-      yield DuelSwept(conditions, flown, policy, opponent, objective, seed, threads)
+      yield DuelSubject(conditions, flown, policy, opponent, objective, seed, threads)
 
   /** Of a scenario.
     *
@@ -53,7 +53,7 @@ object BudgetQuestion:
       plantIsTold: Boolean,
       seed: Long
   ) extends BudgetQuestion:
-    def swept(threads: Int)(using scenarios: Scenarios): Either[String, Swept] =
+    def swept(threads: Int)(using scenarios: Scenarios): Either[String, BudgetSubject] =
       for
         kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
         stated <- TeamQuestion.read(kind, set).left.map("--set: " + _)

@@ -8,7 +8,7 @@ import skein.signal.LatencyDistribution
   * @param asked
   *   episodes of each cell, where they were asked for
   */
-final class BudgetSweep(swept: Swept, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
+final class BudgetSweep(swept: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
   /** Of the map's cells, row by row. */
   private val links: Vector[Vector[Option[LatencyDistribution]]] =
     axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter)))

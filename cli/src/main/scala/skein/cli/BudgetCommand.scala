@@ -171,19 +171,19 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       cluster: Option[ClusterOptions.Checked],
       options: BudgetOptions,
       questions: Vector[BudgetQuestion],
-      swept: Vector[Swept],
+      swept: Vector[BudgetSubject],
       folder: Path,
       threads: Int
-  )(fly: Vector[Swept] => Either[String, Vector[BudgetMap]]): Either[String, Vector[BudgetMap]] =
+  )(fly: Vector[BudgetSubject] => Either[String, Vector[BudgetMap]]): Either[String, Vector[BudgetMap]] =
     cluster.fold(fly(swept)): asked =>
-      ClusterSwept
+      ClusterSubject
         .bytes(questions, swept)
         .flatMap: question =>
           val shown = Shown(options.json.value)
           OutFolder.alone(folder):
             ClusterRun.using(asked, program, Questions.budget(question), folder, threads, shown): run =>
               fly(swept.zipWithIndex.map((one, number) =>
-                ClusterSwept(one, number, run, () => run.share, asked.block)
+                ClusterSubject(one, number, run, () => run.share, asked.block)
               ))
 
   private def milliseconds(option: String, text: Option[String], otherwise: Double, legs: Legs) =
@@ -213,7 +213,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
 
   private def fly(
       options: BudgetOptions,
-      flown: Vector[Swept],
+      flown: Vector[BudgetSubject],
       tolerance: Tolerance,
       axes: BudgetAxes,
       legs: Legs,

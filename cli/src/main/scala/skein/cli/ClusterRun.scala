@@ -11,7 +11,7 @@ import skein.blocks.Ledger
 import skein.cluster.jars.Shipment
 import skein.cluster.{CoordinatorNode, WorkerProcesses}
 import skein.report.TextTable
-import skein.search.{Elsewhere, ElsewhereFailed}
+import skein.search.{BlockExecutor, BlocksFailed}
 
 /** A coordinator for one question, and the workers that it started. */
 private[cli] final class ClusterRun private (
@@ -22,7 +22,7 @@ private[cli] final class ClusterRun private (
     threads: Int,
     shown: Shown,
     shipment: Option[Shipment]
-) extends Elsewhere:
+) extends BlockExecutor:
   private val failure = AtomicReference(Option.empty[String])
 
   /** When the first answers were seen, and how many: before, workers start. */
@@ -63,7 +63,7 @@ private[cli] final class ClusterRun private (
         case Some(seen) => MetricsServer.serving(seen, () => node.metrics, Console.err.println(_))(body(this))
       shown.say(account)
       done
-    catch case failed: ElsewhereFailed => Left(failed.getMessage)
+    catch case failed: BlocksFailed => Left(failed.getMessage)
     finally
       val closing = node.close()
       processes.close()

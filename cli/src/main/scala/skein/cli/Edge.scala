@@ -1,7 +1,9 @@
 package skein.cli
 
+import java.util.concurrent.ConcurrentLinkedDeque
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, Future}
+import scala.jdk.CollectionConverters.*
 
 /** Where a command's main thread waits for what runs asynchronously. */
 private[cli] object Edge:
@@ -22,6 +24,11 @@ private[cli] object Edge:
     try body
     finally removeHook(hook)
 
+  private val stops = ConcurrentLinkedDeque[() => Unit]()
+
+  /** Ends whatever runs [[untilInterrupted]] now, as Ctrl-C would; the process goes on. */
+  def interrupt(): Unit = stops.asScala.foreach(_())
+
   /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` come to its own end, for at most `graceMillis`. */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()
@@ -33,8 +40,11 @@ private[cli] object Edge:
     if !added(hook) then
       interrupted = true
       stop()
+    stops.add(stop): Unit
     try body
-    finally removeHook(hook)
+    finally
+      stops.remove(stop): Unit
+      removeHook(hook)
 
   /** @return
     *   `false` where the JVM is shutting down already, and so waits for nobody

@@ -3,21 +3,10 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
-import scala.concurrent.duration.*
-import scala.concurrent.{Future, Promise}
-import skein.flight.{
-  AirSimFleet,
-  FlightAssembler,
-  FlightResult,
-  LiveFlights,
-  OutsideRequests,
-  ProgressBoard,
-  VirtualFlights,
-  WarmUp
-}
-import skein.link.{Address, TcpTransport}
+import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
+import skein.link.TcpTransport
 import skein.loop.{LoopKind, Outcome}
-import skein.record.{ClockKind, DuckDbRecorder, Record}
+import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.scene.Scene
@@ -103,24 +92,17 @@ final class FlyCommand(using Scenarios)
             _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil))
             shows    = Shows()
             requests = OutsideRequests()
-            flown <-
-              options.view.serving(shows, controlled = true)(flyLive(
-                settings,
-                plans,
-                simulator,
-                out,
-                Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.sights)),
-                sinks,
-                requests,
-                secured
-              ))
+            shown    =
+              Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.imagingSensors))
+            live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured)
+            flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
           yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), options.twins, out)))
         case ClockKind.Virtual =>
           for
             _      <- nothingToOverwrite(plans, out)
             landed <- flyVirtual(settings, plans, out)
             _      <- Arguments.all(landed)(one => options.beside.exported(one.plan, out))
-          yield Flown(landed, None)
+          yield LiveCommand.Flown(landed, None)
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
         kept(out)(report(flown.landed, out, Shown(options.json.value))),
@@ -132,132 +114,26 @@ final class FlyCommand(using Scenarios)
       )
     yield ()
 
-  /** @param grounded
-    *   why the flights that are not among those that landed were not flown, if any was not
-    */
-  private case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
-    def and(more: Either[String, Vector[FlightResult]]): Flown =
-      more.fold(
-        reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
-        twins => copy(landed ++ twins)
-      )
-
   private def nothingToOverwrite(plans: Vector[FlightPlan], out: Path): Either[String, Unit] =
     plans.map(plan => DuckDbRecorder.free(plan.file(out))).collectFirst { case Left(why) =>
       why.message
     }.toLeft(())
 
   private def warmUp(settings: FlySettings): Either[String, Unit] =
-    given system: ActorSystem = LiveSystem("skein-warm-up")
-    try
-      for
-        flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
-        decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), Clock.system))
-      yield Console.err.println(
-        s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
-      )
-    finally
-      val _ = Edge.await(system.terminate())
-
-  private def flyLive(
-      settings: FlySettings,
-      plans: Vector[FlightPlan],
-      simulator: Option[Address],
-      out: Path,
-      shown: Option[OnShow],
-      sinks: RecordOptions.Sinks,
-      requests: OutsideRequests,
-      secured: SolverSecurity.Checked
-  ): Either[String, Flown] =
-    given system: ActorSystem = LiveSystem("skein")
-    val assembler             = FlightAssembler(
-      TcpTransport(),
-      Clock.system,
-      settings,
-      simulator,
-      tell = tell,
-      calledOff = requests.calledOff,
-      solvers = SolverOptions.reached(settings, secured),
-      isWatched = shown.isDefined
-    )
-    try
-      if simulator.isEmpty then
-        flyTogether(assembler, plans, settings, out, shown, sinks, requests).map(Flown(_, None))
-      else flyInTurn(assembler, plans, settings, out, shown, sinks, requests)
-    finally
-      val _ = Edge.await(system.terminate())
-
-  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
-  private def flyInTurn(
-      assembler: FlightAssembler,
-      plans: Vector[FlightPlan],
-      settings: FlySettings,
-      out: Path,
-      shown: Option[OnShow],
-      sinks: RecordOptions.Sinks,
-      requests: OutsideRequests
-  )(using system: ActorSystem): Either[String, Flown] =
-    if plans.exists(_.loop == LoopKind.Paused) then
-      Console.err.println(
-        "paused: the simulator will stand still between steps, for all its clients; other --loop leave it running"
-      )
-    val flown = plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
-      if before.grounded.isDefined then before
-      else if Edge.isInterrupted then
-        before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
-      else
-        Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
-        flyTogether(assembler, Vector(plan), settings, out, shown, sinks, requests) match
-          case Left(reason)  => before.copy(grounded = Some(reason))
-          case Right(landed) => before.copy(landed = before.landed ++ landed)
-    flown.grounded match
-      case Some(reason) if flown.landed.isEmpty => Left(reason)
-      case _                                    => Right(flown)
-
-  private def flyTogether(
-      assembler: FlightAssembler,
-      plans: Vector[FlightPlan],
-      settings: FlySettings,
-      out: Path,
-      shown: Option[OnShow],
-      sinks: RecordOptions.Sinks,
-      requests: OutsideRequests
-  )(using system: ActorSystem): Either[String, Vector[FlightResult]] =
-    import system.dispatcher
-    val abandoned = Promise[Either[String, LiveFlights]]()
-    def stop()    =
-      val why = "ended from outside before it began"
-      requests.stopAll(why)
-      // Vehicles that nothing is heard of are not waited for.
-      system.scheduler.scheduleOnce(FlyCommand.CalledOffWithin)(
-        abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
-      ): Unit
-    Edge.untilInterrupted(() => stop()):
-      Edge
-        .await(Future.firstCompletedOf(Seq(
-          LiveFlights.start(
-            assembler,
-            plans,
-            out,
-            heading => shown.fold((_: Record) => ())(_.observe(heading)),
-            sinks.open
-          ),
-          abandoned.future
-        )))
-        .left
-        .map: why =>
-          sinks.discard(plans)
-          why
-        .map: flights =>
-          requests.flying(flights)
-          shown.foreach(_.flying(flights))
-          val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
-          val timer =
-            system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
-          try Edge.await(flights.landed)
-          finally
-            val _ = timer.cancel()
-            board.close()
+    if settings.loops.forall(FlyCommand.warm) then Right(())
+    else
+      given system: ActorSystem = LiveSystem("skein-warm-up")
+      try
+        for
+          flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
+          decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), Clock.system))
+        yield
+          FlyCommand.warm ++= settings.loops
+          Console.err.println(
+            s"warmed up by $flights virtual flights and $decisions decisions over loopback, so that none waits for the compiler"
+          )
+      finally
+        val _ = Edge.await(system.terminate())
 
   /** Virtual twins of the flights that were flown to their end. */
   private def flyTwins(
@@ -283,11 +159,6 @@ final class FlyCommand(using Scenarios)
     VirtualFlights.fly(settings, plans, out)((landed, contents) =>
       Console.err.println(s"${landed.plan.id} has landed; SHA-256 of what it recorded: $contents")
     )
-
-  /** What goes wrong in flight, above the line of progress. */
-  private def tell(line: String): Unit =
-    val isTerminal = System.console() != null && System.console().isTerminal
-    Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)
 
   /** Whoever ends the command behind the flights is told where they are. */
   private def kept[A](out: Path)(body: => A): A =
@@ -322,8 +193,8 @@ final class FlyCommand(using Scenarios)
     Either.cond(failures.isEmpty, (), failures.mkString("\n"))
 
 private[cli] object FlyCommand:
-  /** Vehicles on the way to their starts are told to hover within so long, about. */
-  private val CalledOffWithin = 5.seconds
+  /** Loops that this process has compiled: its next command need not. */
+  @volatile private var warm = Set.empty[LoopKind]
 
   /** A flight in which no vehicle was ever read for a decision is none, unless somebody ended it.
     *

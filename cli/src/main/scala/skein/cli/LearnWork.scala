@@ -20,7 +20,8 @@ private[cli] object LearnWork:
   /** @param probe
     *   what the paper's policy came to at the coordinator
     */
-  private final case class Posed(question: LearnQuestion, probe: Vector[RunningStats]) derives ReadWriter
+  private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
+      derives ReadWriter
 
   private val Probes = 0 until 4
 
@@ -35,12 +36,12 @@ private[cli] object LearnWork:
     judge => if judge == Judge.Baseline then baseline else learned
 
   def question(setup: LearnSetup): ArraySeq[Byte] =
-    ArraySeq.unsafeWrapArray(writeJson(Posed(setup.question, probe(setup))).getBytes(UTF_8))
+    ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(setup.question, probe(setup))).getBytes(UTF_8))
 
   def solvers(using Scenarios): Solvers = asked =>
     for
       posed <-
-        try Right(readJson[Posed](String(asked.toArray, UTF_8)))
+        try Right(readJson[ProbedQuestion](String(asked.toArray, UTF_8)))
         catch case mistake: Exception => Left(s"expected learning's question, came: ${mistake.getMessage}")
       setup <- posed.question.setup
       came = probe(setup)
@@ -64,7 +65,7 @@ private[cli] object LearnWork:
       case other          => refuse(s"expected a block of learning, came one of the kind $other")
 
   /** Blocks of episodes, among others. */
-  def episodes(run: Elsewhere): Elsewhere = new Elsewhere:
+  def episodes(run: BlockExecutor): BlockExecutor = new BlockExecutor:
     def cancel(): Unit                                                           = run.cancel()
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(_.prepended(Episodes)), onAnswer)
@@ -98,7 +99,7 @@ private[cli] object LearnWork:
       (settings, plans)
 
   /** The same flights' mean distances of the last 10 s, flown elsewhere; none where there is none. */
-  def distances(run: Elsewhere, policy: PolicyFile, count: Int)(
+  def distances(run: BlockExecutor, policy: PolicyFile, count: Int)(
       onWait: => Unit
   ): Either[String, Vector[Option[Double]]] =
     val numbers = policy.parameters

@@ -15,7 +15,7 @@ private[cli] final class OnShow(
     shows: Shows,
     requests: OutsideRequests,
     scene: Scene,
-    sights: Vector[ImagingSensor]
+    sensors: Vector[ImagingSensor]
 ):
   private val graphs = ConcurrentHashMap[String, GraphGauge]()
 
@@ -33,7 +33,7 @@ private[cli] final class OnShow(
       Vector(graph),
       controls = controls.toMap,
       scene = scene,
-      sights = sights
+      sensors = sensors
     ))
     feed.offer
 

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
-import skein.budget.ClusterSwept
+import skein.budget.ClusterSubject
 import skein.cluster.{Solver, Solvers}
 import skein.scenario.Scenarios
 import skein.search.VerifiedQuestion
@@ -33,7 +33,7 @@ private[cli] object Questions:
     val (kind, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
     String(kind.toArray, UTF_8) match
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
-      case Budget  => ClusterSwept.solvers.of(question.drop(1))
+      case Budget  => ClusterSubject.solvers.of(question.drop(1))
       case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
       case Spread  => SpreadQuestion.solvers.of(question.drop(1))
       case Learn   => LearnWork.solvers.of(question.drop(1))

@@ -9,7 +9,7 @@ import skein.cluster.{Solver, Solvers}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
-import skein.search.{Elsewhere, UntilWrong}
+import skein.search.{BlockExecutor, UntilWrong}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.Span
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
@@ -83,7 +83,7 @@ private[cli] object SpreadQuestion:
       * @param onLanded
       *   told of each, in any order
       */
-    def elsewhere(by: Elsewhere, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
+    def elsewhere(by: BlockExecutor, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
         onWait: => Unit
     ): Either[String, Vector[Either[NotFlown, FlightSummary]]] =
       val flown = flights(seeds)

@@ -3,7 +3,7 @@ package skein.cli
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.duration.DurationInt
-import skein.record.{Flight, RecordingHeader, Reading, Vehicle}
+import skein.record.{FlightRow, RecordingHeader, ReadingRow, Vehicle}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -26,11 +26,11 @@ private[cli] object TruthOnShow:
         val now    = clock.now()
         val number = sequence.getAndIncrement()
         for (name, kinematics) <- truth.vehicles do
-          feed.offer(Reading(number, name, Stamped(kinematics, truth.at, now, now)))
+          feed.offer(ReadingRow(number, name, Stamped(kinematics, truth.at, now, now)))
     )
 
   private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = RecordingHeader(
-    Flight(
+    FlightRow(
       "simulator",
       "none",
       "none",

@@ -83,9 +83,9 @@ object Figure:
     (above +: altitudes.toVector) ++ series
 
   /** What cameras saw. */
-  def ofSights(set: FlightSet): Vector[Figure] = SightFigure(set).toVector.map: drawing =>
+  def ofDetections(set: FlightSet): Vector[Figure] = DetectionFigure(set).toVector.map: drawing =>
     Figure(
-      "sights",
+      "detections",
       "What cameras saw",
       "At decisive moments of each flight: drawn anew by the built-in simulator's renderer from where the camera was at " +
         "the exposure, by the image, and where the vehicle was, by its own readings; the red box is where it was recognised.",

@@ -6,7 +6,7 @@ import scalatags.Text.tags2.{section, title as pageTitle}
 import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.Svg
-import skein.record.Flight
+import skein.record.FlightRow
 import skein.scenario.Scenarios
 import skein.units.Decimals.brief
 
@@ -38,7 +38,7 @@ object HtmlReport:
       case _                => s"Skein: ${set.flights.size} flights"
 
   private def abstractOf(set: FlightSet): String =
-    def named(values: Flight => String) =
+    def named(values: FlightRow => String) =
       set.flights.map(summary => values(summary.flight)).distinct.mkString(", ")
     s"Loops ${named(_.loop)}; links ${named(_.link)}; one decision per vehicle every " +
       s"${named(flight => flight.period.toMillis.brief)} ms; simulator ${named(_.simulator)}; " +

@@ -8,7 +8,7 @@ import skein.scenario.Scenarios
 object ReportFigures:
 
   def of(set: FlightSet)(using Scenarios): Vector[Figure] =
-    ScenarioReport.each(set)((report, flights) => report.figures(flights)) ++ Figure.ofSights(
+    ScenarioReport.each(set)((report, flights) => report.figures(flights)) ++ Figure.ofDetections(
       set
     ) ++ Figure.ofDecisions(set) ++
       Figure.ofDeviations(set.deviations) ++ Figure.ofPredictions(set.predictions) ++ LoopPictures.of(set)

@@ -97,7 +97,7 @@ object SummaryTables:
         seen.eye.target,
         seen.pictures.toString
       ) ++
-        Vector(seen.sights.size.toString) ++ spread(seen.tookMs, 0) ++ spread(seen.agesMs, 0) ++
+        Vector(seen.detections.size.toString) ++ spread(seen.tookMs, 0) ++ spread(seen.agesMs, 0) ++
         spread(seen.errorsM, 2)
     )
 

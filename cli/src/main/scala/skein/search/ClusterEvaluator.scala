@@ -10,7 +10,7 @@ import skein.optimise.{Evaluator, RunningStats}
   * @param onWait
   *   called a few times a second by the thread that waits, with the call's episodes over all candidates
   */
-final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, onWait: Long => Unit)
+final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:
 
   /** A round at once: there are always enough workers. */
@@ -19,7 +19,7 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
     talliesUnless(() => false)(candidates, episodes).get
 
-  /** @throws ElsewhereFailed
+  /** @throws BlocksFailed
     *   where there can be no answer
     */
   override def talliesUnless(isCancelled: () => Boolean)(
@@ -33,4 +33,4 @@ final class ClusterEvaluator(elsewhere: Elsewhere, judge: Judge, atMost: Int, on
       .flatMap:
         case None          => Right(None)
         case Some(answers) => SearchBlock.together(blocks, answers, episodes.size).map(Some(_))
-      .fold(reason => throw ElsewhereFailed(reason), identity)
+      .fold(reason => throw BlocksFailed(reason), identity)

@@ -18,7 +18,7 @@ class BudgetSuite extends munit.FunSuite:
   private def sweep(loop: String, episodes: Int, threads: Int = 2, durationS: Double = 60) =
     val named = Conditions(loop, "reduced", 100, durationS)
     BudgetSweep(
-      DuelSwept(
+      DuelSubject(
         named,
         named.resolved.fold(fail(_), identity),
         paper,
@@ -52,7 +52,7 @@ class BudgetSuite extends munit.FunSuite:
     assertEquals(done, flying.expected)
 
   test("a cancelled map is none"):
-    assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(Swept.Stopped))
+    assertEquals(sweep("stream", 5).map(_ => (), () => true), Left(BudgetSubject.Stopped))
 
   private def shown(bound: Vector[Double], legs: Legs = Legs.RoundTrip) = BudgetMap(
     "stream",

@@ -1,10 +1,13 @@
 package skein.cli
 
+import java.io.ByteArrayOutputStream
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.ExecutionContext.Implicits.global
 import scala.concurrent.duration.*
+import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 import skein.link.{Address, TcpTransport}
@@ -126,8 +129,20 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         assume(false, "inconclusive")
       second
 
-  /** In a process of its own, until it says that it listens; then it is told to end, as by Ctrl-C. */
+  /** Until it says that it listens; then it is told to end. */
   private def runUntilItListens(words: Seq[String]): (Int, String) =
+    val said  = ByteArrayOutputStream()
+    val ended = Future(blocking(Console.withOut(said)(Console.withErr(said)(Main.run(words)))))
+    while !said.toString.contains("127.0.0.1:") && !ended.isCompleted do Thread.sleep(20)
+    val deadline = 30.seconds.fromNow
+    // It says so before it waits.
+    while !ended.isCompleted && deadline.hasTimeLeft() do
+      Edge.interrupt()
+      Thread.sleep(20)
+    (Await.result(ended, 1.second), said.toString)
+
+  /** The same in a process of its own, which is ended as by Ctrl-C. */
+  private def runAProcessUntilItListens(words: Seq[String]): (Int, String) =
     val jvm     = ProcessHandle.current.info.command.get
     val agents  = java.lang.management.ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
     val process = ProcessBuilder(
@@ -200,9 +215,11 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
           (if told.contains("no coordinator at") then 0 else status, told)
         case "search" if words.contains("--cluster") =>
           val listening = words.updated(words.indexOf("--cluster") + 1, "127.0.0.1:0")
-          runUntilItListens(listening ++ forward ++ Seq("--out", folder.resolve("cluster").toString))
-        case "decide" => runUntilItListens(words ++ Seq("--at", "tcp://127.0.0.1:0"))
-        case "serve"  => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+          runAProcessUntilItListens(listening ++ forward ++ Seq("--out", folder.resolve("cluster").toString))
+        case "decide"                     => runUntilItListens(words ++ Seq("--at", "tcp://127.0.0.1:0"))
+        case "serve" if words.sizeIs == 1 =>
+          runAProcessUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
+        case "serve" => runUntilItListens(words ++ Seq("--listen", "127.0.0.1:0"))
         case "replay" if words.contains("--view") => runUntilItListens(words)
         case "link"                               =>
           // The ports of the guide may be taken here.

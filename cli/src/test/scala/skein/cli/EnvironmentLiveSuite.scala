@@ -49,7 +49,7 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders:
         "--link",
         "vpn",
         "--duration",
-        "12s",
+        "4s",
         "--out",
         name
       )*

@@ -3,7 +3,7 @@ package skein.cli
 import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 import scala.util.Using
-import skein.record.{EventKind, Picture, RecordingReader}
+import skein.record.{EventKind, CameraImage, RecordingReader}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
@@ -34,7 +34,7 @@ import skein.scenario.Scenarios
       val file   = out.resolve(s"$loop-none.duckdb")
       val late   = Lateness.of(file)
       val rows   = RecordingReader.records(file).fold(error => sys.error(error.message), identity).map(_._2)
-      val images = rows.collect { case picture: Picture => picture }
+      val images = rows.collect { case picture: CameraImage => picture }
       val lost   = rows.collect:
         case event: skein.record.Event
             if event.kind == EventKind.Dropped && event.detail.contains("not recorded") => event

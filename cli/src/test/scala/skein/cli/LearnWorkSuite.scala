@@ -7,7 +7,7 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.optimise.Evaluator
 import skein.scenario.Scenarios
-import skein.search.{ClusterEvaluator, Elsewhere, Judge}
+import skein.search.{ClusterEvaluator, BlockExecutor, Judge}
 import skein.settings.PolicyFile
 import skein.training.{LearnRun, LearnState}
 
@@ -31,9 +31,9 @@ class LearnWorkSuite extends munit.FunSuite:
   )
 
   /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
-  private lazy val worker: Elsewhere =
+  private lazy val worker: BlockExecutor =
     val solver = Questions.solvers.of(Questions.learn(LearnWork.question(setup))).fold(fail(_), identity)()
-    new Elsewhere:
+    new BlockExecutor:
       def cancel(): Unit                                                           = ()
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
         Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))

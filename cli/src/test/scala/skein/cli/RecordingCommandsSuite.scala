@@ -192,10 +192,11 @@ class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
       case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
       case other              => fail(other)
     // The duel's, and those of a forest's scouts with their lidars; two vehicles' front cameras.
-    val scouts = (1 to 5).map(number => s"Scout$number").toVector
-    val sights = scouts.map(ImagingSensor(_, "lidar", isLidar = true)) ++
+    val scouts  = (1 to 5).map(number => s"Scout$number").toVector
+    val sensors = scouts.map(ImagingSensor(_, "lidar", isLidar = true)) ++
       Seq("Pursuer", "Evader").map(ImagingSensor.camera(_, "front_center", "Scene"))
-    val known = schemas.keySet ++ (FlightTopics.all(scouts) ++ sights.flatMap(FlightTopics.of(_))).map(_.name)
+    val known =
+      schemas.keySet ++ (FlightTopics.all(scouts) ++ sensors.flatMap(FlightTopics.of(_))).map(_.name)
     val images = panels.values.flatMap(_.obj.get("imageMode")).toVector
     val shown  = panels("3D!flight")("topics").obj.keys.toSet + panels("RosOut!log")("topicToRender").str ++
       images.flatMap(mode => Seq(mode("imageTopic").str, mode("calibrationTopic").str))

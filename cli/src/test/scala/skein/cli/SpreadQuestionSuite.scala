@@ -9,7 +9,7 @@ import skein.flight.NotFlown
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.report.{DuelReport, ReportSections, Section}
 import skein.scenario.Scenarios
-import skein.search.Elsewhere
+import skein.search.BlockExecutor
 
 class SpreadQuestionSuite extends munit.FunSuite:
   override def munitTimeout: Duration = 4.minutes
@@ -28,9 +28,9 @@ class SpreadQuestionSuite extends munit.FunSuite:
   private def ready(words: String) = SpreadQuestion.Ready(options(words).settings.fold(fail(_), identity))
 
   /** A worker to whom nothing but the question's bytes is known; it answers the last block first. */
-  private def worker(words: String)(change: ArraySeq[Byte] => ArraySeq[Byte] = identity): Elsewhere =
+  private def worker(words: String)(change: ArraySeq[Byte] => ArraySeq[Byte] = identity): BlockExecutor =
     val solver = Questions.solvers.of(Questions.spread(question(words))).fold(fail(_), identity)()
-    new Elsewhere:
+    new BlockExecutor:
       def cancel(): Unit                                                           = ()
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
         val answers = works.reverse.map(solver.solve).reverse.map(change)

@@ -50,7 +50,7 @@ class BlindPursuitSimulation extends munit.FunSuite:
     val seen = FlightSummary.of(recording).seeing.headOption.getOrElse(fail("nothing was seen"))
     // Of 150 pictures.
     assert(clue(seen.pictures) > 100)
-    assert(clue(seen.sights.size) > 0.7 * seen.pictures)
+    assert(clue(seen.detections.size) > 0.7 * seen.pictures)
     assert(clue(seen.errorsM.get.median) < 0.25)
     // Recognition takes 15 to 120 ms, the way to and fro some 100 ms.
     assert(clue(seen.tookMs.get.least) >= 15 && clue(seen.tookMs.get.most) <= 120)
@@ -88,6 +88,6 @@ class BlindPursuitSimulation extends munit.FunSuite:
   for loop <- Seq(LoopKind.Sequential, LoopKind.Paused) do
     test(s"${loop.label}: the pursuer comes near by its camera alone"):
       val summary = FlightSummary.of(fly(settings(loop, 8)).recorder.recording)
-      assert(summary.seeing.exists(_.sights.sizeIs > 20), s"${summary.seeing.map(_.sights.size)}")
+      assert(summary.seeing.exists(_.detections.sizeIs > 20), s"${summary.seeing.map(_.detections.size)}")
       val closest = summary.result.flatMap(_.measured(1).value)
       assert(clue(closest).exists(_ < 12))

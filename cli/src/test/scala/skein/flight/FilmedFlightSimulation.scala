@@ -48,7 +48,7 @@ class FilmedFlightSimulation extends munit.FunSuite:
       ImageSource.Seen,
       ImageSource.Camera("bottom_center", 5)
     )
-    val images = flown.records.collect { case picture: Picture => picture }
+    val images = flown.records.collect { case picture: CameraImage => picture }
     val counts = images.groupMapReduce(one => (one.vehicle, one.camera, one.width, one.height))(_ => 1)(_ + _)
     assertEquals(
       counts.keySet,

@@ -12,12 +12,12 @@ class SummarySuite extends munit.FunSuite:
 
   private def second(time: Double): Instant = Instant.Epoch + Span.ofSeconds(time)
 
-  private def seen(vehicle: String, time: Double, x: Double, y: Double): Reading =
+  private def seen(vehicle: String, time: Double, x: Double, y: Double): ReadingRow =
     val state = Kinematics(Vector3(x, y, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
-    Reading(0, vehicle, Stamped(state, second(time), second(time), second(time + 0.04)))
+    ReadingRow(0, vehicle, Stamped(state, second(time), second(time), second(time + 0.04)))
 
   private val heading = RecordingHeader(
-    Flight(
+    FlightRow(
       "f",
       "stream",
       "direct",

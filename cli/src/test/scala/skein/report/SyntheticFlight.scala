@@ -41,7 +41,7 @@ object SyntheticFlight:
         val trips    = agents.map(_ => roundTrip())
         val decided  = now + trips.max + Span.ofMillis(random.nextDouble() * 3)
         val readings = agents.map: agent =>
-          Reading(
+          ReadingRow(
             sequence,
             scenario.agents(agent).name,
             Stamped(
@@ -88,11 +88,11 @@ object SyntheticFlight:
       scenario: Fleet,
       agent: Int,
       sequence: Long,
-      readings: Seq[Reading],
+      readings: Seq[ReadingRow],
       headings: Vector[Double],
       decided: Instant,
       lastSent: Vector[Option[Instant]]
-  ): Decision =
+  ): DecisionRow =
     val other   = 1 - agent
     val away    = readings(other).state.value.positionNed - readings(agent).state.value.positionNed
     val closing = readings(other).state.value.velocityNed - readings(agent).state.value.velocityNed
@@ -108,7 +108,7 @@ object SyntheticFlight:
         headings(other),
         elapsed.toSeconds
       )
-    Decision(
+    DecisionRow(
       sequence,
       self.name,
       decided,
@@ -145,7 +145,7 @@ object SyntheticFlight:
   ): RecordingHeader =
     def vehicle(agent: Agent) = Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
     RecordingHeader(
-      Flight(
+      FlightRow(
         s"$loop-$link",
         loop,
         link,

@@ -20,7 +20,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     val vehicles =
       agents.map(agent => Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
     val settings = scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
-    val flight   = Flight(
+    val flight   = FlightRow(
       s"$loop-none",
       loop,
       "none",
@@ -41,7 +41,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
         val at            = Instant.Epoch + Span.ofMillis(tick * 100.0)
         val (north, east) = placeM(vehicle, tick / 10.0)
         val state = Kinematics(Vector3(north, east, -5), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
-        Reading(tick, agent.name, Stamped(state, at, at, at))
+        ReadingRow(tick, agent.name, Stamped(state, at, at, at))
     Recording(RecordingHeader(flight, vehicles, settings), readings)
 
   private def resultOf(recording: Recording): Result =

@@ -31,8 +31,6 @@ private[flight] final class AirSimFleet(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  private val recorded: Set[ImagingSensor] = settings.recordedImaging
-
   /** Brings them to their starts, and connects them over the link of the plan. What is opened for that is to be closed. */
   def connect(
       plan: FlightPlan,
@@ -50,7 +48,7 @@ private[flight] final class AirSimFleet(
         // Altitudes count from where each vehicle starts, as in its own frame.
         vehicle.over(client, vehicle.originNed.copy(z = 0), index)
       )
-      logs    = vehicles.map(ImageRecorder(_, monitor, sight => isWatched || recorded(sight)))
+      logs = vehicles.map(ImageRecorder(_, monitor, sensor => isWatched || settings.recordedImaging(sensor)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
       films   = vehicles.zip(logs).flatMap(film(_, monitor, _))
       ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
@@ -81,7 +79,7 @@ private[flight] final class AirSimFleet(
       log: ImageRecorder
   ): Vector[CameraSensor] =
     settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
-      if isWatched || recorded.nonEmpty then log.ask(eye.camera)
+      if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
       CameraSensor(
         eye,
         vehicle.eyes,
@@ -93,10 +91,10 @@ private[flight] final class AirSimFleet(
 
   /** Its cameras that nobody decides by. */
   private def film(vehicle: VehicleClient, recorder: Recorder, log: ImageRecorder): Vector[FilmedCamera] =
-    settings.filmed.filter(_.sight.vehicle == vehicle.name).map: (sight, every) =>
-      log.ask(sight.name)
+    settings.filmed.filter(_.sensor.vehicle == vehicle.name).map: (sensor, every) =>
+      log.ask(sensor.name)
       FilmedCamera(
-        sight.name,
+        sensor.name,
         every,
         vehicle.eyes,
         clock,

@@ -26,8 +26,8 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
   def offer(record: Record): Unit =
     recorder.offer(record)
     record match
-      case reading: Reading   => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
-      case decision: Decision =>
+      case reading: ReadingRow   => val _ = heard.updateAndGet(_.read(reading.vehicle, reading.state))
+      case decision: DecisionRow =>
         val now = heard.updateAndGet(_.begun(decision.decidedAt))
         for known <- now.known(names, decision.decidedAt, isPaused) if scenario.isOver(known) do
           val _ = over.trySuccess(())

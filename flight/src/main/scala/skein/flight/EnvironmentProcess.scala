@@ -1,11 +1,10 @@
 package skein.flight
 
 import java.io.IOException
-import java.net.UnixDomainSocketAddress
 import java.nio.ByteBuffer
-import java.nio.channels.{SelectionKey, Selector, SocketChannel}
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.util.control.NonFatal
+import skein.settings.ProcessSocket
 import skein.signal.Kinematics
 import skein.units.*
 import ujson.{Arr, Num, Obj, Value}
@@ -26,10 +25,8 @@ import ujson.{Arr, Num, Obj, Value}
   * @param names
   *   of the vehicles
   */
-final class EnvironmentProcess private (channel: SocketChannel, names: Vector[String]):
+final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[String]):
   import EnvironmentProcess.*
-  private val selector = Selector.open()
-  channel.configureBlocking(false).register(selector, SelectionKey.OP_READ): Unit
 
   /** Begins an episode.
     *
@@ -43,21 +40,18 @@ final class EnvironmentProcess private (channel: SocketChannel, names: Vector[St
     "velocities" -> Obj.from(names.zip(velocities.map(v => Arr(v.x, v.y, v.z))))
   ))
 
-  def close(): Unit =
-    selector.close()
-    channel.close()
+  def close(): Unit = socket.close()
 
   private def ask(question: Obj): Either[String, Moment] =
     try
-      channel.write(ByteBuffer.wrap(s"${question.render()}\n".getBytes(UTF_8))): Unit
+      socket.ask(ByteBuffer.wrap(s"${question.render()}\n".getBytes(UTF_8)))
       read(ujson.read(line()))
     catch
       case lost: IOException => Left(lost.getMessage)
       case NonFatal(wrong)   => Left(s"expected an environment's answer, came ${wrong.getMessage}")
 
   private def read(answer: Value): Either[String, Moment] = answer.obj.get("error") match
-    // What another process says must not command a terminal.
-    case Some(error) => Left(error.str.replaceAll("\\p{Cntrl}+", " ").trim)
+    case Some(error) => Left(ProcessSocket.plain(error.str))
     case None        =>
       val bodies = names.map: name =>
         val told = answer("vehicles")(name)
@@ -73,14 +67,9 @@ final class EnvironmentProcess private (channel: SocketChannel, names: Vector[St
       Right(Moment(Span.ofSeconds(answer("stepS").num), bodies))
 
   private def line(): String =
-    val until = Clock.system.now() + AnswerWithin
     val bytes = ByteBuffer.allocate(LongestLine)
     while bytes.position() == 0 || bytes.get(bytes.position() - 1) != '\n' do
-      val leftMs = until.since(Clock.system.now()).toMillis.ceil.toLong
-      if leftMs <= 0 || selector.select(leftMs) == 0 then
-        throw IOException(s"expected an answer within ${AnswerWithin.toMillis.round} ms, came none")
-      selector.selectedKeys.clear()
-      if channel.read(bytes) < 0 then throw IOException("its process has ended")
+      socket.read(bytes)
       if !bytes.hasRemaining then throw IOException(s"expected at most $LongestLine bytes, came more")
     String(bytes.array, 0, bytes.position(), UTF_8)
 
@@ -102,7 +91,7 @@ object EnvironmentProcess:
 
   /** @return or why nobody is there */
   def connect(path: String, names: Vector[String]): Either[String, EnvironmentProcess] =
-    try Right(EnvironmentProcess(SocketChannel.open(UnixDomainSocketAddress.of(path)), names))
+    try Right(EnvironmentProcess(ProcessSocket(path, AnswerWithin), names))
     catch
       case nobody: IOException =>
         Left(s"expected an environment behind the socket $path: ${nobody.getMessage}")

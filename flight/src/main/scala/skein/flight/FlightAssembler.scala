@@ -12,7 +12,7 @@ import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{BackgroundThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
-import skein.record.{Flight as FlightRow, *}
+import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
 import skein.solver.{Briefing, SolverClient}
@@ -50,10 +50,9 @@ final class FlightAssembler(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  private val recorded: Set[ImagingSensor] = settings.recordedImaging
-
   /** Whether a record is kept, and not only shown. */
-  private[flight] def keeps(record: Record): Boolean = ImagingSensor.of(record).forall(recorded)
+  private[flight] def keeps(record: Record): Boolean =
+    ImagingSensor.of(record).forall(settings.recordedImaging)
 
   private val airSim = AirSimFleet(
     transport,

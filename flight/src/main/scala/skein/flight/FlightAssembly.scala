@@ -5,7 +5,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Success
 import skein.flow.Hold
 import skein.loop.*
-import skein.record.{Flight as _, *}
+import skein.record.*
 import skein.settings.FlightPlan
 import skein.solver.SolverClient
 import skein.units.*

@@ -7,14 +7,14 @@ import skein.units.*
 
 /** Records as `recorder` does, and remembers what is newest for whoever watches the flight. */
 final class FlightMonitor(recorder: Recorder) extends Recorder:
-  @volatile private var newest: Option[Decision] = None
-  private val heard                              = AtomicLong(Long.MinValue)
-  @volatile private var lastBroken               = Option.empty[Event]
+  @volatile private var newest: Option[DecisionRow] = None
+  private val heard                                 = AtomicLong(Long.MinValue)
+  @volatile private var lastBroken                  = Option.empty[Event]
 
   def offer(record: Record): Unit =
     record match
-      case decision: Decision => newest = Some(decision)
-      case reading: Reading   => val _ = heard.accumulateAndGet(reading.state.receivedAt.toNanos, math.max)
+      case decision: DecisionRow => newest = Some(decision)
+      case reading: ReadingRow   => val _ = heard.accumulateAndGet(reading.state.receivedAt.toNanos, math.max)
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
       case _                                                    => ()
     recorder.offer(record)

@@ -4,7 +4,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 import java.util.concurrent.ConcurrentHashMap
 import scala.concurrent.ExecutionContext
 import skein.airsim.{Image, Pixels, Scan, VehicleClient}
-import skein.record.{Blob, Cloud, Picture, Recorder, ImagingSensor}
+import skein.record.{Blob, Cloud, CameraImage, Recorder, ImagingSensor}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -29,19 +29,19 @@ private[skein] final class ImageRecorder(
 
   /** An image came. */
   def image(frame: Stamped[Image]): Unit =
-    val image = frame.value
-    val shot  = image.shot
-    val sight = ImagingSensor.camera(vehicle.name, shot.camera, shot.kind.toString)
-    if isWanted(sight) then
+    val image  = frame.value
+    val shot   = image.shot
+    val sensor = ImagingSensor.camera(vehicle.name, shot.camera, shot.kind.toString)
+    if isWanted(sensor) then
       val content = image.pixels match
         case Pixels.Bgr(bytes)      => Some(("bgr8", bytes.toArray))
         case Pixels.Numbers(values) => Some(("32FC1", ImageRecorder.bytes(values)))
         case Pixels.Png(_)          => None
       for
         (encoding, bytes) <- content
-        number            <- next(sight, frame.validAt)
+        number            <- next(sensor, frame.validAt)
       do
-        recorder.offer(Picture(
+        recorder.offer(CameraImage(
           number,
           vehicle.name,
           shot.camera,
@@ -60,9 +60,9 @@ private[skein] final class ImageRecorder(
 
   /** A scan came. */
   def scan(lidar: String, frame: Stamped[Scan]): Unit =
-    val sight = ImagingSensor(vehicle.name, lidar, isLidar = true)
-    if isWanted(sight) then
-      for number <- next(sight, frame.validAt) do
+    val sensor = ImagingSensor(vehicle.name, lidar, isLidar = true)
+    if isWanted(sensor) then
+      for number <- next(sensor, frame.validAt) do
         recorder.offer(Cloud(
           number,
           vehicle.name,
@@ -77,9 +77,9 @@ private[skein] final class ImageRecorder(
         ))
 
   /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats itself. */
-  private def next(sight: ImagingSensor, validAt: Instant): Option[Long] =
+  private def next(sensor: ImagingSensor, validAt: Instant): Option[Long] =
     val now = counts.compute(
-      sight,
+      sensor,
       (_, before) =>
         if before == null then ImageRecorder.Count(1, validAt, isNew = true)
         else if before.validAt == validAt then before.copy(isNew = false)

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.loop.*
 import skein.port.{SteppedTime, VehiclePort}
-import skein.record.{Flight as FlightRow, *}
+import skein.record.*
 import skein.scenario.Scenario
 import skein.settings.ScenarioSettings
 import skein.units.*

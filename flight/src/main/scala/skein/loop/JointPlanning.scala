@@ -55,6 +55,6 @@ object JointPlanning:
     val (vehicles, plannings) =
       (for
         vehicle  <- fleet.agents.indices.toVector
-        planning <- Plannings.of(fleet, vehicle, settings, seed)
+        planning <- Planning.of(fleet, vehicle, settings, seed)
       yield (vehicle, planning)).unzip
     Option.when(vehicles.nonEmpty)(JointPlanning(vehicles, plannings))

@@ -20,8 +20,8 @@ object LoopInstance:
     import system.dispatcher
     if kind == LoopKind.Paused then Future.successful(None)
     else
-      val crafts  = fleet.agents.map(agent => Silent(agent.policy.sensors))
-      val team    = Team(fleet, crafts, Clock.system, Forgetting, settings)
+      val ports   = fleet.agents.map(agent => Silent(agent.policy.sensors))
+      val team    = Team(fleet, ports, Clock.system, Forgetting, settings)
       val flight  = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
       val running = RunningGraph(team.meters)
       // A graph that has just been started tells nothing yet.

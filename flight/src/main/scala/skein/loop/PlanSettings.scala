@@ -122,20 +122,7 @@ final case class PlanSettings(
       case _ => ownM.max(leastM.getOrElse(ownM)).min(mostM.getOrElse(Double.PositiveInfinity))
 
   /** As [[PlanSettings.parse]] reads it back, apart from the response. */
-  def text: String = Seq(
-    "deadlineNs"     -> deadline.toNanos,
-    "horizonSteps"   -> horizonSteps,
-    "stepNs"         -> step.toNanos,
-    "method"         -> method,
-    "behaviours"     -> behaviours,
-    "searches"       -> searches,
-    "slices"         -> slices,
-    "blocksPerSlice" -> blocksPerSlice,
-    "turningRadiusM" -> turningRadiusM,
-    "slowestShare"   -> slowestShare,
-    "separationM"    -> separationM,
-    "geofenceM"      -> geofenceM
-  ).map((name, value) => s"$name=$value").mkString(" ")
+  def text: String = PlanSettings.fields.map(field => s"${field.name}=${field.text(this)}").mkString(" ")
 
 object PlanSettings:
   val CrossEntropy = "cross-entropy"
@@ -157,35 +144,56 @@ object PlanSettings:
   /** Work for a tenth of a millisecond with lanes, for two without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
+  /** What the text has of settings, and how it is read back. */
+  private final case class Field(
+      name: String,
+      text: PlanSettings => Any,
+      read: (PlanSettings, String) => Option[PlanSettings]
+  )
+
+  private val fields = Vector(
+    Field(
+      "deadlineNs",
+      _.deadline.toNanos,
+      (to, ns) => ns.toLongOption.map(n => to.copy(deadline = Span.ofNanos(n)))
+    ),
+    Field(
+      "horizonSteps",
+      _.horizonSteps,
+      (to, count) => count.toIntOption.map(n => to.copy(horizonSteps = n))
+    ),
+    Field("stepNs", _.step.toNanos, (to, ns) => ns.toLongOption.map(n => to.copy(step = Span.ofNanos(n)))),
+    Field("method", _.method, (to, name) => Some(to.copy(method = name))),
+    Field("behaviours", _.behaviours, (to, count) => count.toIntOption.map(n => to.copy(behaviours = n))),
+    Field("searches", _.searches, (to, count) => count.toIntOption.map(n => to.copy(searches = n))),
+    Field("slices", _.slices, (to, count) => count.toIntOption.map(n => to.copy(slices = n))),
+    Field(
+      "blocksPerSlice",
+      _.blocksPerSlice,
+      (to, count) => count.toIntOption.map(n => to.copy(blocksPerSlice = n))
+    ),
+    Field(
+      "turningRadiusM",
+      _.turningRadiusM,
+      (to, m) => m.toDoubleOption.map(n => to.copy(turningRadiusM = n))
+    ),
+    Field(
+      "slowestShare",
+      _.slowestShare,
+      (to, share) => share.toDoubleOption.map(n => to.copy(slowestShare = n))
+    ),
+    Field("separationM", _.separationM, (to, m) => m.toDoubleOption.map(n => to.copy(separationM = n))),
+    Field("geofenceM", _.geofenceM, (to, m) => m.toDoubleOption.map(n => to.copy(geofenceM = n)))
+  )
+
   /** Reads settings back from their text; absent where that is no such text. */
   def parse(text: String): Option[PlanSettings] =
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
-    for
-      deadline   <- values.get("deadlineNs").flatMap(_.toLongOption)
-      steps      <- values.get("horizonSteps").flatMap(_.toIntOption)
-      step       <- values.get("stepNs").flatMap(_.toLongOption)
-      method     <- values.get("method")
-      behaviours <- values.get("behaviours").flatMap(_.toIntOption)
-      searches   <- values.get("searches").flatMap(_.toIntOption)
-      slices     <- values.get("slices").flatMap(_.toIntOption)
-      blocks     <- values.get("blocksPerSlice").flatMap(_.toIntOption)
-      radius     <- values.get("turningRadiusM").flatMap(_.toDoubleOption)
-      slowest    <- values.get("slowestShare").flatMap(_.toDoubleOption)
-      separation <- values.get("separationM").flatMap(_.toDoubleOption)
-      geofence   <- values.get("geofenceM").flatMap(_.toDoubleOption)
-      settings = PlanSettings(
-        Span.ofNanos(deadline),
-        steps,
-        Span.ofNanos(step),
-        method,
-        behaviours,
-        searches,
-        slices,
-        blocks,
-        radius,
-        slowest,
-        separation,
-        geofence
-      )
-      if settings.mistakes.isEmpty
-    yield settings
+    fields
+      .foldLeft(Option(PlanSettings())): (read, field) =>
+        for
+          settings <- read
+          value    <- values.get(field.name)
+          next     <- field.read(settings, value)
+        yield next
+      .filter(_.mistakes.isEmpty)

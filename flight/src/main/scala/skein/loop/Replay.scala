@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.policy.Fleet
-import skein.record.{Decision as DecisionRow, Reading as ReadingRow, *}
+import skein.record.*
 import skein.scenario.Scenarios
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*

@@ -3,12 +3,12 @@ package skein.loop
 import skein.policy.{Action, Fleet, Role}
 import skein.record.{
   Command,
-  Decision as DecisionRow,
+  DecisionRow,
   Measurement,
   Observations,
   Predicted,
   PredictedMotion,
-  Reading as ReadingRow,
+  ReadingRow,
   Sensing,
   Sighting,
   TrueAge

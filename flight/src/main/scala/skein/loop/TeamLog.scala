@@ -13,7 +13,7 @@ import skein.record.{
   Prediction,
   Recorder,
   SolverClock,
-  Solved as SolvedRow
+  SolvedRow
 }
 import skein.units.*
 

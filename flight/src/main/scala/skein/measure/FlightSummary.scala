@@ -32,7 +32,7 @@ import skein.units.Decimals.fixed
   *   of commands that carry out a decision: from when the vehicle's own physics was sampled to the command's sending
   */
 final case class FlightSummary(
-    flight: Flight,
+    flight: FlightRow,
     tracks: Vector[Track],
     scenario: Option[Scenario],
     roles: Vector[RoleSummary],

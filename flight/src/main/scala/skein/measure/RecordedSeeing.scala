@@ -33,12 +33,12 @@ object RecordedSeeing:
         seen.eye.deadline.toSeconds,
         seen.pictures,
         inView.toDouble / own.size.max(1),
-        seen.sights.map: sight =>
-          val there = Placement(sight.cameraNed, sight.orientation).inside(sight.trueNed)
+        seen.detections.map: detection =>
+          val there = Placement(detection.cameraNed, detection.orientation).inside(detection.trueNed)
           Detected(
-            sight.azimuthRad - StrictMath.atan2(there.y, there.x),
-            sight.rangeM,
+            detection.azimuthRad - StrictMath.atan2(there.y, there.x),
+            detection.rangeM,
             there.norm,
-            sight.tookMs
+            detection.tookMs
           )
       )

@@ -21,7 +21,7 @@ import skein.units.*
   * @param firstUsedMs
   *   how old it was when it was first decided upon, if it was
   */
-final case class Sight(
+final case class Detection(
     at: Instant,
     sinceStartS: Double,
     cameraNed: Vector3,
@@ -47,21 +47,21 @@ final case class Sight(
   */
 final case class SeeingSummary(
     eye: Eye,
-    sights: Vector[Sight],
+    detections: Vector[Detection],
     pictures: Int,
     agesMs: Option[Distribution]
 ):
-  def tookMs: Option[Distribution]  = Distribution.of(sights.map(_.tookMs))
-  def errorsM: Option[Distribution] = Distribution.of(sights.map(_.errorM))
+  def tookMs: Option[Distribution]  = Distribution.of(detections.map(_.tookMs))
+  def errorsM: Option[Distribution] = Distribution.of(detections.map(_.errorM))
 
   /** Moments worth a look, each with its name: the first detection, the closest, the last before the eye had lost what it
     * looks for the longest, and the next one.
     */
-  def decisive: Vector[(String, Sight)] =
-    val gap = sights.zip(sights.drop(1)).maxByOption((before, next) => next.at.since(before.at))
+  def decisive: Vector[(String, Detection)] =
+    val gap = detections.zip(detections.drop(1)).maxByOption((before, next) => next.at.since(before.at))
     Vector(
-      sights.headOption.map("first seen" -> _),
-      sights.minByOption(_.rangeM).map("closest" -> _),
+      detections.headOption.map("first seen" -> _),
+      detections.minByOption(_.rangeM).map("closest" -> _),
       gap.map((before, _) => "before it was lost longest" -> before),
       gap.map((_, next) => "seen again" -> next)
     ).flatten
@@ -79,10 +79,10 @@ object SeeingSummary:
     for
       track <- target if ordered.nonEmpty
     yield
-      val sights = ordered.map: row =>
+      val detections = ordered.map: row =>
         val v       = row.numbers
         val nearest = turned((byTime.search(row.validAt).insertionPoint - 1).max(0))
-        Sight(
+        Detection(
           row.validAt,
           row.validAt.since(track.from).toSeconds,
           Vector3(v(11), v(12), v(13)),
@@ -98,7 +98,7 @@ object SeeingSummary:
         )
       SeeingSummary(
         eye,
-        sights.toVector,
+        detections.toVector,
         ordered.last.numbers(18).toInt,
         Distribution.of(ages.values.flatten.toVector)
       )

@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.record.{EventKind, Recording, Solved}
+import skein.record.{EventKind, Recording, SolvedRow}
 
 /** What it came to that a flight's decisions were made in another process.
   *
@@ -44,7 +44,7 @@ object SolverSummary:
     for at <- recording.heading.parameters.find(_.name == Parameter).map(_.value)
     yield
       val solved                            = recording.solved
-      def ms(of: Solved => Double)          = Distribution.of(solved.map(of))
+      def ms(of: SolvedRow => Double)       = Distribution.of(solved.map(of))
       def count(kind: EventKind)            = recording.events.count(_.kind == kind)
       def said(kind: EventKind, in: String) =
         recording.events.filter(event => event.kind == kind && event.detail.contains(in))

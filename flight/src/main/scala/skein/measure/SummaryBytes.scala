@@ -4,7 +4,7 @@ import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, Da
 import java.util.zip.{DeflaterOutputStream, InflaterInputStream}
 import scala.collection.immutable.ArraySeq
 import scala.util.Using
-import skein.record.{EventKind, Flight}
+import skein.record.{EventKind, FlightRow}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
 
@@ -60,7 +60,7 @@ object SummaryBytes:
       option(of.solver)(solver)
       option(of.commandAgesMs)(distribution)
 
-    private def flight(of: Flight): Unit =
+    private def flight(of: FlightRow): Unit =
       Seq(of.id, of.loop, of.link, of.clock, of.simulator, of.scenario, of.version).foreach(text)
       Seq(of.seed, of.period.toNanos, of.duration.toNanos, of.startedAt.toNanos).foreach(out.writeLong)
 
@@ -91,14 +91,20 @@ object SummaryBytes:
 
     private def seeing(of: SeeingSummary, scenario: Option[Scenario]): Unit =
       out.writeInt(scenario.fold(-1)(_.eyes.indexOf(of.eye)))
-      each(of.sights): sight =>
-        out.writeLong(sight.at.toNanos)
-        Seq(sight.cameraNed, sight.believedNed, sight.trueNed).foreach(vector)
-        Seq(sight.orientation, sight.trueOrientation).foreach: turned =>
+      each(of.detections): detection =>
+        out.writeLong(detection.at.toNanos)
+        Seq(detection.cameraNed, detection.believedNed, detection.trueNed).foreach(vector)
+        Seq(detection.orientation, detection.trueOrientation).foreach: turned =>
           Seq(turned.w, turned.x, turned.y, turned.z).foreach(out.writeDouble)
-        Seq(sight.sinceStartS, sight.azimuthRad, sight.elevationRad, sight.rangeM, sight.tookMs)
+        Seq(
+          detection.sinceStartS,
+          detection.azimuthRad,
+          detection.elevationRad,
+          detection.rangeM,
+          detection.tookMs
+        )
           .foreach(out.writeDouble)
-        option(sight.firstUsedMs)(out.writeDouble)
+        option(detection.firstUsedMs)(out.writeDouble)
       out.writeInt(of.pictures)
       option(of.agesMs)(distribution)
 
@@ -164,10 +170,10 @@ object SummaryBytes:
         commandAgesMs = option(distribution())
       )
 
-    private def flight(): Flight =
+    private def flight(): FlightRow =
       val Seq(id, loop, link, clock, simulator, scenario, version) = Seq.fill(7)(text())
       val Seq(seed, period, duration, startedAt)                   = Seq.fill(4)(in.readLong())
-      Flight(
+      FlightRow(
         id,
         loop,
         link,
@@ -203,13 +209,13 @@ object SummaryBytes:
       PredictionErrors(in.readInt(), doubles().zip(doubles()))
 
     private def seeing(scenario: Option[Scenario]): Option[SeeingSummary] =
-      val eye    = in.readInt()
-      val sights = each:
+      val eye        = in.readInt()
+      val detections = each:
         val at                                          = Instant.ofNanos(in.readLong())
         val Seq(camera, believed, truth)                = Seq.fill(3)(vector())
         val Seq(turned, trueTurned)                     = Seq.fill(2)(quaternion())
         val Seq(since, azimuth, elevation, range, took) = Seq.fill(5)(in.readDouble())
-        Sight(
+        Detection(
           at,
           since,
           camera,
@@ -225,7 +231,7 @@ object SummaryBytes:
         )
       val pictures = in.readInt()
       val ages     = option(distribution())
-      scenario.flatMap(_.eyes.lift(eye)).map(SeeingSummary(_, sights, pictures, ages))
+      scenario.flatMap(_.eyes.lift(eye)).map(SeeingSummary(_, detections, pictures, ages))
 
     private def solver(): SolverSummary =
       SolverSummary(

@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.record.{Decision, Observations}
+import skein.record.{DecisionRow, Observations}
 import skein.units.Span
 
 /** The paper's four observations at every decision. */
@@ -20,4 +20,4 @@ enum TimingObservation(val title: String, of: Observations => Option[Span]):
   case SinceOpponentMove extends TimingObservation("time since opponent's last move", _.sinceOpponentMove)
 
   /** ms; absent before the first move. */
-  def ms(decision: Decision): Option[Double] = of(decision.observations).map(_.toMillis)
+  def ms(decision: DecisionRow): Option[Double] = of(decision.observations).map(_.toMillis)

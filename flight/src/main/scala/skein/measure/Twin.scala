@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.record.Flight
+import skein.record.FlightRow
 import skein.units.Decimals.brief
 
 /** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
@@ -42,7 +42,7 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
 
   /** In what the twins were not flown as the live flight was; empty for true twins. */
   def unlike: Vector[String] =
-    def names[A](what: String, of: Flight => A)(show: A => String) =
+    def names[A](what: String, of: FlightRow => A)(show: A => String) =
       val theirs = virtual.map(twin => of(twin.flight)).distinct
       Option.when(theirs != Vector(of(live.flight)))(
         s"$what ${show(of(live.flight))} live, ${theirs.map(show).mkString(", ")} virtual"

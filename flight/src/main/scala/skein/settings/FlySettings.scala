@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.{Config, ConfigValueFactory}
+import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
@@ -10,7 +10,7 @@ import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy, Policy}
 import skein.record.ImagingSensor
-import skein.scenario.{Equipment, PaperDuel, Scenario, Scenarios}
+import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -59,11 +59,11 @@ final case class FlySettings(
 ):
 
   /** The cameras and lidars whose images and clouds the flight has. */
-  def sights: Vector[ImagingSensor] = (seen ++ filmed.map((sight, _) => sight)).distinct
+  def imagingSensors: Vector[ImagingSensor] = (seen ++ filmed.map((sensor, _) => sensor)).distinct
 
   /** Those of which they are recorded. */
-  def recordedImaging: Set[ImagingSensor] =
-    (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sight, _) => sight)
+  lazy val recordedImaging: Set[ImagingSensor] =
+    (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sensor, _) => sensor)
 
   /** Those that its policies look through. */
   private def seen: Vector[ImagingSensor] =
@@ -73,7 +73,7 @@ final case class FlySettings(
       }
 
   /** Those that are looked through for the recording alone, and how often. */
-  def filmed: Vector[(sight: ImagingSensor, every: Span)] =
+  def filmed: Vector[(sensor: ImagingSensor, every: Span)] =
     for
       agent <- fleet.agents
       case ImageSource.Camera(name, hz) <- images.toVector
@@ -327,35 +327,15 @@ object FlySettings:
   )
 
   private given ConfigReader[PlanSettings] =
-    ConfigKeys.reader[Planning].map: read =>
-      PlanSettings(
-        deadline = read.deadline,
-        horizonSteps = read.horizonSteps,
-        step = read.step,
-        method = read.method,
-        behaviours = read.behaviours,
-        searches = read.searches,
-        slices = read.slices,
-        turningRadiusM = read.turningRadiusM,
-        slowestShare = read.slowestShare,
-        separationM = read.separationM,
-        geofenceM = read.geofenceM
-      )
+    val standard = PlanSettings()
+    // These are not configured: what else is set, and the machine, say them.
+    given ConfigReader[Vector[Kept]] = unread(standard.kept)
+    given ConfigReader[ReducedModel] = unread(standard.response)
+    val blocks = ConfigFactory.parseString(s"blocks-per-slice = ${standard.blocksPerSlice}").root
+    ConfigKeys.reader[PlanSettings].contramapConfig(_.withFallback(blocks))
 
-  /** [[PlanSettings]] as far as they are configured. */
-  private final case class Planning(
-      deadline: Span,
-      horizonSteps: Int,
-      step: Span,
-      method: String,
-      behaviours: Int,
-      searches: Int,
-      slices: Int,
-      turningRadiusM: Double,
-      slowestShare: Double,
-      separationM: Double,
-      geofenceM: Double
-  )
+  private def unread[A](value: A): ConfigReader[A] = new ConfigReader[A] with ReadsMissingKeys:
+    def from(cursor: ConfigCursor): ConfigReader.Result[A] = Right(value)
 
   private given ConfigReader[LoopKind] = parsed("loop", LoopKind.parse)
 

@@ -1,13 +1,12 @@
 package skein.settings
 
 import java.io.IOException
-import java.net.UnixDomainSocketAddress
 import java.nio.ByteBuffer
-import java.nio.channels.{SelectionKey, Selector, SocketChannel}
+import java.nio.charset.StandardCharsets.UTF_8
 import java.util.concurrent.TimeUnit.NANOSECONDS
 import java.util.concurrent.{ExecutionException, FutureTask, TimeoutException}
 import skein.policy.*
-import skein.units.{Clock, Instant, Span}
+import skein.units.Span
 
 /** A policy in a process of its own, asked over a Unix socket. It gets the observation of `skein.environment`
   * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond are clipped.
@@ -47,7 +46,6 @@ object OutsidePolicy:
   val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val MostText = 1 << 16
-  private val Ended    = "its process has ended"
 
   /** The policy of a process that answers now.
     *
@@ -88,10 +86,8 @@ object OutsidePolicy:
 
   /** Open until the process ends, or the other side does not keep to the protocol. */
   private final class Connection(path: String, answerWithin: Span):
-    private val channel  = SocketChannel.open(UnixDomainSocketAddress.of(path))
-    private val selector = Selector.open()
-    private var broken   = Option.empty[String]
-    channel.configureBlocking(false).register(selector, SelectionKey.OP_READ): Unit
+    private val socket = ProcessSocket(path, answerWithin)
+    private var broken = Option.empty[String]
 
     def ask(seen: Array[Float]): Float = synchronized:
       val answer = broken.toLeft(()).flatMap: _ =>
@@ -99,38 +95,22 @@ object OutsidePolicy:
         catch
           case reason: IOException =>
             broken = Some(reason.getMessage)
-            selector.close()
-            channel.close()
+            socket.close()
             Left(reason.getMessage)
       answer.fold(reason => throw IOException(s"the policy: $reason"), identity)
 
     private def exchange(seen: Array[Float]): Either[String, Float] =
-      val until    = Clock.system.now() + answerWithin
       val question = ByteBuffer.allocate(4 * seen.length)
       for number <- seen do question.putFloat(number): Unit
-      channel.read(ByteBuffer.allocate(1)) match
-        case 0          => ()
-        case n if n < 0 => throw IOException(Ended)
-        case _          => throw IOException("expected one answer to a question, came more")
-      channel.write(question.flip()): Unit
-      received(1, until).get match
+      if socket.isAhead then throw IOException("expected one answer to a question, came more")
+      socket.ask(question.flip())
+      socket.read(1).get match
         case 0 =>
-          val share = received(4, until).getFloat
+          val share = socket.read(4).getFloat
           Either.cond(share.isFinite, share, s"expected a number from -1 to 1, came $share")
         case 1 =>
-          val length = received(4, until).getInt
+          val length = socket.read(4).getInt
           if length < 0 || length > MostText then
             throw IOException(s"expected at most $MostText bytes of text, came $length")
-          // What another process says must not command a terminal.
-          Left(String(received(length, until).array, "UTF-8").replaceAll("\\p{Cntrl}+", " ").trim)
+          Left(ProcessSocket.plain(String(socket.read(length).array, UTF_8)))
         case other => throw IOException(s"expected 0 or 1 before an answer, came $other")
-
-    private def received(bytes: Int, until: Instant): ByteBuffer =
-      val buffer = ByteBuffer.allocate(bytes)
-      while buffer.hasRemaining do
-        val leftMs = until.since(Clock.system.now()).toMillis.ceil.toLong
-        if leftMs <= 0 || selector.select(leftMs) == 0 then
-          throw IOException(s"expected an answer within ${answerWithin.toMillis.round} ms, came none")
-        selector.selectedKeys.clear()
-        if channel.read(buffer) < 0 then throw IOException(Ended)
-      buffer.flip()

@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.{Memory, TeamView}
 import skein.policy.{Action, Fleet}
-import skein.record.{ClockKind, Flight, Parameter, Recording, RecordingHeader}
+import skein.record.{ClockKind, FlightRow, Parameter, Recording, RecordingHeader}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
@@ -65,7 +65,7 @@ object Briefing:
     *   or what of it is not known here
     */
   def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
-    val flight = Flight(
+    val flight = FlightRow(
       "solver",
       briefing.loop,
       LatencyProfile.none.name,

@@ -1,7 +1,7 @@
 package skein.torture
 
 import skein.loop.{LoopKind, Outcome}
-import skein.record.{Decision, Recording}
+import skein.record.{DecisionRow, Recording}
 import skein.scenario.PaperDuel
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -30,10 +30,10 @@ object Checks:
   /** The moves that arrived must be among those sent, in the order in which they were sent. */
   private def overtaken(seen: FlightTrace): Vector[String] =
     for
-      (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
-      late             <- firstOutOfOrder(
+      (vehicle, port) <- seen.vehicles.zip(seen.ports)
+      late            <- firstOutOfOrder(
         seen.arrivals.filter(_.vehicle == vehicle).map(arrival => (arrival.north, arrival.east)),
-        craft.sendings.map(sending => (sending.north, sending.east))
+        port.sendings.map(sending => (sending.north, sending.east))
       )
     yield s"$vehicle: a command overtook a newer one: arrival $late came after one that was sent later"
 
@@ -46,23 +46,23 @@ object Checks:
       found < 0
 
   private def outstanding(seen: FlightTrace): Vector[String] =
-    for (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if craft.commands.most > MostOutstanding
-    yield s"$vehicle: ${craft.commands.most} commands were outstanding at once"
+    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > MostOutstanding
+    yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
   /** While the simulator stands still no time passes between commands. */
   private def tooFast(seen: FlightTrace): Vector[String] =
     for
-      (vehicle, craft) <- seen.vehicles.zip(seen.crafts) if seen.faultPlan.loop != LoopKind.Paused
-      (one, next)      <- craft.sendings.zip(craft.sendings.drop(1)).find: (one, next) =>
+      (vehicle, port) <- seen.vehicles.zip(seen.ports) if seen.faultPlan.loop != LoopKind.Paused
+      (one, next)     <- port.sendings.zip(port.sendings.drop(1)).find: (one, next) =>
         next.at.since(one.at) < seen.minCommandInterval
     yield s"$vehicle: two commands within ${next.at.since(one.at).toMillis.fixed(3)} ms, at ${ms(seen, one.at)}"
 
   private def unended(seen: FlightTrace): Vector[String] =
     val calls =
       for
-        (vehicle, craft) <- seen.vehicles.zip(seen.crafts)
-        (what, count)    <-
-          Seq("read" -> craft.reads, "command" -> craft.commands, "sensor" -> craft.measurements)
+        (vehicle, port) <- seen.vehicles.zip(seen.ports)
+        (what, count)   <-
+          Seq("read" -> port.reads, "command" -> port.commands, "sensor" -> port.measurements)
         if count.begun != count.ended
       yield s"$vehicle: ${count.begun} $what calls began, ${count.ended} ended"
     calls ++ Option.when(seen.steps.begun != seen.steps.ended)(
@@ -71,10 +71,10 @@ object Checks:
       seen.stats.pending != 0
     )(s"the client has ${seen.stats.pending} calls that never ended")
 
-  /** What began is what ended, in the client's books, the crafts' and the recording. */
+  /** What began is what ended, in the client's books, the ports' and the recording. */
   private def unaccounted(seen: FlightTrace): Vector[String] =
-    val called = seen.crafts.map(craft =>
-      craft.reads.begun + craft.commands.begun + craft.measurements.begun
+    val called = seen.ports.map(port =>
+      port.reads.begun + port.commands.begun + port.measurements.begun
     ).sum.toLong +
       seen.steps.begun + seen.callsBeside + seen.pictures.map(_.asked).sum
     val stats   = seen.stats
@@ -87,8 +87,8 @@ object Checks:
       Option.when(written < stats.answered + stats.refused + stats.lost)(
         s"${stats.answered} answered, ${stats.refused} refused and ${stats.lost} lost of $written that were written"
       ),
-      Option.when(seen.arrivals.size > seen.crafts.map(_.sendings.size).sum)(
-        s"${seen.arrivals.size} moves arrived of ${seen.crafts.map(_.sendings.size).sum}"
+      Option.when(seen.arrivals.size > seen.ports.map(_.sendings.size).sum)(
+        s"${seen.arrivals.size} moves arrived of ${seen.ports.map(_.sendings.size).sum}"
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
 
@@ -99,7 +99,7 @@ object Checks:
 
   private def unrecorded(seen: FlightTrace): Vector[String] =
     val recording = seen.recording
-    seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
+    seen.vehicles.zip(seen.ports).flatMap: (vehicle, port) =>
       def count[A](rows: Vector[A])(of: A => Boolean) = rows.count(of)
       val readings                                    = count(recording.readings)(_.vehicle == vehicle)
       val failed                                      =
@@ -108,11 +108,11 @@ object Checks:
       val ended     = count(recording.acknowledgements)(_.vehicle == vehicle)
       val decisions = count(recording.decisions)(_.vehicle == vehicle)
       Vector(
-        Option.when(readings + failed != craft.reads.begun)(
-          s"$vehicle: ${craft.reads.begun} readings were asked for; $readings and $failed errors are on record"
+        Option.when(readings + failed != port.reads.begun)(
+          s"$vehicle: ${port.reads.begun} readings were asked for; $readings and $failed errors are on record"
         ),
-        Option.when(commands != craft.sendings.size)(
-          s"$vehicle: ${craft.sendings.size} commands were sent, $commands are on record"
+        Option.when(commands != port.sendings.size)(
+          s"$vehicle: ${port.sendings.size} commands were sent, $commands are on record"
         ),
         Option.when(ended != commands)(s"$vehicle: $commands commands are on record, and the ends of $ended"),
         Option.when(decisions < commands)(s"$vehicle: $decisions decisions led to $commands commands")
@@ -175,7 +175,7 @@ object Checks:
           )
         ).flatten
 
-  private def isFresh(seen: FlightTrace, decision: Decision, vehicle: String): Boolean =
+  private def isFresh(seen: FlightTrace, decision: DecisionRow, vehicle: String): Boolean =
     decision.vehicle == vehicle && decision.own.state.sentAt >= seen.calmFrom
 
   private def restless(seen: FlightTrace): Vector[String] =
@@ -193,11 +193,11 @@ object Checks:
   /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of it. */
   private def notToldToHover(seen: FlightTrace): Vector[String] =
     val heeded = seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin
-    seen.vehicles.zip(seen.crafts).flatMap: (vehicle, craft) =>
+    seen.vehicles.zip(seen.ports).flatMap: (vehicle, port) =>
       val lastMove = seen.arrivals.filter(_.vehicle == vehicle).map(_.at).maxOption
       val heard    = seen.lastHovers.get(vehicle)
       Vector(
-        Option.when(!craft.toldToHover)(s"$vehicle was not told to hover at the end (${seen.outcome})"),
+        Option.when(!port.toldToHover)(s"$vehicle was not told to hover at the end (${seen.outcome})"),
         Option.when(heeded && lastMove.exists(at => !heard.exists(_ >= at)))(
           s"$vehicle: no command to hover came to the simulator after the last move (${seen.outcome})"
         )

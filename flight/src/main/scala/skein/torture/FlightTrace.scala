@@ -8,7 +8,7 @@ import skein.units.*
 
 /** What was seen of one flight from outside: enough to judge it.
   *
-  * @param crafts
+  * @param ports
   *   by vehicle
   * @param arrivals
   *   at the simulator, in order, of all vehicles
@@ -47,7 +47,7 @@ final case class FlightTrace(
     endedAt: Instant,
     outcome: Outcome,
     vehicles: Vector[String],
-    crafts: Vector[WatchedVehicle],
+    ports: Vector[WatchedVehicle],
     arrivals: Vector[Arrival],
     lastHovers: Map[String, Instant],
     mostUnanswered: Int,

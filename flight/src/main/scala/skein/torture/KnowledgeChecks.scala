@@ -1,7 +1,7 @@
 package skein.torture
 
 import skein.loop.LoopKind
-import skein.record.{Decision, Reading}
+import skein.record.{DecisionRow, ReadingRow}
 import skein.scenario.PaperDuel
 import skein.signal.Stamped
 import skein.units.*
@@ -11,7 +11,7 @@ import skein.units.Decimals.fixed
 private[torture] object KnowledgeChecks:
 
   def violations(seen: FlightTrace): Vector[String] =
-    val told = seen.vehicles.zip(seen.crafts.map(_.answers)).toMap
+    val told = seen.vehicles.zip(seen.ports.map(_.answers)).toMap
     Vector(
       misquoted(seen, told),
       seen.faultPlan.loop match
@@ -50,7 +50,7 @@ private[torture] object KnowledgeChecks:
 
   /** Nobody decides upon something older than what it has decided upon before. */
   private def backwards(seen: FlightTrace): Vector[String] =
-    val newest = scala.collection.mutable.Map.empty[(String, String), Reading]
+    val newest = scala.collection.mutable.Map.empty[(String, String), ReadingRow]
     firstOf(seen): (decision, used) =>
       val before = newest.put((decision.vehicle, used.vehicle), used)
       before
@@ -69,8 +69,8 @@ private[torture] object KnowledgeChecks:
 
   private def agesWrong(seen: FlightTrace): Vector[String] =
     val wrong = seen.recording.decisions.iterator.flatMap: decision =>
-      val now                       = decision.decidedAt
-      def arrived(reading: Reading) =
+      val now                          = decision.decidedAt
+      def arrived(reading: ReadingRow) =
         if seen.faultPlan.loop != LoopKind.Paused then now.since(reading.state.receivedAt)
         else if ranWhileRead(seen, decision) then now.since(reading.state.validAt)
         else Span.Zero
@@ -87,17 +87,17 @@ private[torture] object KnowledgeChecks:
   /** Whether the simulator was started again since the step before was read: the readings of this one are of two clocks, or
     * of a simulator that ran while they were asked for.
     */
-  private def ranWhileRead(seen: FlightTrace, decision: Decision): Boolean =
+  private def ranWhileRead(seen: FlightTrace, decision: DecisionRow): Boolean =
     val answers =
       for
         reading <- Seq(decision.own, decision.opponent)
-        answer  <- seen.crafts(seen.vehicles.indexOf(reading.vehicle)).answers
+        answer  <- seen.ports(seen.vehicles.indexOf(reading.vehicle)).answers
         if answer.question == reading.sequence || answer.question == reading.sequence - 1
       yield answer.state
     val (first, last) = (answers.map(_.sentAt).reduce(_.min(_)), answers.map(_.receivedAt).reduce(_.max(_)))
     seen.runs.exists(run => run.from >= first && run.from <= last)
 
-  private def trueAgesWrong(seen: FlightTrace, decision: Decision): Seq[String] =
+  private def trueAgesWrong(seen: FlightTrace, decision: DecisionRow): Seq[String] =
     for
       told                  <- decision.trueAge.toSeq
       offset                <- trueOffset(seen, decision).toSeq
@@ -116,7 +116,7 @@ private[torture] object KnowledgeChecks:
     * a run before the simulator's present one has told must have gone by; and never, where the clock of a new run is so
     * near to the one before that no answer shows the difference.
     */
-  private def trueOffset(seen: FlightTrace, decision: Decision): Option[Span] =
+  private def trueOffset(seen: FlightTrace, decision: DecisionRow): Option[Span] =
     if seen.faultPlan.loop == LoopKind.Paused then Some(Span.Zero)
     else
       val runs      = seen.runs
@@ -128,13 +128,13 @@ private[torture] object KnowledgeChecks:
       else if present == 0 then Some(runs.head.clockOffset)
       else
         val asked   = runs(present).from + Gone
-        val settled = seen.crafts.forall(
+        val settled = seen.ports.forall(
           _.answers.exists(a => a.state.sentAt >= asked && a.state.receivedAt + Gone <= decision.decidedAt)
         )
         val used = Seq(decision.own, decision.opponent).forall(_.state.sentAt >= runs(present).from)
         Option.when(settled && used)(runs(present).clockOffset)
 
-  private def firstOf(seen: FlightTrace)(wrong: (Decision, Reading) => Option[String]): Vector[String] =
+  private def firstOf(seen: FlightTrace)(wrong: (DecisionRow, ReadingRow) => Option[String]): Vector[String] =
     seen.recording.decisions.iterator
       .flatMap(decision =>
         Iterator(decision.own, decision.opponent).flatMap(used =>
@@ -144,7 +144,7 @@ private[torture] object KnowledgeChecks:
       .nextOption()
       .toVector
 
-  private def where(decision: Decision) = s"decision ${decision.sequence} of ${decision.vehicle}"
+  private def where(decision: DecisionRow) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
   /** Whether one state was truly sampled after another, said without the loop's own word for it. Where the simulator was
     * started again between them with nearly the same clock, only if what they tell shows it.
@@ -170,7 +170,7 @@ private[torture] object KnowledgeChecks:
       * [[Recent]] are looked at.
       */
     def newerThan(
-        used: Reading,
+        used: ReadingRow,
         until: Instant,
         isNewer: (Stamped[?], Stamped[?]) => Boolean
     ): Option[Answer] =

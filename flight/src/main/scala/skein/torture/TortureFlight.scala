@@ -10,7 +10,7 @@ import skein.airsim.*
 import skein.flight.{AirSimFleet, CameraSensor, Equipped}
 import skein.link.*
 import skein.loop.*
-import skein.record.{Flight as FlightRow, *}
+import skein.record.*
 import skein.rpc.RpcClient
 import skein.scenario.PaperDuel
 import skein.simulator.SimulatorSettings
@@ -100,15 +100,15 @@ object TortureFlight:
         sensors = eyes.map(one =>
           (one.eye.vehicle, one.eye.sensor, if isPaused then one.looking else one.sensor)
         )
-        crafts = multirotors.zip(asked).map((craft, vehicle) =>
+        ports = multirotors.zip(asked).map((port, vehicle) =>
           val seen = sensors.collect { case (vehicle.name, name, sensor) => name -> sensor }
-          WatchedVehicle(Equipped.by(faultPlan.scenario, craft, vehicle), clock, seen.toMap)
+          WatchedVehicle(Equipped.by(faultPlan.scenario, port, vehicle), clock, seen.toMap)
         )
         _            = if !isPaused then eyes.foreach(_.run())
         stepper      = WatchedTime(AirSimTime(client))
         loopSettings =
           if PaperDuel.isAsPublished(faultPlan.scenario) then LoopSettings().asPublished else LoopSettings()
-        team   = Team(scenario, crafts, clock, recorder, loopSettings)
+        team   = Team(scenario, ports, clock, recorder, loopSettings)
         flight =
           Flight.start(faultPlan.loop, team, Some(stepper), faultPlan.duration, clock, recorder)
         _ = faultPlan.stopAt.foreach(at => system.scheduler.scheduleOnce(at.toDuration)(flight.stop()))
@@ -139,7 +139,7 @@ object TortureFlight:
         endedAt,
         outcome,
         scenario.agents.map(_.name),
-        crafts,
+        ports,
         tap.arrivals,
         tap.lastHovers,
         tap.mostUnanswered,

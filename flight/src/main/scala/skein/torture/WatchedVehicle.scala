@@ -22,12 +22,12 @@ final case class Sending(at: Instant, north: Float, east: Float)
   */
 final case class Answer(question: Long, state: Stamped[Kinematics])
 
-/** A craft that keeps account of every call: how it began, that it ended, what it told, how many were outstanding.
+/** A port that keeps account of every call: how it began, that it ended, what it told, how many were outstanding.
   *
   * @param eyes
   *   sensors besides, which keep account of their calls themselves
   */
-final class WatchedVehicle(craft: VehiclePort, clock: Clock, eyes: Map[String, Sensor] = Map.empty)(using
+final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Sensor] = Map.empty)(using
     ExecutionContext
 ) extends VehiclePort:
   private val moves = mutable.ArrayBuffer.empty[Sending]
@@ -36,7 +36,7 @@ final class WatchedVehicle(craft: VehiclePort, clock: Clock, eyes: Map[String, S
   val reads, commands, measurements = CallCount()
 
   override val sensors: Map[String, Sensor] =
-    craft.sensors.map((name, sensor) => name -> WatchedSensor(sensor, measurements)) ++ eyes
+    port.sensors.map((name, sensor) => name -> WatchedSensor(sensor, measurements)) ++ eyes
 
   private var lastIsHover = false
 
@@ -51,7 +51,7 @@ final class WatchedVehicle(craft: VehiclePort, clock: Clock, eyes: Map[String, S
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
     val question = reads.begun.toLong
     reads
-      .count(craft.read())
+      .count(port.read())
       .andThen:
         case Success(Right(state)) => told += Answer(question, state)
 
@@ -62,11 +62,11 @@ final class WatchedVehicle(craft: VehiclePort, clock: Clock, eyes: Map[String, S
       case _                                    => (0.0, 0.0)
     moves += Sending(clock.now(), north.toFloat, east.toFloat)
     lastIsHover = false
-    commands.count(craft.act(action, lasts))
+    commands.count(port.act(action, lasts))
 
   def hover(): Future[Either[VehicleError, Boolean]] =
     lastIsHover = true
-    commands.count(craft.hover())
+    commands.count(port.hover())
 
 /** A sensor that counts its calls. */
 private final class WatchedSensor(sensor: Sensor, calls: CallCount)(using ExecutionContext) extends Sensor:

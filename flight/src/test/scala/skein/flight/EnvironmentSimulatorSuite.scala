@@ -192,6 +192,12 @@ class EnvironmentSimulatorSuite extends munit.FunSuite:
         .value
     assertEquals(recorded, Vector(0L, 3L, 3L, 5L, 8L).map(step => (step, step)))
 
+  test("a question that is longer than what a socket holds comes whole"):
+    val many  = Vector.tabulate(20_000)(number => s"Vehicle$number")
+    val heard = served(asked => Some(s"""{"error": "heard of ${asked("velocities").obj.size}"}""")): path =>
+      EnvironmentProcess.connect(path, many).flatMap(_.step(many.map(_ => Vector3(1, 2, 3))))
+    assertEquals(heard.left.toOption, Some("heard of 20000"))
+
   test("what it cannot do, its errors and its end are told"):
     def refused(answer: ujson.Value => Option[String]) = served(answer): path =>
       EnvironmentProcess.connect(path, names).flatMap(process => process.reset().left.map(identity))

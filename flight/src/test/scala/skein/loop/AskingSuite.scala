@@ -27,7 +27,7 @@ class AskingSuite extends munit.FunSuite:
       val fleet              = PaperDuel(pairs = 2).fleet
       val world              = FarQuadrotors(fleet, link, 1, clock)
       val recorder           = MemoryRecorder(Samples.heading)
-      val team               = Team(fleet, world.crafts, clock, recorder, settings)
+      val team               = Team(fleet, world.ports, clock, recorder, settings)
       Flight.start(kind, team, Some(world), duration, clock, recorder).outcome.map(_ => recorder.recording)
     .value
 

@@ -6,7 +6,7 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
 import skein.policy.{AgentPolicy, KeepHeading}
-import skein.record.{Decision as DecisionRow, Reading as _, *}
+import skein.record.*
 import skein.scenario.PaperDuel
 import skein.scenario.Scenarios
 import skein.signal.*
@@ -27,7 +27,7 @@ class DecideWithinSuite extends munit.FunSuite:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val recorder           = MemoryRecorder(Samples.heading)
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
-      val team               = Team(scenario, world.crafts, clock, recorder, LoopSettings())
+      val team               = Team(scenario, world.ports, clock, recorder, LoopSettings())
       val view               = (0 to 1).foldLeft(TeamView.empty(2)): (view, vehicle) =>
         val agent = scenario.agents(vehicle)
         val state = Kinematics(
@@ -78,7 +78,7 @@ class DecideWithinSuite extends munit.FunSuite:
       val recorder           = MemoryRecorder(Samples.heading)
       val world              = FarQuadrotors(scenario, LatencyProfile.direct, 1, clock)
       val settings = LoopSettings(deadline = Some(skein.loop.Deadline(Span.ofMillis(20), Fallback.Hold)))
-      val team     = Team(scenario, world.crafts, clock, recorder, settings)
+      val team     = Team(scenario, world.ports, clock, recorder, settings)
       skein.loop.Flight
         .start(LoopKind.Stream, team, Some(world), Span.ofSeconds(2), clock, recorder)
         .outcome

@@ -16,7 +16,7 @@ class FailedFlightSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("hover: no answer within 500 ms"))
 
   /** Counts what is outstanding; its first hovers are lost, and moves end by themselves, too. */
-  private final class Counted(craft: VehiclePort, lostHovers: Int)(using system: ActorSystem)
+  private final class Counted(port: VehiclePort, lostHovers: Int)(using system: ActorSystem)
       extends VehiclePort:
     import system.dispatcher
     private var outstanding, hovers = 0
@@ -31,12 +31,12 @@ class FailedFlightSuite extends munit.FunSuite:
       mostOutstanding = mostOutstanding.max(outstanding)
       call.andThen(_ => outstanding -= 1)
 
-    def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = craft.read()
+    def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = port.read()
 
     def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
       hovering = false
       val flown = after(lasts.toDuration, system.scheduler)(Future.successful(Right(true)))
-      counted(Future.firstCompletedOf(Seq(craft.act(action, lasts), flown)))
+      counted(Future.firstCompletedOf(Seq(port.act(action, lasts), flown)))
 
     def hover(): Future[Either[VehicleError, Boolean]] =
       hovers += 1
@@ -44,9 +44,9 @@ class FailedFlightSuite extends munit.FunSuite:
       else
         hovering = true
         outstandingAtHover = outstanding
-        counted(craft.hover())
+        counted(port.hover())
 
-  private final case class FlightResult(outcome: Outcome, crafts: Vector[Counted], recording: Recording)
+  private final case class FlightResult(outcome: Outcome, ports: Vector[Counted], recording: Recording)
 
   /** Both vehicles decide some 20 times, then the pursuer's policy throws. */
   private def fly(
@@ -68,13 +68,13 @@ class FailedFlightSuite extends munit.FunSuite:
       val scenario = duel.copy(agents = duel.agents.map: agent =>
         if agent.role == Role.Pursuer then agent.copy(policy = failing) else agent)
       val world    = FarQuadrotors(scenario, link, 1, clock)
-      val crafts   = world.crafts.map(Counted(_, lostHovers))
+      val ports    = world.ports.map(Counted(_, lostHovers))
       val recorder = MemoryRecorder(Samples.heading)
-      val team     = Team(scenario, crafts, clock, recorder, settings)
+      val team     = Team(scenario, ports, clock, recorder, settings)
       Flight
         .start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder)
         .outcome
-        .map(FlightResult(_, crafts, recorder.recording))
+        .map(FlightResult(_, ports, recorder.recording))
     .value
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
@@ -83,10 +83,10 @@ class FailedFlightSuite extends munit.FunSuite:
     ):
       val landed = fly(kind, IllegalStateException("no idea"), lostHovers = 3)
       assertEquals(landed.outcome, Outcome.Failed("no idea"))
-      for craft <- landed.crafts do
-        assert(craft.hovering, "a vehicle flies on")
-        assert(craft.isAnswered, "a call was outstanding at the end")
-        assert(craft.mostOutstanding <= 2, s"${craft.mostOutstanding} commands were outstanding at once")
+      for port <- landed.ports do
+        assert(port.hovering, "a vehicle flies on")
+        assert(port.isAnswered, "a call was outstanding at the end")
+        assert(port.mostOutstanding <= 2, s"${port.mostOutstanding} commands were outstanding at once")
 
   test("an exception without a message is named by its class"):
     assertEquals(
@@ -102,7 +102,7 @@ class FailedFlightSuite extends munit.FunSuite:
   test("where two moves are outstanding when a flight fails, hovering waits until one of them has ended"):
     val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), link = VirtualDuel.constant(400))
     assertEquals(
-      landed.crafts.map(craft => (craft.hovering, craft.mostOutstanding)),
+      landed.ports.map(port => (port.hovering, port.mostOutstanding)),
       Vector.fill(2)((true, 2))
     )
 
@@ -113,9 +113,9 @@ class FailedFlightSuite extends munit.FunSuite:
       link = VirtualDuel.constant(800),
       settings = LoopSettings(movesInFlight = 6)
     )
-    for craft <- landed.crafts do
-      assert(craft.mostOutstanding > 2, craft.mostOutstanding.toString)
-      assertEquals((craft.hovering, craft.outstandingAtHover), (true, 1))
+    for port <- landed.ports do
+      assert(port.mostOutstanding > 2, port.mostOutstanding.toString)
+      assertEquals((port.hovering, port.outstandingAtHover), (true, 1))
 
   test("what lets the simulator's time pass in steps is needed by paused, and by no other"):
     def flown(kind: LoopKind): Outcome = VirtualTime
@@ -126,7 +126,7 @@ class FailedFlightSuite extends munit.FunSuite:
         val duel               = PaperDuel().fleet
         val recorder           = MemoryRecorder(Samples.heading)
         val world              = FarQuadrotors(duel, LatencyProfile.none, 1, clock)
-        val team               = Team(duel, world.crafts, clock, recorder, LoopSettings())
+        val team               = Team(duel, world.ports, clock, recorder, LoopSettings())
         Flight.start(kind, team, None, Span.ofSeconds(1), clock, recorder).outcome
       .value
     assertEquals(flown(LoopKind.Stream), Outcome.Completed)

@@ -32,7 +32,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
   /** After every step of physics: the simulator's time and the states. */
   var watch: (Span, Vector[QuadrotorState]) => Unit = (_, _) => ()
 
-  val crafts: Vector[VehiclePort] = scenario.agents.indices.map(FarQuadrotor(_)).toVector
+  val ports: Vector[VehiclePort] = scenario.agents.indices.map(FarQuadrotor(_)).toVector
 
   def pause(): Future[Either[VehicleError, Unit]] =
     catchUp()

@@ -28,7 +28,7 @@ class LateFailureSimulation extends munit.FunSuite:
           val failure: Future[RecordError] = failsAt.fold(Future.never): at =>
             after(at.toDuration, system.scheduler)(Future.successful(LateFailureSimulation.Full))
           def close(): Future[Either[RecordError, Written]] = kept.close()
-        val team = Team(fleet, world.crafts, clock, recorder, LoopSettings())
+        val team = Team(fleet, world.ports, clock, recorder, LoopSettings())
         Flight.start(kind, team, Some(world), Span.ofSeconds(2), clock, recorder, ends).outcome
       .value
 

@@ -14,7 +14,7 @@ class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("lost: no answer within 500 ms"))
 
   /** A vehicle whose reading number `failing` fails, and whose first hovers do. */
-  private final class Fragile(craft: VehiclePort, isPaused: () => Boolean, failing: Int, failedHovers: Int)
+  private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Int, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0
     var readWhileItRan        = false
@@ -24,11 +24,11 @@ class PausedLoopSuite extends munit.FunSuite:
     def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
       reads += 1
       readWhileItRan ||= !isPaused()
-      if reads == failing then Future.successful(lost) else craft.read()
+      if reads == failing then Future.successful(lost) else port.read()
 
     def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] =
       hovering = false
-      craft.act(action, lasts)
+      port.act(action, lasts)
 
     def hover(): Future[Either[VehicleError, Boolean]] =
       hovers += 1
@@ -36,7 +36,7 @@ class PausedLoopSuite extends munit.FunSuite:
       if hovers <= failedHovers then Future.successful(lost)
       else
         hovering = true
-        craft.hover()
+        port.hover()
 
   /** A simulator whose step number `failing` fails, and which answers only after so many times that it is let run. */
   private final class FragileStepper(
@@ -90,9 +90,9 @@ class PausedLoopSuite extends munit.FunSuite:
       val scenario           = PaperDuel().fleet
       val world              = FarQuadrotors(scenario, LatencyProfile.none, 1, clock)
       val stepper            = FragileStepper(world, failingStep, failedResumes, stepsBy)
-      val crafts             = world.crafts.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))
+      val ports              = world.ports.map(Fragile(_, () => stepper.paused, failingRead, failedHovers))
       val recorder           = MemoryRecorder(Samples.heading)
-      val team               = Team(scenario, crafts, clock, recorder, LoopSettings())
+      val team               = Team(scenario, ports, clock, recorder, LoopSettings())
       Flight
         .start(LoopKind.Paused, team, Some(stepper), Span.ofSeconds(1), clock, recorder)
         .outcome
@@ -101,9 +101,9 @@ class PausedLoopSuite extends munit.FunSuite:
           FlightResult(
             outcome,
             stepper.paused,
-            crafts.map(_.hovering),
-            crafts.exists(_.toldWhilePaused),
-            stepper.pauses == 1 && !crafts.exists(_.readWhileItRan),
+            ports.map(_.hovering),
+            ports.exists(_.toldWhilePaused),
+            stepper.pauses == 1 && !ports.exists(_.readWhileItRan),
             recording.commands.size,
             recording.acknowledgements.size,
             recording.events.count(_.kind == EventKind.StepDrift)

@@ -50,7 +50,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       val world              = FarQuadrotors(scenario, LatencyProfile.vpn, 3, clock)
       val heading            = Samples.heading.copy(flight = Samples.heading.flight.copy(loop = kind.label))
       val recorder           = MemoryRecorder(heading)
-      val team               = Team(scenario, world.crafts, clock, recorder, settings)
+      val team               = Team(scenario, world.ports, clock, recorder, settings)
       Flight.start(kind, team, Some(world), Span.ofSeconds(30), clock, recorder).outcome.map(_ =>
         recorder.recording
       )

@@ -5,7 +5,7 @@ import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
 import skein.loop.planning.CountedPlanWorkers
 import skein.policy.*
-import skein.record.{Decision as DecisionRow, Difference, MemoryRecorder, Recording, Samples}
+import skein.record.{DecisionRow, Difference, MemoryRecorder, Recording, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyProfile
 import skein.units.*
@@ -27,7 +27,7 @@ class ReplaySuite extends munit.FunSuite:
       val recorder           = MemoryRecorder(heading)
       val settings           = LoopSettings(planning = planning, seed = heading.flight.seed)
       val workers            = CountedPlanWorkers(planning.searches, planning.slices)
-      val team               = Team(fleet, world.crafts, clock, recorder, settings, workers)
+      val team               = Team(fleet, world.ports, clock, recorder, settings, workers)
       Flight
         .start(kind, team, Some(world), Span.ofSeconds(2), clock, recorder)
         .outcome

@@ -76,7 +76,7 @@ class SensorSimulation extends munit.FunSuite:
       val world              = FarQuadrotors(fleet, LatencyProfile.vpn, 3, clock)
       val heading            = Samples.heading.copy(flight = Samples.heading.flight.copy(loop = kind.label))
       val recorder           = MemoryRecorder(heading)
-      val vehicles           = world.crafts.map(vehicle =>
+      val vehicles           = world.ports.map(vehicle =>
         WithSensor(vehicle, sensor.fold(Barometer(vehicle, delay, says))(_(clock)))
       )
       val settings = LoopSettings(planning = PlanSettings(slices = 2))

@@ -31,10 +31,10 @@ class TeamLiveSuite extends munit.FunSuite:
     val (threads, each)    = (4, 3_000_000)
     val pool               = Executors.newFixedThreadPool(threads)
     given ExecutionContext = ExecutionContext.fromExecutor(pool)
-    val craft              = Slow()
+    val port               = Slow()
     val team               = Team(
       PaperDuel().fleet,
-      Vector(craft, craft),
+      Vector(port, port),
       Clock.system,
       MemoryRecorder(Samples.heading),
       LoopSettings()
@@ -47,7 +47,7 @@ class TeamLiveSuite extends munit.FunSuite:
           together.await()
           for _ <- 1 to each do team.read(vehicle = 1): Unit
       Await.result(asking, 60.seconds): Unit
-      craft.answers = true
+      port.answers = true
       val next = Await.result(team.read(vehicle = 1), 60.seconds)
       assertEquals(next.map(_.sequence), Right(threads * each.toLong))
     finally pool.shutdown()

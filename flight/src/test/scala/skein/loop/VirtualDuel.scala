@@ -52,7 +52,7 @@ object VirtualDuel:
           steps += 1
       val recorder = MemoryRecorder(Samples.heading)
       val workers  = CountedPlanWorkers(settings.planning.searches, slices)
-      val team     = Team(scenario, world.crafts, clock, recorder, settings, workers)
+      val team     = Team(scenario, world.ports, clock, recorder, settings, workers)
       Flight.start(kind, team, Some(world), duration, clock, recorder).outcome.map((_, recorder.recording))
     VirtualDuel(sum / steps, run.value._1, run.value._2)
 

@@ -13,7 +13,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
   private val start = Instant.Epoch + Span.ofSeconds(2000)
 
   private def heading(loop: String) = RecordingHeader(
-    Flight("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
+    FlightRow("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
     Seq(
       Vehicle("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
       Vehicle("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
@@ -25,7 +25,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       val sent    = start + ms(100.0 * n)
       val sampled = sent + ms(30)
       val state   = Kinematics(Vector3(n, -n, -20), Vector3(10, -10, 0), Quaternion.Identity, Vector3.Zero)
-      Reading(n, vehicle, Stamped(state, sampled - Span.ofSeconds(1000), sent, sampled + ms(10)))
+      ReadingRow(n, vehicle, Stamped(state, sampled - Span.ofSeconds(1000), sent, sampled + ms(10)))
 
   private def command(
       number: Long,

@@ -131,7 +131,7 @@ object SolverTrial:
       )
       val settings = LoopSettings(deadline = Some(Deadline(within, otherwise)))
       client.ready(Span.ofSeconds(5)).flatMap: _ =>
-        val team = Team(fleet, world.crafts, clock, recorder, settings, solver = Some(client))
+        val team = Team(fleet, world.ports, clock, recorder, settings, solver = Some(client))
         Flight
           .start(kind, team, Some(world), Span.ofSeconds(seconds), clock, recorder)
           .outcome

@@ -4,7 +4,7 @@ import scala.concurrent.ExecutionContext
 import scala.concurrent.duration.*
 import skein.flight.CameraSensor
 import skein.loop.{LoopKind, Outcome}
-import skein.record.{Decision, Event, EventKind, RecordError, TrueAge}
+import skein.record.{DecisionRow, Event, EventKind, RecordError, TrueAge}
 import skein.policy.*
 import skein.scenario.{PaperDuel, Scenario}
 import skein.signal.Stamped
@@ -112,13 +112,13 @@ class ChecksSuite extends munit.FunSuite:
     assertEquals(found(clean.copy(drifts = Vector(Metres(14), Metres(14)))), "")
     assert(found(clean.copy(drifts = Vector(Metres(14.001), Metres(0)))).contains("flies on after the end"))
     val gaps =
-      for craft <- clean.crafts; (one, next) <- craft.sendings.zip(craft.sendings.tail)
+      for port <- clean.ports; (one, next) <- port.sendings.zip(port.sendings.tail)
       yield next.at.since(one.at)
     assertEquals(found(clean.copy(minCommandInterval = gaps.min)), "")
     assert(found(clean.copy(minCommandInterval = gaps.min + Span.ofNanos(1))).contains("two commands within"))
 
   test("a third command outstanding, and calls that did not end, by vehicle and of the stepper"):
-    val counts = clean.crafts.head.commands
+    val counts = clean.ports.head.commands
     val most   = counts.most
     counts.most = 3
     try assert(found(clean).contains("Evader: 3 commands were outstanding at once"))
@@ -146,7 +146,7 @@ class ChecksSuite extends munit.FunSuite:
     val twice = clean.copy(arrivals = clean.arrivals.flatMap(arrival => Vector.fill(2)(arrival)))
     assert(found(
       twice
-    ).contains(s"${twice.arrivals.size} moves arrived of ${clean.crafts.map(_.sendings.size).sum}"))
+    ).contains(s"${twice.arrivals.size} moves arrived of ${clean.ports.map(_.sendings.size).sum}"))
 
   test("pictures of which nobody tells what became of them"):
     val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
@@ -290,8 +290,8 @@ class ChecksSuite extends munit.FunSuite:
       case other => fail(other)
     assertEqualsDouble(first.decidedAt.since(clean.startedAt).toSeconds, 5.5, 0.1)
     // Nobody knows the new clock before every vehicle has answered by it.
-    val silent = WatchedVehicle(clean.crafts.head, Clock.system)(using ExecutionContext.parasitic)
-    assert(!found(restarted(4, Span.ofSeconds(100)).copy(crafts = clean.crafts :+ silent)).contains(wrong))
+    val silent = WatchedVehicle(clean.ports.head, Clock.system)(using ExecutionContext.parasitic)
+    assert(!found(restarted(4, Span.ofSeconds(100)).copy(ports = clean.ports :+ silent)).contains(wrong))
     // Of three runs only two are alike.
     val again = restarted(4, Span.ofSeconds(0.5))
     val third = Run(clean.startedAt + Span.ofSeconds(4.5), clean.runs.head.clockOffset + Span.ofSeconds(100))
@@ -302,7 +302,7 @@ class ChecksSuite extends munit.FunSuite:
       Vector(Metres(0.1), Metres(18))
     )).contains("Pursuer flies on after the end: 18.0 m in 4 s"))
 
-  private def withDecision(number: Int)(change: Decision => Decision): FlightTrace =
+  private def withDecision(number: Int)(change: DecisionRow => DecisionRow): FlightTrace =
     val decisions = clean.recording.decisions
     val recording = clean.recording.copy(decisions = decisions.updated(number, change(decisions(number))))
     clean.copy(recording = recording)
@@ -395,5 +395,5 @@ class ChecksSuite extends munit.FunSuite:
 
   test("a flight whose last command is not to hover, or does not come through"):
     assert(found(clean.copy(lastHovers = clean.lastHovers - "Evader")).contains("no command to hover came"))
-    clean.crafts(1).act(skein.policy.Action.VelocityAt(0, 0, Metres(-20)), Span.ofSeconds(1)): Unit
+    clean.ports(1).act(skein.policy.Action.VelocityAt(0, 0, Metres(-20)), Span.ofSeconds(1)): Unit
     assert(found(clean).contains("Pursuer was not told to hover"))

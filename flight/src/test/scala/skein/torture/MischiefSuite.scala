@@ -79,14 +79,14 @@ class MischiefSuite extends munit.FunSuite:
     seen.stats.disconnected > 0 && seen.stats.connected > calm.stats.connected
 
   mischief("a move under an unknown name is refused", MessageFaults(refused = 0.4)): seen =>
-    seen.stats.refused > 0 && seen.arrivals.size < seen.crafts.map(_.sendings.size).sum
+    seen.stats.refused > 0 && seen.arrivals.size < seen.ports.map(_.sendings.size).sum
 
   mischief("a lost answer is missed after its time", MessageFaults(lost = 0.2)): seen =>
     seen.stats.timedOut > 0 && seen.stats.late == 0 && seen.stats.disconnected == 0
 
   mischief("an answer of another type is an error on record, not a reading", MessageFaults(nonsense = 0.3)):
     seen =>
-      seen.recording.readings.size < seen.crafts.map(_.reads.begun).sum && seen.stats.timedOut == 0
+      seen.recording.readings.size < seen.ports.map(_.reads.begun).sum && seen.stats.timedOut == 0
 
   test("all seeds asked for are flown, each once, with several at once"):
     var told = Vector.empty[Long]

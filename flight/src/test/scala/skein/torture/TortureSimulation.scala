@@ -10,11 +10,10 @@ import skein.units.*
 /** Whole flights through seeded trouble, in virtual time. */
 class TortureSimulation extends munit.FunSuite:
 
-  // Under a minute on two cores that have nothing else to do.
   override val munitTimeout: Duration = 5.minutes
 
   private val duration = Span.ofSeconds(8)
-  private val seeds    = 300
+  private val seeds    = 100
 
   test(s"$seeds flights through faults of network, simulator, answers and disk break no rule"):
     var failed = Vector.empty[String]

@@ -1,6 +1,7 @@
 package skein.record
 
 import com.github.luben.zstd.{Zstd, ZstdException}
+import java.lang.ref.WeakReference
 import java.util.Arrays
 import java.util.zip.CRC32
 
@@ -12,8 +13,17 @@ import java.util.zip.CRC32
   */
 final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
 
-  /** Decompressed each time where they are kept compressed. Nobody changes what comes. */
-  def bytes: Array[Byte] = if isPacked then Zstd.decompress(kept, size) else kept
+  // Who opens a frame looks whether it is whole, and mostly wants its bytes at once.
+  private var open = WeakReference[Array[Byte]](null)
+
+  /** Decompressed where they are kept compressed, again if nobody holds them any more. Nobody changes what comes. */
+  def bytes: Array[Byte] =
+    if !isPacked then kept
+    else
+      Option(open.get).getOrElse:
+        val bytes = Zstd.decompress(kept, size)
+        open = WeakReference(bytes)
+        bytes
 
   /** A frame of Zstandard that says its size. */
   def packed: Array[Byte] = if isPacked then kept else Zstd.compress(kept, Blob.Level)

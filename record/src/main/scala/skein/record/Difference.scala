@@ -33,11 +33,11 @@ object Difference:
           case (column, one, other) if one != other => Difference(nameOf(recorded), column, one, other)
 
   private def nameOf(record: Record): String = record match
-    case decision: Decision => s"decision ${decision.sequence} of ${decision.vehicle}"
-    case read: Measurement  => s"measurement ${read.sequence} of ${read.vehicle}'s ${read.sensor}"
-    case reading: Reading   => s"reading ${reading.sequence} of ${reading.vehicle}"
-    case command: Command   => s"command ${command.sequence} to ${command.vehicle}"
-    case other              => s"a row of ${Table.of(other).name}"
+    case decision: DecisionRow => s"decision ${decision.sequence} of ${decision.vehicle}"
+    case read: Measurement     => s"measurement ${read.sequence} of ${read.vehicle}'s ${read.sensor}"
+    case reading: ReadingRow   => s"reading ${reading.sequence} of ${reading.vehicle}"
+    case command: Command      => s"command ${command.sequence} to ${command.vehicle}"
+    case other                 => s"a row of ${Table.of(other).name}"
 
   /** A double's shortest text is another for another double. */
   private def cells(record: Record): Vector[String] =

@@ -25,15 +25,15 @@ final class DuckDbRecorder private (
 ) extends Recorder:
 
   def offer(record: Record): Unit = record match
-    case last: Ending             => ending.set(Some(last))
-    case large: (Picture | Cloud) => offerLarge(large)
-    case _                        => enqueue(record)
+    case last: Ending                 => ending.set(Some(last))
+    case large: (CameraImage | Cloud) => offerLarge(large)
+    case _                            => enqueue(record)
 
   /** Images and clouds are left out, and told of, where the disk is slower than they come: the flight goes on. */
-  private def offerLarge(record: Picture | Cloud): Unit =
+  private def offerLarge(record: CameraImage | Cloud): Unit =
     val (vehicle, name, at) = record match
-      case one: Picture => (one.vehicle, one.camera, one.receivedAt)
-      case one: Cloud   => (one.vehicle, one.lidar, one.receivedAt)
+      case one: CameraImage => (one.vehicle, one.camera, one.receivedAt)
+      case one: Cloud       => (one.vehicle, one.lidar, one.receivedAt)
     val size = Record.blobOf(record).fold(0)(_.size)
     if waitingBytes.addAndGet(size) <= DuckDbRecorder.mostWaitingBytes then enqueue(record)
     else

@@ -93,25 +93,25 @@ object FlightTopics:
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
   /** Of a camera or a lidar. */
-  def of(sight: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
+  def of(sensor: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
     def binary(name: String, schema: String) =
       Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)
-    if sight.isLidar then Vector(binary(FoxgloveViews.cloudOf(sight), "foxglove.PointCloud"))
+    if sensor.isLidar then Vector(binary(FoxgloveViews.cloudOf(sensor), "foxglove.PointCloud"))
     else
       val calibration = "foxglove.CameraCalibration"
       Vector(
-        Topic(FoxgloveViews.calibrationOf(sight), calibration, FoxgloveSchemas.all(calibration)),
-        binary(FoxgloveViews.imageOf(sight), form.imageSchema)
+        Topic(FoxgloveViews.calibrationOf(sensor), calibration, FoxgloveSchemas.all(calibration)),
+        binary(FoxgloveViews.imageOf(sensor), form.imageSchema)
       )
 
   /** When it was known to the controller, if it says so. */
   def knownAt(record: Record): Option[Instant] = record match
-    case reading: Reading        => Some(reading.state.receivedAt)
+    case reading: ReadingRow     => Some(reading.state.receivedAt)
     case measured: Measurement   => Some(measured.receivedAt)
-    case picture: Picture        => Some(picture.receivedAt)
+    case picture: CameraImage    => Some(picture.receivedAt)
     case cloud: Cloud            => Some(cloud.receivedAt)
-    case decision: Decision      => Some(decision.decidedAt)
-    case solved: Solved          => Some(solved.receivedAt)
+    case decision: DecisionRow   => Some(decision.decidedAt)
+    case solved: SolvedRow       => Some(solved.receivedAt)
     case command: Command        => Some(command.sentAt)
     case answer: Acknowledgement => Some(answer.endedAt)
     case latency: Latency        => Some(latency.sentAt + latency.roundTrip)
@@ -120,15 +120,15 @@ object FlightTopics:
     case _                       => None
 
   private def keyOf(number: Long, record: Record): String = record match
-    case reading: Reading        => reading.vehicle
+    case reading: ReadingRow     => reading.vehicle
     case measured: Measurement   => s"${measured.vehicle} ${measured.sensor}"
     case sensing: Sensing        => s"${sensing.vehicle} ${sensing.sensor}"
-    case picture: Picture        => s"${picture.vehicle} ${picture.camera} ${picture.kind}"
+    case picture: CameraImage    => s"${picture.vehicle} ${picture.camera} ${picture.kind}"
     case cloud: Cloud            => s"${cloud.vehicle} ${cloud.lidar}"
-    case decision: Decision      => decision.vehicle
+    case decision: DecisionRow   => decision.vehicle
     case sighting: Sighting      => s"${sighting.decider} ${sighting.vehicle}"
     case planned: Planned        => planned.vehicle
-    case solved: Solved          => solved.vehicle
+    case solved: SolvedRow       => solved.vehicle
     case prediction: Prediction  => s"${prediction.decider} ${prediction.vehicle}"
     case command: Command        => command.vehicle
     case answer: Acknowledgement => answer.vehicle
@@ -136,7 +136,7 @@ object FlightTopics:
     case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"
     case event: Event                                              => event.vehicle.getOrElse("")
     case _: Latency | _: Ending                                    => ""
-    case _: Flight | _: Parameter | _: Vehicle                     => number.toString
+    case _: FlightRow | _: Parameter | _: Vehicle                  => number.toString
 
   private def publishedAt(record: Record): Option[Instant] = record match
     case prediction: Prediction => Some(prediction.madeAt)

@@ -36,7 +36,7 @@ private[record] final class FoxgloveViews(
     Vector(View.text(FixedFrames)(Json.obj("transforms" -> Json.array(Vector(world))))) ++ bodies ++ standing
 
   def of(record: Record): Vector[View] = record match
-    case reading: Reading =>
+    case reading: ReadingRow =>
       // As long as nothing better is known, as if the first reading had taken no time.
       val ahead = aheadOf(reading.state.validAt, reading.state.receivedAt)
       offset = Some(ahead)
@@ -50,7 +50,7 @@ private[record] final class FoxgloveViews(
         View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved)))),
         View.text(poseOf(name))(placed)
       ) ++ trail(name, at, state.positionNed)
-    case decision: Decision =>
+    case decision: DecisionRow =>
       decision.trueAge.foreach(age => offset = Some(age.clockOffset))
       val name = decision.vehicle
       decided(name) = decision.decidedAt
@@ -84,8 +84,8 @@ private[record] final class FoxgloveViews(
           lines = Vector(line(name, places, thickness = 3))
         )
         View.text(planOf(name))(scene(drawn))
-    case picture: Picture => seen(picture)
-    case cloud: Cloud     =>
+    case picture: CameraImage => seen(picture)
+    case cloud: Cloud         =>
       val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
       Vector(View(
         cloudOf(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true)),
@@ -98,26 +98,26 @@ private[record] final class FoxgloveViews(
     offset.getOrElse(receivedAt.since(validAt))
 
   /** An image, where its camera was, and what lens it has where that is new. */
-  private def seen(picture: Picture): Vector[View] =
-    val sight = ImagingSensor.camera(picture.vehicle, picture.camera, picture.kind)
-    val at    = picture.validAt + aheadOf(picture.validAt, picture.receivedAt)
-    val frame = s"${picture.vehicle}/${picture.camera}"
-    val lens  = (picture.width, picture.height, picture.fov)
-    val isNew = !lenses.get(sight).contains(lens)
-    lenses(sight) = lens
+  private def seen(picture: CameraImage): Vector[View] =
+    val sensor = ImagingSensor.camera(picture.vehicle, picture.camera, picture.kind)
+    val at     = picture.validAt + aheadOf(picture.validAt, picture.receivedAt)
+    val frame  = s"${picture.vehicle}/${picture.camera}"
+    val lens   = (picture.width, picture.height, picture.fov)
+    val isNew  = !lenses.get(sensor).contains(lens)
+    lenses(sensor) = lens
     def moved =
       transform(at, "world_ned", frame, picture.positionNed, times(picture.orientation, OpticalInCamera))
     val calibrated =
       picture.fov.filter(_ => isNew).map(fov =>
-        View.text(calibrationOf(sight))(calibration(at, frame, picture, fov))
+        View.text(calibrationOf(sensor))(calibration(at, frame, picture, fov))
       )
     Vector(
-      View(imageOf(sight), () => form.image(picture, at, frame)),
+      View(imageOf(sensor), () => form.image(picture, at, frame)),
       View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved))))
     ) ++ calibrated
 
   /** A pinhole without distortion, whose axis goes through the middle. */
-  private def calibration(at: Instant, frame: String, picture: Picture, fov: Radians): String =
+  private def calibration(at: Instant, frame: String, picture: CameraImage, fov: Radians): String =
     val focal                 = picture.width / (2 * StrictMath.tan(fov.value / 2))
     val (cx, cy)              = (picture.width / 2.0, picture.height / 2.0)
     def numbers(all: Double*) = Json.array(all.map(Json.number))
@@ -242,9 +242,9 @@ private[record] object FoxgloveViews:
   private def planOf(name: String)       = s"/vehicles/$name/plan"
   private val Standing                   = "/scene"
 
-  def imageOf(sight: ImagingSensor): String       = s"/vehicles/${sight.vehicle}/${sight.name}/image"
-  def calibrationOf(sight: ImagingSensor): String = s"/vehicles/${sight.vehicle}/${sight.name}/calibration"
-  def cloudOf(sight: ImagingSensor): String       = s"/vehicles/${sight.vehicle}/${sight.name}/cloud"
+  def imageOf(sensor: ImagingSensor): String       = s"/vehicles/${sensor.vehicle}/${sensor.name}/image"
+  def calibrationOf(sensor: ImagingSensor): String = s"/vehicles/${sensor.vehicle}/${sensor.name}/calibration"
+  def cloudOf(sensor: ImagingSensor): String       = s"/vehicles/${sensor.vehicle}/${sensor.name}/cloud"
 
   /** Every topic with the name of its schema. */
   def topics(vehicles: Vector[String]): Vector[(String, String)] =

@@ -14,9 +14,9 @@ final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 object ImagingSensor:
   /** What a record is of. */
   def of(record: Record): Option[ImagingSensor] = record match
-    case picture: Picture => Some(camera(picture.vehicle, picture.camera, picture.kind))
-    case cloud: Cloud     => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
-    case _                => None
+    case picture: CameraImage => Some(camera(picture.vehicle, picture.camera, picture.kind))
+    case cloud: Cloud         => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
+    case _                    => None
 
   def camera(vehicle: String, camera: String, kind: String): ImagingSensor =
     ImagingSensor(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)
@@ -31,7 +31,7 @@ trait ImageEncoding:
     * @param frame
     *   the camera's: right, down, front
     */
-  def image(picture: Picture, at: Instant, frame: String): Array[Byte]
+  def image(picture: CameraImage, at: Instant, frame: String): Array[Byte]
 
   /** Of a cloud, at most. */
   def mostPoints: Int
@@ -43,7 +43,7 @@ object ImageEncoding:
     val imageSchema = "foxglove.RawImage"
     val mostPoints  = Int.MaxValue
 
-    def image(picture: Picture, at: Instant, frame: String): Array[Byte] =
+    def image(picture: CameraImage, at: Instant, frame: String): Array[Byte] =
       val bytesAPixel = if picture.encoding == "bgr8" then 3 else 4
       Protobuf(picture.pixels.size + 128)
         .message(1, timestamp(at))

@@ -76,16 +76,16 @@ object McapRecording:
     */
   def sceneOf(rows: Vector[(Long, Record)], scene: Map[String, String] => Scene): Scene =
     val isOurs = rows.exists:
-      case (_, flight: Flight) => flight.isBuiltIn
-      case _                   => false
+      case (_, flight: FlightRow) => flight.isBuiltIn
+      case _                      => false
     if isOurs then scene(rows.collect { case (_, Parameter(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */
   private def firstOffset(rows: Vector[(Long, Record)]): Span =
     val estimated =
-      rows.iterator.collect { case (_, decision: Decision) => decision.trueAge.map(_.clockOffset) }.flatten
-    val assumed = rows.iterator.collect { case (_, first: Reading) =>
+      rows.iterator.collect { case (_, decision: DecisionRow) => decision.trueAge.map(_.clockOffset) }.flatten
+    val assumed = rows.iterator.collect { case (_, first: ReadingRow) =>
       first.state.receivedAt.since(first.state.validAt)
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
@@ -100,15 +100,15 @@ object McapRecording:
   ):
     private val topics   = FlightTopics(vehicles, from, offset, scene)
     private val channels = Channels(mcap)
-    private val sights   = mutable.Set.empty[ImagingSensor]
+    private val sensors  = mutable.Set.empty[ImagingSensor]
 
     mcap.metadata(About, VectorMap("format" -> RecordingFormat.version.toString))
     FlightTopics.all(vehicles).foreach(channels.add)
     topics.opening.foreach(channels.put)
 
     def put(number: Long, record: Record): Unit =
-      for sight <- ImagingSensor.of(record) if sights.add(sight) do
-        FlightTopics.of(sight).foreach(channels.add)
+      for sensor <- ImagingSensor.of(record) if sensors.add(sensor) do
+        FlightTopics.of(sensor).foreach(channels.add)
       topics.of(number, record).foreach(channels.put)
 
   private final class Channels(mcap: McapWriter):

@@ -17,9 +17,9 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
 
   def offer(record: Record): Unit = keep(record match
     // Many would not fit otherwise.
-    case picture: Picture => picture.copy(pixels = picture.pixels.compressed)
-    case cloud: Cloud     => cloud.copy(xyz = cloud.xyz.compressed)
-    case other            => other)
+    case picture: CameraImage => picture.copy(pixels = picture.pixels.compressed)
+    case cloud: Cloud         => cloud.copy(xyz = cloud.xyz.compressed)
+    case other                => other)
 
   private def keep(record: Record): Unit = synchronized:
     if record.isInstanceOf[Ending] && failed.isCompleted then kept += record: Unit

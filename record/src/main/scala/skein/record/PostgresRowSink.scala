@@ -110,7 +110,7 @@ object PostgresRowSink:
     yield made
 
   /** Flights of one name are told apart by when they began. */
-  private def schemaOf(flight: Flight): String =
+  private def schemaOf(flight: FlightRow): String =
     s"${flight.id.replaceAll("[^A-Za-z0-9_.-]", "_").take(40)}-${flight.startedAt.toNanos / 1_000_000}"
 
   private def make(connection: Connection, schema: String, target: PostgresAddress): PostgresRowSink =

@@ -16,9 +16,9 @@ sealed trait Record
 object Record:
   /** The large part of an image or a cloud. */
   def blobOf(record: Record): Option[Blob] = record match
-    case picture: Picture => Some(picture.pixels)
-    case cloud: Cloud     => Some(cloud.xyz)
-    case _                => None
+    case picture: CameraImage => Some(picture.pixels)
+    case cloud: Cloud         => Some(cloud.xyz)
+    case _                    => None
 
 /** What was flown: exactly one row a recording.
   *
@@ -33,7 +33,7 @@ object Record:
   * @param version
   *   of the program that recorded
   */
-final case class Flight(
+final case class FlightRow(
     id: String,
     loop: String,
     link: String,
@@ -58,7 +58,7 @@ final case class Flight(
 
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
 
-/** A run parameter that has no column in [[Flight]]. */
+/** A run parameter that has no column in [[FlightRow]]. */
 final case class Parameter(name: String, value: String) extends Record
 
 /** A vehicle of the flight.
@@ -79,7 +79,7 @@ object Vehicle:
   * @param sequence
   *   counts the readings of this vehicle in the order in which they were asked for
   */
-final case class Reading(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
+final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
 /** One answer of a sensor.
   *
@@ -120,7 +120,7 @@ final case class Measurement(
   * @param pixels
   *   in rows from the top, without gaps
   */
-final case class Picture(
+final case class CameraImage(
     sequence: Long,
     vehicle: String,
     camera: String,
@@ -204,12 +204,12 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
   * @param action
   *   the action decided; absent where heading and speed say it, at the altitude of the start
   */
-final case class Decision(
+final case class DecisionRow(
     sequence: Long,
     vehicle: String,
     decidedAt: Instant,
-    own: Reading,
-    opponent: Reading,
+    own: ReadingRow,
+    opponent: ReadingRow,
     relativeX: Metres,
     relativeY: Metres,
     headingBefore: Radians,
@@ -288,7 +288,7 @@ final case class Planned(
   * @param clock
   *   absent before the first answer of a solver
   */
-final case class Solved(
+final case class SolvedRow(
     vehicle: String,
     decision: Long,
     question: Long,

@@ -3,13 +3,13 @@ package skein.record
 /** A recorded flight, sorted by kind; each kind in the order in which it was recorded. */
 final case class Recording(
     heading: RecordingHeader,
-    readings: Vector[Reading] = Vector.empty,
-    decisions: Vector[Decision] = Vector.empty,
+    readings: Vector[ReadingRow] = Vector.empty,
+    decisions: Vector[DecisionRow] = Vector.empty,
     sightings: Vector[Sighting] = Vector.empty,
     measurements: Vector[Measurement] = Vector.empty,
     sensings: Vector[Sensing] = Vector.empty,
     planned: Vector[Planned] = Vector.empty,
-    solved: Vector[Solved] = Vector.empty,
+    solved: Vector[SolvedRow] = Vector.empty,
     predictions: Vector[Prediction] = Vector.empty,
     commands: Vector[Command] = Vector.empty,
     acknowledgements: Vector[Acknowledgement] = Vector.empty,
@@ -18,7 +18,7 @@ final case class Recording(
     truths: Vector[Truth] = Vector.empty,
     ending: Option[Ending] = None
 ):
-  def flight: Flight = heading.flight
+  def flight: FlightRow = heading.flight
 
 object Recording:
 
@@ -28,13 +28,13 @@ object Recording:
       heading.copy(parameters = heading.parameters ++ records.collect { case parameter: Parameter =>
         parameter
       }),
-      records.collect { case reading: Reading => reading }.toVector,
-      records.collect { case decision: Decision => decision }.toVector,
+      records.collect { case reading: ReadingRow => reading }.toVector,
+      records.collect { case decision: DecisionRow => decision }.toVector,
       records.collect { case sighting: Sighting => sighting }.toVector,
       records.collect { case measurement: Measurement => measurement }.toVector,
       records.collect { case sensing: Sensing => sensing }.toVector,
       records.collect { case planned: Planned => planned }.toVector,
-      records.collect { case solved: Solved => solved }.toVector,
+      records.collect { case solved: SolvedRow => solved }.toVector,
       records.collect { case prediction: Prediction => prediction }.toVector,
       records.collect { case command: Command => command }.toVector,
       records.collect { case acknowledgement: Acknowledgement => acknowledgement }.toVector,

@@ -75,11 +75,11 @@ private[record] final case class Table[A <: Record](
       )
 
 private[record] object Table:
-  private val readingColumns = product[Reading]((long("sequence"), text("vehicle"), stampedKinematics))
+  private val readingColumns = product[ReadingRow]((long("sequence"), text("vehicle"), stampedKinematics))
 
-  val flight: Table[Flight] = Table(
+  val flight: Table[FlightRow] = Table(
     "flight",
-    product[Flight]:
+    product[FlightRow]:
       (
         text("id"),
         text("loop"),
@@ -100,11 +100,11 @@ private[record] object Table:
   val vehicle: Table[Vehicle] =
     Table("vehicle", product[Vehicle]((text("name"), text("role"), speed("speed"), ned("start", "M"))))
 
-  val reading: Table[Reading] = Table("reading", readingColumns)
+  val reading: Table[ReadingRow] = Table("reading", readingColumns)
 
-  val decision: Table[Decision] = Table(
+  val decision: Table[DecisionRow] = Table(
     "decision",
-    product[Decision]:
+    product[DecisionRow]:
       (
         long("sequence"),
         text("vehicle"),
@@ -182,9 +182,9 @@ private[record] object Table:
     since = 5
   )
 
-  val picture: Table[Picture] = Table(
+  val picture: Table[CameraImage] = Table(
     "image",
-    product[Picture]:
+    product[CameraImage]:
       (
         long("sequence"),
         text("vehicle"),
@@ -243,9 +243,9 @@ private[record] object Table:
     since = 3
   )
 
-  val solved: Table[Solved] = Table(
+  val solved: Table[SolvedRow] = Table(
     "solved",
-    product[Solved]:
+    product[SolvedRow]:
       (
         text("vehicle"),
         long("decision"),
@@ -350,18 +350,18 @@ private[record] object Table:
 
   /** The table that a record belongs to. */
   def of(record: Record): Table[? <: Record] = record match
-    case _: Flight          => flight
+    case _: FlightRow       => flight
     case _: Parameter       => parameter
     case _: Vehicle         => vehicle
-    case _: Reading         => reading
-    case _: Decision        => decision
+    case _: ReadingRow      => reading
+    case _: DecisionRow     => decision
     case _: Sighting        => sighting
     case _: Measurement     => measurement
     case _: Sensing         => sensing
-    case _: Picture         => picture
+    case _: CameraImage     => picture
     case _: Cloud           => cloud
     case _: Planned         => planned
-    case _: Solved          => solved
+    case _: SolvedRow       => solved
     case _: Prediction      => prediction
     case _: Command         => command
     case _: Acknowledgement => acknowledgement

@@ -70,7 +70,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val mcap                 = exported(folder)
     def times(table: String) =
       messages(mcap, s"/skein/$table").map(found => (found.message.logTime, found.message.publishTime)).head
-    val reading  = Samples.oneOfEach.collectFirst { case one: Reading => one }.get
+    val reading  = Samples.oneOfEach.collectFirst { case one: ReadingRow => one }.get
     val latency  = Samples.oneOfEach.collectFirst { case one: Latency => one }.get
     val guess    = Samples.oneOfEach.collectFirst { case one: Prediction => one }.get
     val received = reading.state.receivedAt.toNanos
@@ -82,7 +82,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val mcap = exported(folder)
     val pose = messages(mcap, "/vehicles/Pursuer/pose").head
     assertEquals(pose.schema.map(_.name), Some("foxglove.PoseInFrame"))
-    val reading = Samples.oneOfEach.collectFirst { case one: Reading => one }.get
+    val reading = Samples.oneOfEach.collectFirst { case one: ReadingRow => one }.get
     val at      = reading.state.value.positionNed
     assert(
       pose.message.data.utf8.contains(s""""position":{"x":${at.x},"y":${at.y},"z":${at.z}}"""),

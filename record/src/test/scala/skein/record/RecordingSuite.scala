@@ -29,7 +29,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
     execute(file, "ALTER TABLE decision DROP COLUMN speedMps")
     execute(file, "UPDATE format SET version = 2")
     val older = Samples.oneOfEach.collect:
-      case decision: Decision                     => decision.copy(speed = None)
+      case decision: DecisionRow                  => decision.copy(speed = None)
       case other if !other.isInstanceOf[Sighting] => other
     assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, older)))
     assert(Export.parquet(file, folder.resolve("parquet")).isRight)

@@ -7,7 +7,7 @@ import skein.units.*
 object Samples:
 
   val heading: RecordingHeader = RecordingHeader(
-    Flight(
+    FlightRow(
       id = "stream-vpn",
       loop = "stream",
       link = "vpn",
@@ -29,9 +29,9 @@ object Samples:
 
   def at(nanos: Long): Instant = heading.flight.startedAt + Span.ofNanos(nanos)
 
-  def reading(sequence: Long, vehicle: String = "Pursuer"): Reading =
+  def reading(sequence: Long, vehicle: String = "Pursuer"): ReadingRow =
     val base = sequence * 100_000_000L
-    Reading(
+    ReadingRow(
       sequence,
       vehicle,
       Stamped(
@@ -47,7 +47,7 @@ object Samples:
       )
     )
 
-  def decision(sequence: Long): Decision = Decision(
+  def decision(sequence: Long): DecisionRow = DecisionRow(
     sequence,
     vehicle = "Pursuer",
     decidedAt = at(sequence * 100_000_000L + 40_000_001),
@@ -81,9 +81,9 @@ object Samples:
   )
 
   /** Of 40 × 30 pixels, no two rows alike. */
-  def picture(sequence: Long): Picture =
+  def picture(sequence: Long): CameraImage =
     val base = sequence * 33_000_000L
-    Picture(
+    CameraImage(
       sequence,
       "Pursuer",
       "front_center",
@@ -151,7 +151,7 @@ object Samples:
       Some(Course(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
     ),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
-    Solved(
+    SolvedRow(
       "Pursuer",
       1,
       4,
@@ -160,7 +160,7 @@ object Samples:
       Span.ofMillis(1.5),
       Some(SolverClock(Span.ofNanos(-1_000_000_007), Span.ofMillis(4.75)))
     ),
-    Solved("Evader", 0, 0, at(41_000_000), at(52_000_000), Span.Zero, None),
+    SolvedRow("Evader", 0, 0, at(41_000_000), at(52_000_000), Span.Zero, None),
     Prediction(
       "Pursuer",
       "Evader",

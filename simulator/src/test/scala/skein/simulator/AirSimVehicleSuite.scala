@@ -69,12 +69,12 @@ class AirSimVehicleSuite extends munit.FunSuite:
             ).map(_.fold(e => fail(e.message), identity))
           _ <- multirotor.enableApiControl()
           _ <- multirotor.arm()
-          craft = AirSimVehicle(multirotor, noted :+= _)
+          port  = AirSimVehicle(multirotor, noted :+= _)
           _     = lossy = true
-          first = craft.act(Action.VelocityAt(5, 0, Metres(-20)), Span.ofSeconds(10))
+          first = port.act(Action.VelocityAt(5, 0, Metres(-20)), Span.ofSeconds(10))
           _ <- after(Span.ofMillis(100).toDuration)(Future.unit)
           sentAt = clock.now()
-          _      = craft.act(Action.VelocityAt(0, 5, Metres(-20)), Span.ofSeconds(10))
+          _      = port.act(Action.VelocityAt(0, 5, Metres(-20)), Span.ofSeconds(10))
           result <- first
           endedAt = clock.now()
           _ <- client.close()

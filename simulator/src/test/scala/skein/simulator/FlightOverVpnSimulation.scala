@@ -35,20 +35,20 @@ class FlightOverVpnSimulation extends munit.FunSuite:
         for
           server <- SimulatorServer.start(settings, network.host("simulator"), clock)
           client = AirSimClient(RpcClient(network.host("controller"), server.address, clock))
-          crafts <- climb(client)
-          flown  <- Source
+          multirotors <- climb(client)
+          flown       <- Source
             .tick(0.millis, 100.millis, ())
             .take(ticks)
             .zipWithIndex
             .mapAsync(1): (_, tick) =>
-              crafts.foreach: craft =>
+              multirotors.foreach: multirotor =>
                 val heading = tick * 0.02
-                craft.moveByVelocityZ(
+                multirotor.moveByVelocityZ(
                   Vector3(5 * math.cos(heading), 5 * math.sin(heading), 0),
                   Metres(-20),
                   Span.ofSeconds(10)
                 )
-              crafts.head.kinematics()
+              multirotors.head.kinematics()
             .map(_.fold(error => throw AssertionError(error.message), identity))
             .runWith(Sink.seq)
           _ <- client.close()
@@ -60,10 +60,10 @@ class FlightOverVpnSimulation extends munit.FunSuite:
     scala.concurrent.Future.traverse(vehicles): vehicle =>
       for
         found <- Multirotor.named(client, vehicle.name)
-        craft = found.fold(error => throw AssertionError(error.message), identity)
-        _ <- craft.enableApiControl()
-        _ <- craft.hoverAt(VehiclePose(vehicle.startNed + Vector3(0, 0, -20), Quaternion.Identity))
-      yield craft
+        multirotor = found.fold(error => throw AssertionError(error.message), identity)
+        _ <- multirotor.enableApiControl()
+        _ <- multirotor.hoverAt(VehiclePose(vehicle.startNed + Vector3(0, 0, -20), Quaternion.Identity))
+      yield multirotor
 
   test(
     "a flight over the busy link is smooth, its readings are as old as the link is slow, and it repeats exactly"

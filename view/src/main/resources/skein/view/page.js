@@ -3,7 +3,7 @@ import { Flight } from "/flight.js";
 import { FlightMap } from "/map.js";
 import { Graph } from "/graph.js";
 import { Plots } from "/plots.js";
-import { Cameras, pointsOf } from "/sights.js";
+import { Cameras, pointsOf } from "/cameras.js";
 import { Task } from "/task.js";
 
 // Where a graphics card is imitated by software, canvases are drawn several times faster without it.

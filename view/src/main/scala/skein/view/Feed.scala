@@ -19,11 +19,11 @@ final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val seen = ConcurrentHashMap[ImagingSensor, Record]()
 
   def offer(record: Record): Unit = ImagingSensor.of(record) match
-    case Some(sight) => seen.put(sight, record): Unit
-    case None        => enqueue(record)
+    case Some(sensor) => seen.put(sensor, record): Unit
+    case None         => enqueue(record)
 
   /** What is newest of a camera or a lidar, if there is anything since this was asked for last. */
-  def poll(sight: ImagingSensor): Option[Record] = Option(seen.remove(sight))
+  def poll(sensor: ImagingSensor): Option[Record] = Option(seen.remove(sensor))
 
   private def enqueue(record: Record): Unit =
     queue.offer(record): Unit

@@ -6,7 +6,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 import javax.imageio.stream.MemoryCacheImageOutputStream
 import javax.imageio.{IIOImage, ImageIO, ImageWriteParam}
 import scala.util.Using
-import skein.record.{Picture, ImageEncoding}
+import skein.record.{CameraImage, ImageEncoding}
 import skein.units.Instant
 
 /** What viewers see of images and clouds while a flight flies: JPEGs of up to [[ImagePreviews.MostWide]] pixels to a side,
@@ -17,11 +17,11 @@ private[view] object ImagePreviews extends ImageEncoding:
   val imageSchema = "foxglove.CompressedImage"
   val mostPoints  = 4096
 
-  def image(picture: Picture, at: Instant, frame: String): Array[Byte] =
+  def image(picture: CameraImage, at: Instant, frame: String): Array[Byte] =
     ImageEncoding.compressed(jpeg(small(picture)), "jpeg", at, frame)
 
   /** Each pixel the mean of a square; a depth as grey, black from [[FarM]] on. */
-  private def small(picture: Picture): BufferedImage =
+  private def small(picture: CameraImage): BufferedImage =
     val (width, height) = (picture.width.toInt, picture.height.toInt)
     val by              = ((width.max(height) + MostWide - 1) / MostWide).max(1)
     val (wide, high)    = ((width / by).max(1), (height / by).max(1))

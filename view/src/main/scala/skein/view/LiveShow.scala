@@ -16,7 +16,7 @@ final case class Gauge(topic: Topic, every: Span, json: () => String)
   *
   * @param scene
   *   what stands in its world
-  * @param sights
+  * @param sensors
   *   whose images and clouds come
   */
 final class LiveShow(
@@ -26,8 +26,8 @@ final class LiveShow(
     limits: Limits = Limits(),
     override val controls: Map[Control, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
-    sights: Vector[ImagingSensor] = Vector.empty
-) extends Show(heading.flight.id, LiveShow.topics(heading, sights) ++ gauges.map(_.topic), limits):
+    sensors: Vector[ImagingSensor] = Vector.empty
+) extends Show(heading.flight.id, LiveShow.topics(heading, sensors) ++ gauges.map(_.topic), limits):
   private val topics = FlightTopics(
     heading.vehicles.map(_.name).toVector,
     heading.flight.startedAt,
@@ -36,7 +36,7 @@ final class LiveShow(
   )
   private var number = 0L
   private var asked  = gauges.map(_ => Instant.ofNanos(0))
-  private var looked = sights.map(_ => Instant.ofNanos(0))
+  private var looked = sensors.map(_ => Instant.ofNanos(0))
 
   topics.opening.foreach(publish)
   heading.records.foreach(show)
@@ -47,9 +47,9 @@ final class LiveShow(
 
   def turn(now: Instant): Unit =
     Iterator.continually(feed.poll()).takeWhile(_.isDefined).take(LiveShow.MostAtOnce).flatten.foreach(show)
-    looked = sights.zip(looked).map: (sight, last) =>
+    looked = sensors.zip(looked).map: (sensor, last) =>
       if now.since(last) < LiveShow.LookEvery then last
-      else feed.poll(sight).fold(last)(record => { show(record); now })
+      else feed.poll(sensor).fold(last)(record => { show(record); now })
     asked = gauges.zip(asked).map: (gauge, last) =>
       if now.since(last) < gauge.every then last
       else
@@ -68,8 +68,8 @@ final class LiveShow(
     number += 1
 
 object LiveShow:
-  private def topics(heading: RecordingHeader, sights: Vector[ImagingSensor]) =
-    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sights.flatMap(FlightTopics.of(
+  private def topics(heading: RecordingHeader, sensors: Vector[ImagingSensor]) =
+    FlightTopics.all(heading.vehicles.map(_.name).toVector) ++ sensors.flatMap(FlightTopics.of(
       _,
       ImagePreviews
     ))

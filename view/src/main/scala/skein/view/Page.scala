@@ -19,7 +19,7 @@ private[view] object Page:
     "/map.js"          -> ("map.js", code),
     "/plots.js"        -> ("plots.js", code),
     "/graph.js"        -> ("graph.js", code),
-    "/sights.js"       -> ("sights.js", code),
+    "/cameras.js"      -> ("cameras.js", code),
     "/task.js"         -> ("task.js", code),
     "/uplot/uPlot.js"  -> ("uplot/uPlot.iife.min.js", code),
     "/uplot/uPlot.css" -> ("uplot/uPlot.min.css", css)

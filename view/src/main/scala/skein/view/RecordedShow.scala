@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{Flight, FlightTopics, McapRecording, Record, ImagingSensor, Vehicle}
+import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, Vehicle}
 import skein.scene.Scene
 import skein.units.Instant
 
@@ -105,7 +105,7 @@ object RecordedShow:
       rows: Vector[(Long, Record)],
       scene: Map[String, String] => Scene = _ => Scene.Empty
   ): RecordedShow = RecordedShow(
-    rows.collectFirst { case (_, flight: Flight) => flight.id }.getOrElse("flight"),
+    rows.collectFirst { case (_, flight: FlightRow) => flight.id }.getOrElse("flight"),
     rows.collect { case (_, vehicle: Vehicle) => vehicle.name },
     rows,
     scene = McapRecording.sceneOf(rows, scene)

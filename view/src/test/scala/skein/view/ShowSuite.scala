@@ -75,12 +75,12 @@ class ShowSuite extends munit.FunSuite:
         )
       )
 
-  private val image = "/vehicles/Pursuer/front_center/image"
-  private val sight = ImagingSensor.camera("Pursuer", "front_center", "Scene")
+  private val image  = "/vehicles/Pursuer/front_center/image"
+  private val sensor = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
   test("of a camera's images the newest is shown, as a JPEG, ten times a second at most"):
     val feed   = Feed()
-    val show   = LiveShow(heading, feed, sights = Vector(sight))
+    val show   = LiveShow(heading, feed, sensors = Vector(sensor))
     val viewer = watching(show, image, "/skein/image")
     for number <- 1 to 40 do
       feed.offer(Samples.picture(number))
@@ -94,7 +94,7 @@ class ShowSuite extends munit.FunSuite:
     assertEquals((jpeg.getWidth, jpeg.getHeight), (40, 30))
 
   test("a channel of images says that its messages are of Protocol Buffers, and by which descriptors"):
-    val show     = LiveShow(heading, Feed(), sights = Vector(sight))
+    val show     = LiveShow(heading, Feed(), sensors = Vector(sensor))
     val channels = ujson.read(Protocol.advertise(show.channels))("channels").arr
     val camera   = channels.find(_("topic").str == image).get
     assertEquals(

@@ -5,8 +5,8 @@ import scala.collection.immutable.ArraySeq
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 
-/** Whoever computes blocks, elsewhere. */
-trait Elsewhere:
+/** Computes blocks in other processes. */
+trait BlockExecutor:
   /** @param onAnswer
     *   told each as it comes, in any order, on any thread
     * @return
@@ -49,4 +49,4 @@ trait Elsewhere:
     Await.result(answered, 1.second)
 
 /** No more blocks are computed: for the reason told. */
-final class ElsewhereFailed(reason: String) extends RuntimeException(reason)
+final class BlocksFailed(reason: String) extends RuntimeException(reason)

@@ -20,7 +20,7 @@ import skein.simd.WorldRandom
   * @param formula
   *   of the number, in `unit`, which may be empty
   */
-trait Swept(
+trait BudgetSubject(
     val loop: String,
     val periodMs: Double,
     val durationS: Double,
@@ -55,11 +55,11 @@ trait Swept(
       isCancelled: () => Boolean
   ): Either[String, Vector[RunningStats]]
 
-object Swept:
+object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
 /** A policy in the paper's duel. */
-final class DuelSwept(
+final class DuelSubject(
     named: Conditions,
     flown: Conditions.Resolved,
     policy: PolicyFile,
@@ -67,7 +67,7 @@ final class DuelSwept(
     objective: Objective,
     seed: Long,
     threads: Int
-) extends Swept(
+) extends BudgetSubject(
       named.loop,
       named.periodMs,
       named.durationS,
@@ -106,7 +106,7 @@ final class DuelSwept(
         RunningStats.of(episodes)(episode =>
           objective.value(outcomes, link * episodes + episode, policy.role, durationS)
         ),
-      Swept.Stopped
+      BudgetSubject.Stopped
     )
 
   private final class Worlds(links: Vector[DelayTable], each: Int) extends DuelWorlds:
@@ -116,5 +116,5 @@ final class DuelSwept(
     def size: Int                    = tables.length * each
     def key(world: Int): Int         = keys(world % each)
     def link(world: Int): DelayTable = tables(world / each)
-    def pursuer(world: Int): Policy  = DuelSwept.this.pursuer
-    def evader(world: Int): Policy   = DuelSwept.this.evader
+    def pursuer(world: Int): Policy  = DuelSubject.this.pursuer
+    def evader(world: Int): Policy   = DuelSubject.this.evader

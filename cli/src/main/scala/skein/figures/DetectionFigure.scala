@@ -1,6 +1,6 @@
 package skein.figures
 
-import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Sight}
+import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Detection}
 import skein.plot.*
 import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
@@ -13,7 +13,7 @@ import skein.vehicle.Quadrotor
 /** What cameras saw at decisive moments: drawn anew by the built-in simulator's renderer, from where the camera was at the
   * exposure and where the vehicle was that it looked at, with a box around the place at which it was recognised.
   */
-object SightFigure:
+object DetectionFigure:
   private val shownPx = 330.0
   private val red     = Colour(0xd62728)
 
@@ -40,24 +40,31 @@ object SightFigure:
         Theme.labelColour,
         bold = true
       )
-      val cells = seen.decisive.map: (name, sight) =>
+      val cells = seen.decisive.map: (name, detection) =>
         val thing = SceneObject(
           seen.eye.target,
           MultirotorBody.parts(Quadrotor.AirSim.airframe, number, scene.scene.vehicleTagM),
-          Placement(sight.trueNed, sight.trueOrientation)
+          Placement(detection.trueNed, detection.trueOrientation)
         )
         val view =
-          View(Placement(sight.cameraNed, sight.orientation), camera.width, camera.height, camera.fovDeg)
+          View(
+            Placement(detection.cameraNed, detection.orientation),
+            camera.width,
+            camera.height,
+            camera.fovDeg
+          )
         val file =
           Renderer.draw(Moment(scene.scene, Vector(thing)), view, Set(Kind.Scene), _ => 0)(Kind.Scene) match
             case Picture.Bytes(bgr) => PictureFile.encode(bgr, camera.width, camera.height)
             case other              => throw IllegalStateException(s"expected colours, came $other")
         val scale = shownPx / camera.width
-        val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(sight.azimuthRad)) * scale
+        val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(detection.azimuthRad)) * scale
         val y     =
           (camera.height / 2.0 -
-            view.focalPx * StrictMath.tan(sight.elevationRad) / StrictMath.cos(sight.azimuthRad)) * scale
-        val half = (view.focalPx * scene.scene.vehicleTagM / sight.rangeM * scale * 0.7).max(4)
+            view.focalPx * StrictMath.tan(detection.elevationRad) / StrictMath.cos(
+              detection.azimuthRad
+            )) * scale
+        val half = (view.focalPx * scene.scene.vehicleTagM / detection.rangeM * scale * 0.7).max(4)
         Drawing(
           shownPx + 14,
           height + 44,
@@ -70,15 +77,15 @@ object SightFigure:
               (y + half).min(height),
               Stroke(red, 1.6)
             )
-          ) ++ told(name, sight).zipWithIndex.map((line, index) =>
+          ) ++ told(name, detection).zipWithIndex.map((line, index) =>
             Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
           )
         )
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))
 
-  private def told(name: String, sight: Sight): Vector[String] =
-    val used = sight.firstUsedMs.fold("never used")(ms => s"used ${ms.fixed(0)} ms old")
+  private def told(name: String, detection: Detection): Vector[String] =
+    val used = detection.firstUsedMs.fold("never used")(ms => s"used ${ms.fixed(0)} ms old")
     Vector(
-      s"$name: ${sight.sinceStartS.max(0).fixed(1)} s, ${sight.rangeM.fixed(1)} m away",
-      s"recognised in ${sight.tookMs.fixed(0)} ms, $used; believed ${sight.errorM.fixed(2)} m off"
+      s"$name: ${detection.sinceStartS.max(0).fixed(1)} s, ${detection.rangeM.fixed(1)} m away",
+      s"recognised in ${detection.tookMs.fixed(0)} ms, $used; believed ${detection.errorM.fixed(2)} m off"
     )

@@ -5,12 +5,12 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.Scenarios
-import skein.search.{Conditions, Elsewhere}
+import skein.search.{Conditions, BlockExecutor}
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
 import skein.units.Span
 
-class ClusterSweptSuite extends munit.FunSuite:
+class ClusterSubjectSuite extends munit.FunSuite:
   override def munitTimeout: Duration = 2.minutes
 
   private given Scenarios = Scenarios.ours
@@ -36,23 +36,23 @@ class ClusterSweptSuite extends munit.FunSuite:
 
   private lazy val here = questions.map(_.swept(threads = 2).fold(fail(_), identity))
 
-  private lazy val question = ClusterSwept.bytes(questions, here).fold(fail(_), identity)
+  private lazy val question = ClusterSubject.bytes(questions, here).fold(fail(_), identity)
 
   private val links = Vector(20, 80, 140).map(ms => LatencyDistribution.Uniform(Span.Zero, Span.ofMillis(ms)))
 
-  private def tallies(of: Swept) = of.tallies(links, 4, _ => (), () => false)
+  private def tallies(of: BudgetSubject) = of.tallies(links, 4, _ => (), () => false)
 
   test("cells flown elsewhere, one by one and in any order, come to what they come to here, to the bit"):
-    val solver    = ClusterSwept.solvers.of(question).fold(fail(_), identity)()
-    val elsewhere = new Elsewhere:
+    val solver    = ClusterSubject.solvers.of(question).fold(fail(_), identity)()
+    val elsewhere = new BlockExecutor:
       def cancel(): Unit                                                           = ()
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
         assertEquals(works.size, links.size)
         Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))
     for (one, number) <- here.zipWithIndex do
-      assertEquals(tallies(ClusterSwept(one, number, elsewhere, () => 1, Some(4))), tallies(one), one.label)
+      assertEquals(tallies(ClusterSubject(one, number, elsewhere, () => 1, Some(4))), tallies(one), one.label)
 
   test("a worker to whom the question comes to something else refuses"):
     val other = String(question.toArray, "UTF-8").replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
-    val told  = ClusterSwept.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes("UTF-8")))
+    val told  = ClusterSubject.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes("UTF-8")))
     assert(clue(told).left.exists(_.startsWith("one episode does not come to the same")))

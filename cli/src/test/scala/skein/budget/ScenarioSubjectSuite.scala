@@ -6,7 +6,7 @@ import skein.search.Conditions
 import skein.signal.LatencyDistribution
 import skein.units.*
 
-class ScenarioSweptSuite extends munit.FunSuite:
+class ScenarioSubjectSuite extends munit.FunSuite:
   override def munitTimeout: Duration = 2.minutes
 
   private val surround = Surround(vehicles = 4)
@@ -19,12 +19,12 @@ class ScenarioSweptSuite extends munit.FunSuite:
       objective: Option[String] = None,
       conditions: Conditions = Conditions("stream", "drag", 100, 20),
       threads: Int = 2
-  ): Swept =
+  ): BudgetSubject =
     question(scenario, objective, conditions, threads).flatMap(_.swept(plantIsTold =
       false
     )).fold(fail(_), identity)
 
-  private def at(of: Swept, roundTripMs: Double) = of
+  private def at(of: BudgetSubject, roundTripMs: Double) = of
     .tallies(Vector(LatencyDistribution.Constant(Span.ofMillis(roundTripMs))), 2, _ => (), () => false)
     .fold(fail(_), _.head.mean)
 

@@ -33,18 +33,18 @@ final case class ScenarioQuestion(
     * @return
     *   or what was expected, what came, and in which option
     */
-  def swept(plantIsTold: Boolean): Either[String, Swept] =
+  def swept(plantIsTold: Boolean): Either[String, BudgetSubject] =
     engagement match
       case Left(reason) if plantIsTold =>
         Left(
           s"--plant: expected none, since this scenario flies in virtual time by the simulator's quadrotor: $reason"
         )
-      case Left(reason) => conditions.checked.map(FlownSwept.virtual(this, _, reason))
+      case Left(reason) => conditions.checked.map(FlownSubject.virtual(this, _, reason))
       case Right(plane) =>
         for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
         yield
-          if terms.forall(_._2.reduced.nonEmpty) then TeamSwept(this, plane, flown)
-          else FlownSwept.forward(this, plane, flown)
+          if terms.forall(_._2.reduced.nonEmpty) then TeamSubject(this, plane, flown)
+          else FlownSubject.forward(this, plane, flown)
 
   private def engagement: Either[String, Engagement] =
     try
@@ -86,8 +86,8 @@ object ScenarioQuestion:
     yield ScenarioQuestion(scenario, sum.terms, conditions, seed, threads)
 
 /** In the plane, by measures that are of a quantity. */
-final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
-    extends ScenarioSwept(question, flown.vehicle.description):
+final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
+    extends ScenarioSubject(question, flown.vehicle.description):
   private val candidate =
     TeamCandidate(plane, TeamQuestion.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
 
@@ -95,7 +95,7 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
     TeamEvaluator(batch(timing), _ => candidate, link, question.terms.map(_._1), question.seed)
       .talliesUnless(isCancelled)(Vector(Vector.empty), 0 until episodes)
       .map(_.head)
-      .toRight(Swept.Stopped)
+      .toRight(BudgetSubject.Stopped)
 
   def truth: Either[String, Double] =
     fly(flown.paused.timing, DelayTable.none, 1, () => false).map(_.mean)
@@ -122,13 +122,13 @@ final class TeamSwept(question: ScenarioQuestion, plane: Engagement, flown: Cond
   * @param fly
   *   one episode over a link by its round trips, or with a world that waits; on the calling thread
   */
-final class FlownSwept private (
+final class FlownSubject private (
     question: ScenarioQuestion,
     vehicles: String,
     told: String,
     val each: Int,
     fly: (Option[LatencyDistribution], Int) => Either[String, Tracks]
-) extends ScenarioSwept(question, vehicles):
+) extends ScenarioSubject(question, vehicles):
 
   def engine(links: Vector[LatencyDistribution]): String = told
 
@@ -152,7 +152,7 @@ final class FlownSwept private (
     val done = AtomicLong()
     val all  = links.flatMap(link => Vector.tabulate(episodes)((link, _)))
     val came = InParallel.map(all, question.threads): (link, episode) =>
-      if isCancelled() then Left(Swept.Stopped)
+      if isCancelled() then Left(BudgetSubject.Stopped)
       else
         val came = value(Some(link), episode)
         onProgress(done.incrementAndGet())
@@ -162,10 +162,10 @@ final class FlownSwept private (
       flown.grouped(episodes).map(values => RunningStats.of(values.size)(values)).toVector
     )
 
-object FlownSwept:
+object FlownSubject:
 
   /** By forward simulation, world by world. */
-  def forward(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved): FlownSwept =
+  def forward(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved): FlownSubject =
     val agents                                                 = question.scenario.agents
     def tracks(timing: LoopTiming, link: Delays, episode: Int) =
       val samples = agents.map(agent =>
@@ -185,7 +185,7 @@ object FlownSwept:
         ))
         .toRight("its vehicles were not all seen")
     val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamQuestion.keyOf)
-    FlownSwept(
+    FlownSubject(
       question,
       flown.vehicle.description,
       s"scalar: ${plain.mkString(", ")} is of whole flights, not of a quantity by itself",
@@ -197,8 +197,8 @@ object FlownSwept:
     )
 
   /** By flights in virtual time: simulator, link, client and loop as they are. */
-  def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSwept =
-    FlownSwept(
+  def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSubject =
+    FlownSubject(
       question,
       "the simulator's quadrotor",
       s"flights in virtual time: $reason",
@@ -217,8 +217,8 @@ object FlownSwept:
     )
 
 /** A scenario. */
-sealed abstract class ScenarioSwept(question: ScenarioQuestion, vehicles: String)
-    extends Swept(
+sealed abstract class ScenarioSubject(question: ScenarioQuestion, vehicles: String)
+    extends BudgetSubject(
       question.conditions.loop,
       question.conditions.periodMs,
       question.conditions.durationS,

@@ -5,7 +5,7 @@ import scala.collection.immutable.ArraySeq
 import skein.cluster.Solvers
 import skein.optimise.RunningStats
 import skein.scenario.Scenarios
-import skein.search.{Elsewhere, UntilWrong}
+import skein.search.{BlockExecutor, UntilWrong}
 import skein.signal.LatencyDistribution
 import upickle.default.{ReadWriter, read as readJson, write as writeJson}
 
@@ -16,13 +16,21 @@ import upickle.default.{ReadWriter, read as readJson, write as writeJson}
   * @param blockEpisodes
   *   of a block, about; without it, as many as take seconds at most
   */
-final class ClusterSwept(
-    here: Swept,
+final class ClusterSubject(
+    here: BudgetSubject,
     number: Int,
-    elsewhere: Elsewhere,
+    elsewhere: BlockExecutor,
     share: () => Double,
     blockEpisodes: Option[Int]
-) extends Swept(here.loop, here.periodMs, here.durationS, here.vehicles, here.label, here.formula, here.unit):
+) extends BudgetSubject(
+      here.loop,
+      here.periodMs,
+      here.durationS,
+      here.vehicles,
+      here.label,
+      here.formula,
+      here.unit
+    ):
 
   export here.{cellEpisodes, engine, truth}
 
@@ -35,16 +43,16 @@ final class ClusterSwept(
       onProgress: Long => Unit,
       isCancelled: () => Boolean
   ): Either[String, Vector[RunningStats]] =
-    val most   = blockEpisodes.getOrElse(ClusterSwept.CellsOfBlock * here.cellEpisodes(links))
+    val most   = blockEpisodes.getOrElse(ClusterSubject.CellsOfBlock * here.cellEpisodes(links))
     val blocks = links.grouped((most / episodes).max(1)).map(BudgetBlock(number, _, episodes)).toVector
     val total  = links.size.toLong * episodes
     for
       answered <- elsewhere.computed(blocks.map(_.bytes), isCancelled)(onProgress((total * share()).toLong))
-      answers  <- answered.toRight(Swept.Stopped)
+      answers  <- answered.toRight(BudgetSubject.Stopped)
       tallies <- UntilWrong.each(blocks.zip(answers))((block, answer) => block.tallies(answer)).map(_.flatten)
     yield tallies
 
-object ClusterSwept:
+object ClusterSubject:
   /** Of the size that a cell has unless told otherwise. */
   private val CellsOfBlock = 8
 
@@ -54,12 +62,15 @@ object ClusterSwept:
     *   what each came to at the coordinator in one episode: a worker that comes to anything else, by a file of another
     *   content for example, does not answer the question
     */
-  private final case class Posed(questions: Vector[BudgetQuestion], probes: Vector[Long]) derives ReadWriter
+  private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[Long])
+      derives ReadWriter
 
-  def bytes(questions: Vector[BudgetQuestion], swept: Vector[Swept]): Either[String, ArraySeq[Byte]] =
-    probes(swept).map(came => ArraySeq.unsafeWrapArray(writeJson(Posed(questions, came)).getBytes(UTF_8)))
+  def bytes(questions: Vector[BudgetQuestion], swept: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
+    probes(swept).map(came =>
+      ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(questions, came)).getBytes(UTF_8))
+    )
 
-  private def probes(swept: Vector[Swept]): Either[String, Vector[Long]] =
+  private def probes(swept: Vector[BudgetSubject]): Either[String, Vector[Long]] =
     UntilWrong.each(swept)(_.tallies(Vector(LatencyDistribution.Vpn), 1, _ => (), () => false).map(tallies =>
       java.lang.Double.doubleToLongBits(tallies.head.mean)
     ))
@@ -68,7 +79,7 @@ object ClusterSwept:
   def solvers(using Scenarios): Solvers = asked =>
     for
       posed <-
-        try Right(readJson[Posed](String(asked.toArray, UTF_8)))
+        try Right(readJson[ProbedQuestion](String(asked.toArray, UTF_8)))
         catch case mistake: Exception => Left(s"expected a budget's question, came: ${mistake.getMessage}")
       came <- swept(posed).flatMap(probes)
       _    <- Either.cond(
@@ -87,5 +98,5 @@ object ClusterSwept:
           yield answered
         answer.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
-  private def swept(posed: Posed)(using Scenarios) =
+  private def swept(posed: ProbedQuestion)(using Scenarios) =
     UntilWrong.each(posed.questions)(_.swept(threads = 1))

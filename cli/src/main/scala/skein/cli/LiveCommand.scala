@@ -1,0 +1,130 @@
+package skein.cli
+
+import java.nio.file.Path
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.*
+import scala.concurrent.{Future, Promise}
+import skein.flight.{FlightAssembler, FlightResult, LiveFlights, OutsideRequests, ProgressBoard}
+import skein.link.{Address, TcpTransport}
+import skein.loop.LoopKind
+import skein.record.Record
+import skein.settings.{FlightPlan, FlySettings}
+import skein.units.Clock
+
+/** What `./skein fly` flies by the clock.
+  *
+  * @param simulator
+  *   one that runs already; without it, each flight has a built-in one
+  * @param shown
+  *   where flights are looked at meanwhile
+  * @param sinks
+  *   for what is written beside the recordings
+  * @param requests
+  *   that end or hold flights from outside
+  */
+private[cli] final class LiveCommand(
+    settings: FlySettings,
+    simulator: Option[Address],
+    out: Path,
+    shown: Option[OnShow],
+    sinks: RecordOptions.Sinks,
+    requests: OutsideRequests,
+    secured: SolverSecurity.Checked
+):
+  import LiveCommand.*
+
+  /** Blocks until all have landed. */
+  def fly(plans: Vector[FlightPlan]): Either[String, Flown] =
+    given system: ActorSystem = LiveSystem("skein")
+    val assembler             = FlightAssembler(
+      TcpTransport(),
+      Clock.system,
+      settings,
+      simulator,
+      tell = tell,
+      calledOff = requests.calledOff,
+      solvers = SolverOptions.reached(settings, secured),
+      isWatched = shown.isDefined
+    )
+    try if simulator.isEmpty then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
+    finally
+      val _ = Edge.await(system.terminate())
+
+  /** On one simulator that runs already. What has landed is kept when a later flight cannot start; Ctrl-C ends them all. */
+  private def inTurn(assembler: FlightAssembler, plans: Vector[FlightPlan])(using
+      ActorSystem
+  ): Either[String, Flown] =
+    if plans.exists(_.loop == LoopKind.Paused) then
+      Console.err.println(
+        "paused: the simulator will stand still between steps, for all its clients; other --loop leave it running"
+      )
+    val flown = plans.foldLeft(Flown(Vector.empty, None)): (before, plan) =>
+      if before.grounded.isDefined then before
+      else if Edge.isInterrupted then
+        before.copy(grounded = Some(s"${plan.id} and later flights were not flown"))
+      else
+        Console.err.println(s"${plan.id}: the vehicles are brought to their starts")
+        together(assembler, Vector(plan)) match
+          case Left(reason)  => before.copy(grounded = Some(reason))
+          case Right(landed) => before.copy(landed = before.landed ++ landed)
+    flown.grounded match
+      case Some(reason) if flown.landed.isEmpty => Left(reason)
+      case _                                    => Right(flown)
+
+  private def together(assembler: FlightAssembler, plans: Vector[FlightPlan])(using
+      system: ActorSystem
+  ): Either[String, Vector[FlightResult]] =
+    import system.dispatcher
+    val abandoned = Promise[Either[String, LiveFlights]]()
+    def stop()    =
+      val why = "ended from outside before it began"
+      requests.stopAll(why)
+      // Vehicles that nothing is heard of are not waited for.
+      system.scheduler.scheduleOnce(CalledOffWithin)(
+        abandoned.trySuccess(Left(s"${plans.head.id}: $why")): Unit
+      ): Unit
+    Edge.untilInterrupted(() => stop()):
+      Edge
+        .await(Future.firstCompletedOf(Seq(
+          LiveFlights.start(
+            assembler,
+            plans,
+            out,
+            heading => shown.fold((_: Record) => ())(_.observe(heading)),
+            sinks.open
+          ),
+          abandoned.future
+        )))
+        .left
+        .map: why =>
+          sinks.discard(plans)
+          why
+        .map: flights =>
+          requests.flying(flights)
+          shown.foreach(_.flying(flights))
+          val board = ProgressBoard(plans.map(_.id), settings.duration, System.err)
+          val timer =
+            system.scheduler.scheduleAtFixedRate(500.millis, 500.millis)(() => board.show(flights.progress))
+          try Edge.await(flights.landed)
+          finally
+            val _ = timer.cancel()
+            board.close()
+
+private[cli] object LiveCommand:
+  /** @param grounded
+    *   why the flights that are not among those that landed were not flown, if any was not
+    */
+  final case class Flown(landed: Vector[FlightResult], grounded: Option[String]):
+    def and(more: Either[String, Vector[FlightResult]]): Flown =
+      more.fold(
+        reason => copy(grounded = Some((grounded ++ Some(reason)).mkString("\n"))),
+        twins => copy(landed ++ twins)
+      )
+
+  /** Vehicles on the way to their starts are told to hover within so long, about. */
+  private val CalledOffWithin = 5.seconds
+
+  /** What goes wrong in flight, above the line of progress. */
+  private def tell(line: String): Unit =
+    val isTerminal = System.console() != null && System.console().isTerminal
+    Console.err.println((if isTerminal then "\r\u001b[K" else "") + line)
