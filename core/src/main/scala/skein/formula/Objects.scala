@@ -51,7 +51,7 @@ private[formula] final class Objects(
   /** Makes one of what two ways have left, the second of which ends now. */
   final class Merge(condition: Node, parted: Moment, first: Moment):
     private val (yes, no) = (first.things, heap)
-    private val pairs     = mutable.HashMap.empty[(Int, Int), Value]
+    private val pairs     = mutable.HashMap.empty[(Value, Value), Value]
     heap = yes ++ no
 
     /** Of what was there before the ways parted. */
@@ -75,19 +75,30 @@ private[formula] final class Objects(
       case (Number(x), Number(y)) => Number(trace.where(condition, x, y))
       case (Whole(x), Whole(y))   => Whole(trace.where(condition, x, y))
       case (Boxed(x), Boxed(y))   => Boxed(value(x, y))
-      case (Made(x), Made(y))     => pairs.getOrElseUpdate(
-          (x, y),
-          alikeOf(yes(x), no(y)) match
-            case (Record(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
-            case (Thing.Either(of, x), Record(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
-            case (Record(of, x), Thing.Either(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
-            case (Thing.Either(of, x), Thing.Either(or, y)) if of == or =>
-              make(Thing.Either(of, fields(x, y)))
-            case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
-              make(Elements(x.zip(y).map(value), isFrozen = true))
-            case _ => Undecided
-        )
+      case _                      => pairs.getOrElseUpdate((a, b), ofThings(a, b))
+
+    private def ofThings(a: Value, b: Value): Value = (thingOf(a, yes), thingOf(b, no)) match
+      case (Some(one), Some(other)) =>
+        alikeOf(one, other) match
+          case (Record(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
+          case (Thing.Either(of, x), Record(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
+          case (Record(of, x), Thing.Either(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
+          case (Thing.Either(of, x), Thing.Either(or, y)) if of == or =>
+            make(Thing.Either(of, fields(x, y)))
+          case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
+            make(Elements(x.zip(y).map(value), isFrozen = true))
+          case _ => Undecided
       case _ => Undecided
+
+    /** What was made; or, of a case class of doubles that was there before, the same. */
+    private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
+      case Made(id)                                    => Some(in(id))
+      case Known(what, path) if isOfDoubles(what.getClass) =>
+        val fields = doublesOf(what.getClass).map: field =>
+          val way = path.map(before => Path(Some(before), Step.Of(field)))
+          field.getName -> held(open(field).get(what), way, field.getType)
+        Some(Record(ClassFiles.nameOf(what.getClass), fields.toMap))
+      case _ => None
 
     /** A tuple of two numbers has a class of its own where one of them is a constant. */
     private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
@@ -256,6 +267,13 @@ private[formula] object Objects:
   /** Scala's classes of tuples of primitive numbers, and their fields. */
   private val Specialised      = """(scala/Tuple[12])\$mc[A-Z]+\$sp""".r
   private val SpecialisedField = """(\w+)\$mc[A-Z]\$sp""".r
+
+  private def doublesOf(kind: Class[?]): Vector[java.lang.reflect.Field] =
+    kind.getDeclaredFields.toVector.filterNot(each => java.lang.reflect.Modifier.isStatic(each.getModifiers))
+
+  private def isOfDoubles(kind: Class[?]): Boolean =
+    classOf[Product].isAssignableFrom(kind) && kind.getSuperclass == classOf[Object] &&
+      doublesOf(kind).forall(each => each.getType == classOf[Double] || isOfDoubles(each.getType))
 
   def wholeOf(simple: AnyRef): Int = simple match
     case number: java.lang.Number       => number.intValue
