@@ -25,7 +25,10 @@ object TeamRates:
     println("|---|---|---|---|---|---|---|")
     for
       vehicles     <- if args.isEmpty then Seq(6, 20, 64) else args.toSeq.map(_.toInt)
-      (name, draw) <- Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles))
+      (name, draw) <-
+        Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
+          // More are more operations than a formula may have.
+          Option.when(vehicles <= 32)("crossing" -> crossing(vehicles))
     do
       val candidates    = Vector.tabulate(Candidates)(draw)
       val batch         = TeamBatch(LoopTiming.Stream(), Works.model, 1)
@@ -52,6 +55,9 @@ object TeamRates:
     val scenario       = Formation(vehicles, spacingM = 3 + 0.01 * number)
     val (ahead, right) = scenario.slots.unzip
     candidate(scenario, Vector(OffSlots(scenario.circuit, IArray.from(ahead), IArray.from(right))))
+
+  private def crossing(vehicles: Int)(number: Int): TeamCandidate =
+    candidate(Crossing(vehicles, marginM = 0.5 + 0.005 * number), Vector(Separation))
 
   private def candidate(scenario: Scenario, by: Vector[Quantity]) =
     TeamCandidate(

@@ -41,21 +41,37 @@ final class Angles(
   /** A direction: the vector (x, y), whatever its length. */
   private final case class Direction(x: Node, y: Node, isUnit: Boolean)
 
-  def convert(node: Node): Node = done.getOrElseUpdate(node, converted(node))
+  def convert(node: Node): Node =
+    land(node)
+    inner(node)
 
   /** The same with what both ways of a condition have alike before it, and with constant factors made one. */
-  def factored(node: Node): Node = plain.getOrElseUpdate(
+  def factored(node: Node): Node =
+    for each <- Trace.landings(node) do plained(each): Unit
+    plained(node)
+
+  /** Cosine and sine of a converted angle. */
+  def cosSin(node: Node): (Node, Node) =
+    land(node)
+    cosSinOf(node)
+
+  private def land(node: Node): Unit = for each <- Trace.landings(node) do
+    if isFixed(each) then () else inner(each): Unit
+
+  private def inner(node: Node): Node = done.getOrElseUpdate(node, converted(node))
+
+  private def plained(node: Node): Node = plain.getOrElseUpdate(
     node,
     node.op match
       case Const | Input | Param | Always => node
       case Where                          =>
-        val Vector(condition, a, b) = node.args.map(factored)
+        val Vector(condition, a, b) = node.args.map(plained)
         choose(source, condition, a, b)
       case Div if node.args(1).isConst =>
-        scaled(factored(node.args(0)), 1 / node.args(1).value)
-      case Mul if node.args(1).isConst => scaled(factored(node.args(0)), node.args(1).value)
-      case Mul if node.args(0).isConst => scaled(factored(node.args(1)), node.args(0).value)
-      case _                           => source.again(node, node.args.map(factored))
+        scaled(plained(node.args(0)), 1 / node.args(1).value)
+      case Mul if node.args(1).isConst => scaled(plained(node.args(0)), node.args(1).value)
+      case Mul if node.args(0).isConst => scaled(plained(node.args(1)), node.args(0).value)
+      case _                           => source.again(node, node.args.map(plained))
   )
 
   private def scaled(node: Node, by: Double): Node =
@@ -63,10 +79,9 @@ final class Angles(
       source.mul(node.args(0), source.const(node.args(1).value * by))
     else source.mul(node, source.const(by))
 
-  /** Cosine and sine of a converted angle. */
-  def cosSin(node: Node): (Node, Node) = directionOf(node) match
+  private def cosSinOf(node: Node): (Node, Node) = directionOf(node) match
     case Some(way) => unit(way)
-    case None      => (target.unary(Cos, convert(node)), target.unary(Sin, convert(node)))
+    case None      => (target.unary(Cos, inner(node)), target.unary(Sin, inner(node)))
 
   private def converted(node: Node): Node =
     if isFixed(node) && !node.isConst && !node.op.isCondition && node.op != Always then
@@ -74,10 +89,10 @@ final class Angles(
     else
       node.op match
         case Input => leaf(node.index)
-        case Sin   => cosSin(node.args(0))._2
-        case Cos   => cosSin(node.args(0))._1
-        case Add   => plus(convert(node.args(0)), convert(node.args(1)))
-        case Mul   => times(convert(node.args(0)), convert(node.args(1)))
+        case Sin   => cosSinOf(node.args(0))._2
+        case Cos   => cosSinOf(node.args(0))._1
+        case Add   => plus(inner(node.args(0)), inner(node.args(1)))
+        case Mul   => times(inner(node.args(0)), inner(node.args(1)))
         // A side is asked for, not an angle.
         case Signum if angleOf(node.args(0)).isDefined => target.unary(Signum, angleOf(node.args(0)).get.y)
         case Lt if sizeOf(node.args(1)).isDefined && isFixed(node.args(0)) =>
@@ -89,15 +104,15 @@ final class Angles(
         case Le if sizeOf(node.args(0)).isDefined && isFixed(node.args(1)) =>
           target.le(cosine(node.args(1)), sizeOf(node.args(0)).get.x)
         case Where if isSideOrElse(node) =>
-          val y         = convert(node.args(2).args(0))
-          val otherwise = target.where(target.lt(y, target.const(0)), target.const(-1), convert(node.args(1)))
+          val y         = inner(node.args(2).args(0))
+          val otherwise = target.where(target.lt(y, target.const(0)), target.const(-1), inner(node.args(1)))
           target.where(target.lt(target.const(0), y), target.const(1), otherwise)
         case Remainder if isTurn(node.args(1)) =>
           directionOf(node.args(0)) match
             case Some(way) => target.binary(Atan2, way.y, way.x)
-            case None      => target.again(node, node.args.map(convert))
-        case Where => choose(convert(node.args(0)), convert(node.args(1)), convert(node.args(2)))
-        case _     => target.again(node, node.args.map(convert))
+            case None      => target.again(node, node.args.map(inner))
+        case Where => choose(inner(node.args(0)), inner(node.args(1)), inner(node.args(2)))
+        case _     => target.again(node, node.args.map(inner))
 
   /** The sign of a number, or something else where it is 0. */
   private def isSideOrElse(node: Node) =
@@ -116,7 +131,7 @@ final class Angles(
   /** Of a parameter that an angle's size is held against. */
   private def cosine(angle: Node): Node =
     val within = source.binary(Max, source.const(0), source.binary(Min, source.const(math.Pi), angle))
-    convert(source.unary(Cos, within))
+    inner(source.unary(Cos, within))
 
   private def isTurn(node: Node) = node.isConst && math.abs(node.value - 2 * math.Pi) < 1e-9
 
@@ -173,15 +188,15 @@ final class Angles(
         a <- directionOf(node.args(1))
         b <- directionOf(node.args(2))
       yield
-        val condition = convert(node.args(0))
+        val condition = inner(node.args(0))
         Direction(choose(condition, a.x, b.x), choose(condition, a.y, b.y), a.isUnit && b.isUnit)
-    case Atan2 => Some(Direction(convert(node.args(1)), convert(node.args(0)), isUnit = false))
+    case Atan2 => Some(Direction(inner(node.args(1)), inner(node.args(0)), isUnit = false))
     case Remainder if isTurn(node.args(1)) => directionOf(node.args(0))
     case Asin                              =>
-      val sine = convert(node.args(0))
+      val sine = inner(node.args(0))
       Some(Direction(other(sine), sine, isUnit = true))
     case Acos =>
-      val cosine = convert(node.args(0))
+      val cosine = inner(node.args(0))
       Some(Direction(cosine, other(cosine), isUnit = true))
     case Mul if isSign(node.args(0)) => mirrored(node.args(0), node.args(1))
     case Mul if isSign(node.args(1)) => mirrored(node.args(1), node.args(0))
@@ -205,7 +220,7 @@ final class Angles(
 
   /** An angle, its mirror image, or nothing. */
   private def mirrored(sign: Node, angle: Node): Option[Direction] = directionOf(angle).map: way =>
-    val by = convert(sign)
+    val by = inner(sign)
     if neverZero(sign) then way.copy(y = times(by, way.y))
     else
       val none = target.equal(by, target.const(0))

@@ -150,6 +150,11 @@ private[formula] final class ClassFiles(loader: ClassLoader):
       )
 
 private[formula] object ClassFiles:
+  def isLibrary(owner: String): Boolean =
+    owner.startsWith("scala/") || owner.startsWith("java/") || owner.startsWith("jdk/")
+
+  def nameOf(of: Class[?]): String = of.getName.replace('.', '/')
+
   def internalName(of: ClassDesc): String =
     if of.isClassOrInterface then of.descriptorString.substring(1, of.descriptorString.length - 1)
     else of.descriptorString

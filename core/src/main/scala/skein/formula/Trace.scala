@@ -152,11 +152,27 @@ final class Trace(most: Int = 200_000):
 object Trace:
   /** What these need, each once, arguments first; in the order in which a depth-first walk ends. */
   def needed(of: Seq[Node]): Vector[Node] =
-    val seen                    = mutable.HashSet.empty[Int]
-    val order                   = Vector.newBuilder[Node]
-    def visit(node: Node): Unit =
-      if seen.add(node.id) then
-        node.args.foreach(visit)
-        order += node
-    of.foreach(visit)
+    val seen  = mutable.HashSet.empty[Int]
+    val order = Vector.newBuilder[Node]
+    // Expressions may be deeper than a thread's stack: nodes with how many of their arguments have been gone to.
+    val walk = mutable.Stack.empty[(Node, Int)]
+    for node <- of if seen.add(node.id) do
+      walk.push((node, 0))
+      while walk.nonEmpty do
+        val (one, gone) = walk.pop()
+        if gone == one.args.size then order += one
+        else
+          walk.push((one, gone + 1))
+          val next = one.args(gone)
+          if seen.add(next.id) then walk.push((next, 0))
     order.result()
+
+  /** Of what a node needs, that at every 256th level, the lowest first. A recursion that remembers what it has done and
+    * goes to these first stays within a thread's stack.
+    */
+  def landings(of: Node): Vector[Node] =
+    val level = mutable.HashMap.empty[Int, Int]
+    needed(Seq(of)).filter: node =>
+      val own = node.args.iterator.map(arg => level(arg.id)).maxOption.fold(0)(_ + 1)
+      level(node.id) = own
+      own > 0 && own % 256 == 0

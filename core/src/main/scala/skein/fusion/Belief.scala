@@ -34,10 +34,13 @@ final case class Belief(
     *   Δt times it: Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation (2001), 6.2.2
     */
   def carriedTo(later: Instant, acceleration: Double): Belief =
-    val dtS                     = later.since(at).toSeconds
+    carriedBy(later.since(at).toSeconds, acceleration).copy(at = later)
+
+  /** The same, but for what it calls its moment. */
+  private[fusion] def carriedBy(dtS: Double, acceleration: Double): Belief =
     def noise(variance: Double) = Matrix3.diagonal(acceleration * variance)
     Belief(
-      later,
+      at,
       positionNed + velocityNed * dtS,
       velocityNed,
       position + (cross + cross.transposed) * dtS + velocity * (dtS * dtS) + noise(dtS * dtS * dtS / 3),
@@ -50,7 +53,7 @@ final case class Belief(
     val placed = joinedPosition(measured.positionNed, measured.covariance)
     measured.velocity.fold(placed)(velocity => placed.joinedVelocity(velocity.ned, velocity.covariance))
 
-  private def joinedPosition(ned: Vector3, covariance: Matrix3): Belief =
+  private[fusion] def joinedPosition(ned: Vector3, covariance: Matrix3): Belief =
     val surprise = (position + covariance).inverse
     val (p, v)   = (position * surprise, cross.transposed * surprise)
     val off      = ned - positionNed
@@ -75,3 +78,17 @@ final case class Belief(
       cross - p * velocity,
       (velocity - v * velocity).symmetric
     )
+
+object Belief:
+  /** From the very first measurement, of a vehicle that may fly as fast as that.
+    *
+    * @param speedMps
+    *   standard deviation of the velocity along each axis
+    */
+  private[fusion] def first(
+      at: Instant,
+      positionNed: Vector3,
+      covariance: Matrix3,
+      speedMps: Double
+  ): Belief =
+    Belief(at, positionNed, Vector3.Zero, covariance, Matrix3.Zero, Matrix3.diagonal(speedMps * speedMps))

@@ -62,16 +62,10 @@ final class Fusion private (
   private def step(last: Option[Belief], measured: Measurement): Belief = last match
     case Some(belief) => belief.carriedTo(measured.validAt, settings.acceleration).joined(measured)
     case None         =>
-      val speed = settings.topSpeed.value
-      val moved =
-        measured.velocity.getOrElse((ned = Vector3.Zero, covariance = Matrix3.diagonal(speed * speed)))
-      Belief(
-        measured.validAt,
-        measured.positionNed,
-        moved.ned,
-        measured.covariance,
-        Matrix3.Zero,
-        moved.covariance
+      val first =
+        Belief.first(measured.validAt, measured.positionNed, measured.covariance, settings.topSpeed.value)
+      measured.velocity.fold(first)(known =>
+        first.copy(velocityNed = known.ned, velocity = known.covariance)
       )
 
 object Fusion:

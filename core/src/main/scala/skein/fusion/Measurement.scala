@@ -53,14 +53,21 @@ final case class PolarMeasurement(
     *   from the sensor's frame to world NED
     */
   def seenFrom(validAt: Instant, positionNed: Vector3, orientation: Quaternion): Measurement =
+    val (place, covariance) = placedFrom(positionNed, orientation)
+    Measurement(validAt, place, covariance)
+
+  /** That place, NED, m, and the covariance of it, m². */
+  private[fusion] def placedFrom(
+      positionNed: Vector3,
+      orientation: Quaternion
+  ): (positionNed: Vector3, covariance: Matrix3) =
     import StrictMath.{cos, sin}
     val (az, el, r)                             = (azimuth.value, elevation.value, range.value)
     def turned(x: Double, y: Double, z: Double) = PolarMeasurement.turned(Vector3(x, y, z), orientation)
     val ahead                                   = turned(cos(el) * cos(az), cos(el) * sin(az), -sin(el))
     val right                                   = turned(-cos(el) * sin(az), cos(el) * cos(az), 0) * r
     val upwards                                 = turned(-sin(el) * cos(az), -sin(el) * sin(az), -cos(el)) * r
-    Measurement(
-      validAt,
+    (
       positionNed + ahead * r,
       Matrix3.along(ahead * deviation.range.value) +
         Matrix3.along(right * deviation.azimuth.value) +

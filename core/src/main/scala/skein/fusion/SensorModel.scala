@@ -67,20 +67,46 @@ final case class SensorModel(
       bearing: Double,
       range: Double
   ): Option[Measurement] =
+    Option.when(found < detection && isInView(axisRad, ownNed, opponentNed)):
+      val (place, covariance) =
+        seen(axisRad, ownNed, opponentNed, SensorModel.normal(bearing), SensorModel.normal(range))
+      Measurement(at, place, covariance)
+
+  /** Whether a picture shows the opponent near enough. */
+  private[fusion] def isInView(axisRad: Double, ownNed: Vector3, opponentNed: Vector3): Boolean =
     val way      = opponentNed - ownNed
     val distance = way.norm
-    val off      = math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
-    Option.when(math.abs(off) < fovRad / 2 && distance <= farthestM && distance > 0 && found < detection):
-      val seen = distance * math.max(0.1, rangeBias + rangeBias * rangeSd * normal(range))
-      PolarMeasurement(
-        Radians(off + bearingSdRad * normal(bearing)),
-        Radians(StrictMath.asin(-way.z / distance)),
-        Metres(seen),
-        (azimuth = Radians(bearingSdRad), elevation = Radians(bearingSdRad), range = Metres(seen * rangeSd))
-      ).seenFrom(
-        at,
-        ownNed,
-        Quaternion(StrictMath.cos(axisRad / 2), 0, 0, StrictMath.sin(axisRad / 2))
-      )
+    math.abs(offAxis(axisRad, way)) < fovRad / 2 && distance <= farthestM && distance > 0
 
-  private def normal(even: Double) = NormalQuantile(even.max(1e-9).min(1 - 1e-9))
+  /** Where an opponent in view is measured, NED, and the covariance of that, m².
+    *
+    * @param bearing
+    *   and `range`: two numbers drawn from the standard normal distribution
+    */
+  private[fusion] def seen(
+      axisRad: Double,
+      ownNed: Vector3,
+      opponentNed: Vector3,
+      bearing: Double,
+      range: Double
+  ): (positionNed: Vector3, covariance: Matrix3) =
+    val way      = opponentNed - ownNed
+    val distance = way.norm
+    val measured = distance * math.max(0.1, rangeBias + rangeBias * rangeSd * range)
+    PolarMeasurement(
+      Radians(offAxis(axisRad, way) + bearingSdRad * bearing),
+      Radians(StrictMath.asin(-way.z / distance)),
+      Metres(measured),
+      (
+        azimuth = Radians(bearingSdRad),
+        elevation = Radians(bearingSdRad),
+        range = Metres(measured * rangeSd)
+      )
+    ).placedFrom(ownNed, Quaternion(StrictMath.cos(axisRad / 2), 0, 0, StrictMath.sin(axisRad / 2)))
+
+  private def offAxis(axisRad: Double, way: Vector3) =
+    math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
+
+object SensorModel:
+  /** Of the standard normal distribution, by a number evenly drawn from 0 to 1. */
+  private[skein] def normal(even: Double): Double = NormalQuantile(even.max(1e-9).min(1 - 1e-9))

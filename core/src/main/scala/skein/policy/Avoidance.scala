@@ -5,7 +5,8 @@ import skein.policy.Avoidance.*
 /** Flies to a goal and keeps clear of all others by optimal reciprocal collision avoidance, ORCA: of the velocities that
   * keep every pair apart for a time if each of the two does its half, the one nearest to that wanted (van den Berg, Guy,
   * Lin, Manocha: ''Reciprocal n-Body Collision Avoidance'', Robotics Research, STAR 70, 2011). Where there is none, the
-  * one that violates the worst of the bounds least, as there.
+  * one that violates the worst of the bounds least, as there. Both are linear programmes of a fixed size ([[HalfPlanes]]),
+  * so that the rule is a formula: every other vehicle is in them, those out of reach with a bound that always holds.
   *
   * The rule takes vehicles for discs that have the commanded velocity at once; a multirotor lags behind, so the discs
   * are wider than the separation to be kept.
@@ -37,8 +38,8 @@ final case class Avoidance(
   def course(seen: TeamObservation): Course =
     val wanted = preferred(seen)
     val bounds = boundsOf(seen)
-    val chosen = nearestAllowed(wanted, bounds, mostMps, relaxedMps = 0)
-      .getOrElse(leastViolation(wanted, bounds, mostMps))
+    val within = bounds.nearest(wanted, mostMps)
+    val chosen = if within.missing > 0 then bounds.leastBroken(wanted, mostMps) else within.velocity
     Course.of(chosen.north, chosen.east, mostMps, seen.headingRad)
 
   def wanted(seen: TeamObservation, aheadS: Double): (Double, Double) =
@@ -53,16 +54,20 @@ final case class Avoidance(
     if distance == 0 then Velocity(0, 0)
     else Velocity(north, east) * (cruiseMps.min(arrivePerS * distance) / distance)
 
-  private def boundsOf(seen: TeamObservation): Array[Bound] =
-    val self  = seen.self
-    val own   = Velocity(seen.northMps(self), seen.eastMps(self))
-    val reach = apartM + 2 * mostMps * horizonS
-    (for
-      other <- Array.range(0, seen.count) if other != self
-      north = seen.northM(other) - seen.northM(self)
-      east  = seen.eastM(other) - seen.eastM(self)
-      if StrictMath.hypot(north, east) < reach
-    yield bound(north, east, own, Velocity(seen.northMps(other), seen.eastMps(other))))
+  private def boundsOf(seen: TeamObservation): HalfPlanes =
+    val self   = seen.self
+    val own    = Velocity(seen.northMps(self), seen.eastMps(self))
+    val reach  = apartM + 2 * mostMps * horizonS
+    val bounds = HalfPlanes(seen.count - 1)
+    for i <- 0 until bounds.count do
+      val other = if i < self then i else i + 1
+      val north = seen.northM(other) - seen.northM(self)
+      val east  = seen.eastM(other) - seen.eastM(self)
+      if StrictMath.hypot(north, east) < reach then
+        val its = bound(north, east, own, Velocity(seen.northMps(other), seen.eastMps(other)))
+        bounds.put(i, its.normal.north, its.normal.east, its.at dot its.normal)
+      else bounds.put(i, 0, 0, HalfPlanes.Always)
+    bounds
 
   /** The half plane of velocities that is this vehicle's half of keeping clear of another one: the smallest change u of
     * the relative velocity that leaves the cone of those which lead to a meeting within the horizon, half of it taken on.
@@ -106,9 +111,6 @@ object Avoidance:
   /** Within which two vehicles that are too near to one another are to be apart again. */
   private[policy] val PartingS = 0.5
 
-  /** Bisections of how far bounds must give way: to a 10⁻⁶ of the largest violation. */
-  private val Halvings = 20
-
   /** A horizontal velocity, m/s. */
   private[policy] final case class Velocity(north: Double, east: Double):
     def +(other: Velocity): Velocity       = Velocity(north + other.north, east + other.east)
@@ -116,70 +118,10 @@ object Avoidance:
     def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
     infix def dot(other: Velocity): Double = north * other.north + east * other.east
 
+    /** No faster than allowed. */
+    def limited(mostMps: Double): Velocity =
+      val speed = math.sqrt(this dot this)
+      if speed > mostMps then this * (mostMps / speed) else this
+
   /** Velocities v with (v − at)·normal ≥ 0. */
-  private[policy] final case class Bound(at: Velocity, normal: Velocity):
-    def direction: Velocity             = Velocity(normal.east, -normal.north)
-    def violation(of: Velocity): Double = (at - of) dot normal
-    def relaxed(byMps: Double): Bound   = Bound(at - normal * byMps, normal)
-
-  /** The allowed velocity nearest to that wanted. It is the wanted one itself, or its foot on one bound or on the limit
-    * of speed, or a corner where two of them meet: all of these are tried.
-    *
-    * @param relaxedMps
-    *   how far each bound gives way
-    */
-  private[policy] def nearestAllowed(
-      wanted: Velocity,
-      bounds: Array[Bound],
-      mostMps: Double,
-      relaxedMps: Double
-  ): Option[Velocity] =
-    val held                               = bounds.map(_.relaxed(relaxedMps))
-    var best: Option[Velocity]             = None
-    var bestSquare                         = Double.PositiveInfinity
-    def attempt(candidate: Velocity): Unit =
-      val away   = candidate - wanted
-      val square = away dot away
-      if square < bestSquare && (candidate dot candidate) <= mostMps * mostMps * (1 + Slack) &&
-        held.forall(_.violation(candidate) <= Slack)
-      then
-        best = Some(candidate)
-        bestSquare = square
-
-    attempt(wanted)
-    val speed = math.sqrt(wanted dot wanted)
-    if speed > mostMps then attempt(wanted * (mostMps / speed))
-    if best.isEmpty then
-      for i <- held.indices do
-        val one = held(i)
-        attempt(one.at + one.direction * ((wanted - one.at) dot one.direction))
-        atLimit(one, mostMps).foreach(attempt)
-        for j <- 0 until i do corner(one, held(j)).foreach(attempt)
-    best
-
-  /** The velocity for which the worst violation is least. */
-  private[policy] def leastViolation(wanted: Velocity, bounds: Array[Bound], mostMps: Double): Velocity =
-    // Standing still is within the limit of speed: relaxed so far, at least it is allowed.
-    var enough = bounds.map(_.violation(Velocity(0, 0))).max.max(0)
-    var least  = 0.0
-    for _ <- 1 to Halvings do
-      val middle = (least + enough) / 2
-      if nearestAllowed(wanted, bounds, mostMps, middle).isDefined then enough = middle else least = middle
-    nearestAllowed(wanted, bounds, mostMps, enough).getOrElse(Velocity(0, 0))
-
-  private val Slack = 1e-9
-
-  /** Where a bound's edge meets the limit of speed. */
-  private def atLimit(bound: Bound, mostMps: Double): Seq[Velocity] =
-    val along  = bound.direction
-    val middle = bound.at - along * (bound.at dot along)
-    val square = mostMps * mostMps - (middle dot middle)
-    if square < 0 then Nil
-    else
-      val half = math.sqrt(square)
-      Seq(middle + along * half, middle - along * half)
-
-  private def corner(one: Bound, other: Bound): Option[Velocity] =
-    val along = one.direction
-    val rise  = along dot other.normal
-    Option.when(math.abs(rise) > 1e-12)(one.at + along * (other.violation(one.at) / rise))
+  private[policy] final case class Bound(at: Velocity, normal: Velocity)

@@ -69,4 +69,7 @@ object CameraPursuer:
     *   since the belief, until what is decided now acts; absent where the own place is not predicted either
     */
   private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
-    placeNed + velocityNed * aheadS.fold(0.0)(_.min(FarthestS))
+    placeNed + velocityNed * aheadS.fold(0.0)(carriedS)
+
+  /** For how long of this time what is believed is carried on, s. */
+  private[skein] def carriedS(aheadS: Double): Double = aheadS.min(FarthestS)

@@ -22,7 +22,7 @@ import skein.vehicle.ReducedModel;
  * ends {@link ReducedModel#PieceS} after its begin at the latest. The scalar reference is {@link
  * ReducedFlight}; the formulas stand there.
  */
-final class DragFlights extends LaneFlights {
+final class DragFlights extends PieceFlights {
   // The velocity reached along the command, what it lacks of that at first, along and across; how
   // fast these die away; and the command.
   private static final int GOAL_X = PIECE_OWN,
@@ -38,13 +38,16 @@ final class DragFlights extends LaneFlights {
 
   private final float perLag, perTurnLag, drag, pull;
   private final boolean turns;
-  private final float[] left = new float[WORLDS], wanted = new float[WORLDS];
-  private final int[] ends = new int[WORLDS];
-  private final LaneVectors over = new LaneVectors();
-  private final Directions along = new Directions(WORLDS);
+  private final float[] left = new float[WORLDS];
 
   DragFlights(Duelist duelist, ReducedModel model, double periodS, int keptRows) {
-    super(duelist, model.turnLagS() != model.lagS() ? PIECE_OWN + 10 : PIECE_OWN + 7, keptRows, periodS);
+    super(
+        duelist,
+        model.turnLagS() != model.lagS() ? PIECE_OWN + 10 : PIECE_OWN + 7,
+        keptRows,
+        periodS,
+        ReducedModel.PieceS(),
+        ALONG_X);
     perLag = (float) (1 / model.lagS());
     perTurnLag = (float) (1 / model.turnLagS());
     drag = (float) model.dragPerM();
@@ -56,36 +59,6 @@ final class DragFlights extends LaneFlights {
   void rest(float[] pieces) {
     Arrays.fill(pieces, RATE * WORLDS, (RATE + 1) * WORLDS, perLag);
     if (turns) Arrays.fill(pieces, CROSS_RATE * WORLDS, (CROSS_RATE + 1) * WORLDS, perTurnLag);
-  }
-
-  @Override
-  void goOn(int row, LaneVectors vectors) {
-    System.arraycopy(until, 0, wanted, 0, WORLDS);
-    while (ends(row, vectors)) {
-      fly(over, true);
-      System.arraycopy(chosen, ALONG_X * WORLDS, along.cos, 0, WORLDS);
-      System.arraycopy(chosen, ALONG_Y * WORLDS, along.sin, 0, WORLDS);
-      begin(over, fill(row), ends, along);
-      System.arraycopy(wanted, 0, until, 0, WORLDS);
-    }
-  }
-
-  /** Whether a newest piece ends before the time there; then, the times of such vectors are those ends. */
-  private boolean ends(int row, LaneVectors vectors) {
-    chooseNewest(row);
-    over.count = 0;
-    FloatVector piece = FloatVector.broadcast(SPECIES, (float) ReducedModel.PieceS());
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      FloatVector end = FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i).add(piece);
-      VectorMask<Float> isOver = end.compare(LT, FloatVector.fromArray(SPECIES, until, i));
-      if (isOver.anyTrue()) {
-        over.first[over.count++] = i;
-        end.intoArray(until, i);
-        IntVector.broadcast(INTS, LaneOffers.NONE).blend(0, isOver.cast(INTS)).intoArray(ends, i);
-      }
-    }
-    return over.count > 0;
   }
 
   @Override

@@ -18,10 +18,14 @@ final class DuelAgents extends TimetableAgents {
   /** Whether somebody outside looks at what it sees. */
   private final boolean isTold;
 
+  /** By which alone it knows of its opponent, or null. */
+  private final EyeLanes eye;
+
   /**
    * @param self the vehicle's number, 0 or 1
    * @param effort where the changes of the heading are added up
    * @param isTold whether somebody outside looks at all that it sees
+   * @param eye by which alone it knows of its opponent; null for one that is told
    */
   DuelAgents(
       int self,
@@ -30,9 +34,11 @@ final class DuelAgents extends TimetableAgents {
       LanePolicy policy,
       float[] effort,
       LaneObservation sight,
-      boolean isTold) {
+      boolean isTold,
+      EyeLanes eye) {
     super(model.vehicles(duelist));
     this.isTold = isTold;
+    this.eye = eye;
     this.self = self;
     this.policy = policy;
     this.effort = effort;
@@ -46,6 +52,7 @@ final class DuelAgents extends TimetableAgents {
     // The timetable keeps the first heading at place 0.
     headings.fill(0, WORLDS, startHeading);
     policy.start(startHeading);
+    if (eye != null) eye.start();
     Arrays.fill(effort, 0f);
   }
 
@@ -79,9 +86,13 @@ final class DuelAgents extends TimetableAgents {
       int after,
       float[] times,
       int number) {
-    see(all, views, view, times, number);
-    TimetableAgents opponent = all[1 - self];
-    policy.decide(sight, headings, before, opponent.headings, known, headings, after);
+    if (eye == null) {
+      see(all, views, view, times, number);
+      policy.decide(sight, headings, before, all[1 - self].headings, known, headings, after);
+    } else {
+      believe(views[view + self] * WORLDS, times, number);
+      policy.decide(sight, headings, before, eye.heading(), 0, headings, after);
+    }
     policy.commit();
     add(policy.turned, effort);
   }
@@ -102,6 +113,37 @@ final class DuelAgents extends TimetableAgents {
       Arrays.fill(sight.ownAge, times[number + 1]);
       Arrays.fill(sight.opponentAge, times[number + 2]);
     }
+  }
+
+  /** The same by what is believed. */
+  private void believe(int ownSeen, float[] times, int number) {
+    eye.look(vehicles, ownSeen, times[number + 2], times[number + 3]);
+    System.arraycopy(eye.northM(), 0, sight.dx, 0, WORLDS);
+    System.arraycopy(eye.eastM(), 0, sight.dy, 0, WORLDS);
+    if (needsVelocity()) {
+      difference(eye.northMps(), 0, vehicles.seenVx, ownSeen, sight.dvx);
+      difference(eye.eastMps(), 0, vehicles.seenVy, ownSeen, sight.dvy);
+    }
+    Arrays.fill(sight.elapsed, times[number]);
+    Arrays.fill(sight.ownAge, times[number + 1]);
+    System.arraycopy(eye.ageS(), 0, sight.opponentAge, 0, WORLDS);
+  }
+
+  @Override
+  void expose(TimetableAgents[] all, int[] views, int view, int picture, float[] times, int number) {
+    eye.expose(
+        picture,
+        vehicles,
+        views[view + self] * WORLDS,
+        all[1 - self].vehicles,
+        views[view + 1 - self] * WORLDS,
+        times,
+        number);
+  }
+
+  @Override
+  void join(int picture, boolean isOlder, int last) {
+    eye.join(picture, isOlder, last);
   }
 
   private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {

@@ -8,16 +8,12 @@ import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 import skein.forward.Duel;
-import skein.forward.Duelist;
 import skein.forward.LoopTiming;
-import skein.forward.Reduced;
-import skein.forward.ReducedResponse;
 import skein.forward.Steering;
-import skein.forward.VelocityResponse;
 
 /**
  * Duels of many worlds at a time, each with delays of its own, under the full event timing of {@code
- * stream}, {@code sequential} or {@code futures}, with a reduced model of the vehicles. A loop tells
+ * stream}, {@code sequential} or {@code futures}, with vehicles whose flight is known in pieces. A loop tells
  * what is offered when ({@link LaneOffers}), {@link LaneAgents} decide upon it and send, {@link
  * LaneVehicles} fly. {@link skein.forward.Rollout} is the scalar reference: both draw the same delays
  * from a world's key, and every event happens at the same nanosecond in both. Nothing is allocated
@@ -25,10 +21,7 @@ import skein.forward.VelocityResponse;
  */
 final class LoopDuelKernel extends DuelKernel {
   /** Times stay within what integers of grains can hold. */
-  private static final double MOST_S = 3.5;
-
-  /** Below, too many periods' commands are under way for {@link LagVehicles}. */
-  private static final double LEAST_PERIOD_S = 0.02;
+  static final double MOST_S = 3.5;
 
   private final int steps;
   private final double periodS;
@@ -46,20 +39,10 @@ final class LoopDuelKernel extends DuelKernel {
    *
    * @param maxDelayS the longest one-way delay of the link
    */
-  static String refusal(LoopTiming timing, double maxDelayS, VelocityResponse model) {
+  static String refusal(LoopTiming timing, double maxDelayS, TimetableModel model) {
+    if (!model.fliesAlone()) return "worlds with delays of their own fly vehicle by vehicle with the quadrotor";
     Steering steering = LoopTiming.steeringOf(timing);
-    double deadTimeS;
-    switch (model) {
-      case Reduced lag -> deadTimeS = lag.deadTimeS();
-      case ReducedResponse drag -> {
-        if (Math.min(drag.model().lagS(), drag.model().turnLagS()) < TimetableModel.LeastLagS())
-          return "the lanes fly models with lags of " + TimetableModel.LeastLagS() + " s at least";
-        deadTimeS = drag.model().deadTimeS();
-      }
-      default -> {
-        return "worlds with delays of their own fly by lanes with a reduced model or quadrotor";
-      }
-    }
+    double deadTimeS = model.deadTimeS();
     if (steering.mostOutstanding() != LoopTiming.MostOutstanding())
       return "the lanes know "
           + LoopTiming.MostOutstanding()
@@ -76,7 +59,7 @@ final class LoopDuelKernel extends DuelKernel {
       patienceS = stream.patienceS();
       toleranceS = stream.toleranceS();
     } else if (!(timing instanceof LoopTiming.Sequential || timing instanceof LoopTiming.Futures))
-      return "worlds with delays of their own fly by lanes under sequential, futures and stream, or with quadrotor";
+      return "worlds with delays of their own fly by lanes under sequential, futures and stream";
     double timeoutS = LoopTiming.askingOf(timing).timeoutS();
     if (timing.periodS() + patienceS + 2 * timeoutS + 2 * maxDelayS + deadTimeS > MOST_S)
       return "a command may act later than the lanes can count";
@@ -92,14 +75,14 @@ final class LoopDuelKernel extends DuelKernel {
 
   /**
    * @param duel start, speeds and duration; its policies are not used
-   * @param model reduced
+   * @param model none that is {@link #refusal refused}
    * @param maxDelayS the longest one-way delay of any link flown over
    * @param pursuerPolicy takes the parameters of each world's pursuer before it flies
    */
   LoopDuelKernel(
       Duel duel,
       LoopTiming timing,
-      VelocityResponse model,
+      TimetableModel model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy) {
@@ -113,7 +96,7 @@ final class LoopDuelKernel extends DuelKernel {
   LoopDuelKernel(
       Duel duel,
       LoopTiming timing,
-      VelocityResponse model,
+      TimetableModel model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy,
@@ -129,9 +112,10 @@ final class LoopDuelKernel extends DuelKernel {
     } else if (timing instanceof LoopTiming.Sequential sequential)
       offers = new SequentialOffers(sequential);
     else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
-    LaneVehicles evaders = vehicles(duel.evader(), timing, model, maxDelayS),
-        pursuers = vehicles(duel.pursuer(), timing, model, maxDelayS);
-    double deadTimeS = deadTimeS(model);
+    int keptRows = keptRows(timing, maxDelayS);
+    LaneVehicles evaders = model.flights(duel.evader(), timing, keptRows),
+        pursuers = model.flights(duel.pursuer(), timing, keptRows);
+    double deadTimeS = model.deadTimeS();
     Steering steering = LoopTiming.steeringOf(timing);
     evader =
         new LaneAgents(
@@ -146,33 +130,11 @@ final class LoopDuelKernel extends DuelKernel {
     scores = new LaneScores(duel.durationS(), periodS, this);
   }
 
-  private static double deadTimeS(VelocityResponse model) {
-    return switch (model) {
-      case Reduced lag -> lag.deadTimeS();
-      case ReducedResponse drag -> drag.model().deadTimeS();
-      default -> throw new IllegalArgumentException("no lanes fly " + model);
-    };
-  }
-
-  /** The way of a lag alone is the faster one where hardly a reading is of a period before. */
-  private static LaneVehicles vehicles(
-      Duelist duelist, LoopTiming timing, VelocityResponse model, double maxDelayS) {
-    double periodS = timing.periodS();
-    if (timing instanceof LoopTiming.Stream stream
-        && model instanceof Reduced lag
-        && periodS >= LEAST_PERIOD_S
-        && LagVehicles.canFly(lag, 2 * MOST_S))
-      return new LagVehicles(
-          duelist, lag, periodS, 2 * MOST_S, stream.asking().timeoutS() + stream.patienceS() + periodS);
-    // From a reading to its decision, and from the decision before that to when its command acts.
-    double timeoutS = LoopTiming.askingOf(timing).timeoutS();
+  /** From a reading to its decision, and from the decision before that to when its command acts. */
+  private static int keptRows(LoopTiming timing, double maxDelayS) {
+    double timeoutS = LoopTiming.askingOf(timing).timeoutS(), periodS = timing.periodS();
     double kept = Math.min(2 * timeoutS, 4 * maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5;
-    int keptRows = 2 + (int) Math.ceil(kept / periodS);
-    return switch (model) {
-      case Reduced lag -> new LagFlights(duelist, lag, periodS, keptRows);
-      case ReducedResponse drag -> new DragFlights(duelist, drag.model(), periodS, keptRows);
-      default -> throw new IllegalArgumentException("no lanes fly " + model);
-    };
+    return 2 + (int) Math.ceil(kept / periodS);
   }
 
   /**

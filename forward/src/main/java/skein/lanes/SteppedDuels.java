@@ -59,8 +59,8 @@ public final class SteppedDuels implements TimetableScores {
     float[] effort = new float[WORLDS];
     agents =
         new DuelAgents[] {
-          new DuelAgents(0, duel.evader(), model, policies[0], effort, sight, isOutside[0]),
-          new DuelAgents(1, duel.pursuer(), model, policies[1], effort, sight, isOutside[1])
+          new DuelAgents(0, duel.evader(), model, policies[0], effort, sight, isOutside[0], null),
+          new DuelAgents(1, duel.pursuer(), model, policies[1], effort, sight, isOutside[1], null)
         };
     kernel = new TimetableKernel(agents, this);
   }

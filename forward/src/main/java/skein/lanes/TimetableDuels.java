@@ -34,10 +34,24 @@ final class TimetableDuels extends DuelKernel implements TimetableScores {
       TimetableModel model,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy) {
+    this(duel, timing, model, pursuerPolicy, evaderPolicy, null, null);
+  }
+
+  /**
+   * @param pursuerEye by which alone the pursuer knows of the evader; null for one that is told
+   */
+  TimetableDuels(
+      Duel duel,
+      LoopTiming timing,
+      TimetableModel model,
+      LanePolicy pursuerPolicy,
+      LanePolicy evaderPolicy,
+      EyeLanes pursuerEye,
+      EyeLanes evaderEye) {
     steps = (int) Math.round(duel.durationS() / timing.periodS());
     LaneObservation sight = new LaneObservation();
-    DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight, false),
-        pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight, false);
+    DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight, false, evaderEye),
+        pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight, false, pursuerEye);
     evaders = evader.vehicles;
     pursuers = pursuer.vehicles;
     kernel = new TimetableKernel(new TimetableAgents[] {evader, pursuer}, this);

@@ -14,7 +14,7 @@ final class TimetableKernel {
   static final int WORLDS = LanePolicy.WORLDS;
 
   /** Kinds of a timetable's operations. */
-  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4;
+  static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6;
 
   private final TimetableAgents[] agents;
   private final TimetableScores scores;
@@ -77,6 +77,9 @@ final class TimetableKernel {
       case SCORE ->
           scores.score(
               agents, views, first * agents.length, operations[field + 3] != 0, times[number]);
+      case EXPOSE ->
+          agent.expose(agents, views, first * agents.length, operations[field + 3], times, number);
+      case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);
       case PREDICT ->
           agent.vehicles.predicted.predict(
               agent.vehicles.seenX,

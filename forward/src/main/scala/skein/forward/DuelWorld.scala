@@ -267,5 +267,21 @@ trait LoopObserver:
   /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's dead time. */
   def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 
+  /** Who sees takes a picture now.
+    *
+    * @param draws
+    *   what decides of it: whether the opponent is found, by which error of the bearing and of the range; evenly from 0 to
+    *   1
+    */
+  private[skein] def exposed(
+      vehicle: Int,
+      picture: Int,
+      atNs: Long,
+      draws: (found: Double, bearing: Double, range: Double)
+  ): Unit = ()
+
+  /** What a picture showed is known now. */
+  private[skein] def recognised(vehicle: Int, picture: Int, atNs: Long): Unit = ()
+
 object LoopObserver:
   val Nobody: LoopObserver = new LoopObserver {}

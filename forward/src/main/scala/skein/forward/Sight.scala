@@ -65,6 +65,7 @@ private[skein] final class Sight(
     busy -= 1
     if number > reported && takesNs(number) <= deadlineNs then
       reported = number
+      world.observer.recognised(agent, number, world.nowNs)
       pictures(number % Ring).foreach(join)
     if waiting >= 0 then
       recognise(waiting)
@@ -72,21 +73,26 @@ private[skein] final class Sight(
 
   private def join(measured: Measurement): Unit = for joined <- fusion.including(measured) do fusion = joined
 
-  private def measured(number: Int): Option[Measurement] = model.measured(
-    Instant.ofNanos(world.nowNs),
-    axisRad,
-    place(agent),
-    place(opponent),
-    even(number, 0),
-    even(number, 1),
-    even(number, 2)
-  )
+  private def measured(number: Int): Option[Measurement] =
+    val draws = (found = even(number, 0), bearing = even(number, 1), range = even(number, 2))
+    world.observer.exposed(agent, number, world.nowNs, draws)
+    model.measured(
+      Instant.ofNanos(world.nowNs),
+      axisRad,
+      place(agent),
+      place(opponent),
+      draws.found,
+      draws.bearing,
+      draws.range
+    )
 
   /** While the world stands still, a picture is waited for. */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double) =
     if world.standsStill then
       newest += 1
-      measured(newest).foreach(join)
+      val picture = measured(newest)
+      world.observer.recognised(agent, newest, world.nowNs)
+      picture.foreach(join)
     fusion.belief.fold((startNed, Vector3.Zero, world.nowS)): belief =>
       val ageS = (world.nowNs - belief.at.toNanos) * 1e-9
       (
@@ -113,7 +119,7 @@ private[skein] final class Sight(
 
 private[skein] object Sight:
   /** Pictures of which anything is remembered. */
-  private val Ring = 64
+  private[skein] val Ring = 64
 
   /** As `skein.flight.CameraSensor` has them. */
   private val MostOnTheWay = 2

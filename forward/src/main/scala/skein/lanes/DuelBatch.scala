@@ -26,30 +26,39 @@ final class DuelBatch(
   private val plant: Either[String, TimetableModel] =
     for
       _     <- LaneSupport.present
-      _     <- DuelBatch.sees(duel).toLeft(())
       plant <- TimetableModel.of(model, duel)
     yield plant
 
+  private val eyes: Either[String, DuelEyes] = DuelEyes.of(duel)
+
+  /** Whether somebody knows of the other by a sensor alone. */
+  private val sees = duel.pursuer.eye.isDefined || duel.evader.eye.isDefined
+
   /** The vehicles under the loop, if it flies by timetables. */
   private val lanes: Either[String, TimetableModel] =
-    plant.flatMap(_ => TimetableModel.under(timing, model, duel))
+    for
+      _     <- plant
+      _     <- eyes
+      lanes <- TimetableModel.under(timing, model, duel)
+    yield lanes
 
   /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
-    val alone: DuelFlyer  = model match
-      case _ if plant.isLeft            => scalar
-      case quadrotor: QuadrotorResponse => QuadrotorBatch(duel, timing, quadrotor)
-      case _                            => LoopFlyer(duel, timing, model, scalar)
-    val together: DuelFlyer = lanes match
-      case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
-      case _           => alone
+    val alone: DuelFlyer  = (model, plant) match
+      case _ if sees                                => scalar
+      case (quadrotor: QuadrotorResponse, Right(_)) => QuadrotorBatch(duel, timing, quadrotor)
+      case (_, Right(kind))                         => LoopFlyer(duel, timing, kind, scalar)
+      case (_, Left(_))                             => scalar
+    val together: DuelFlyer = (lanes, eyes) match
+      case (Right(kind), Right(seen)) => TimetableFlyer(duel, timing, kind, seen, timetables, alone)
+      case _                          => alone
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
 
-  /** A world that waits meets no delays: all worlds share their episode. */
-  private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
+  /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
+  private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees
 
   /** Which engine flies worlds of these policies, and why, in a line for the user.
     *
@@ -74,6 +83,7 @@ final class DuelBatch(
 
   /** Why no lanes fly over links, for each link over which none do. */
   private def refusals(shareEpisodes: Boolean, links: Seq[Delays]): Seq[String] = model match
+    case _ if sees && !shareEpisodes         => links.map(_ => SeesAlone)
     case _: QuadrotorResponse                => Nil
     case _ if shareEpisodes && lanes.isRight => Nil
     case _                                   =>
@@ -83,7 +93,7 @@ final class DuelBatch(
 
   /** Why worlds with delays of their own do not fly by lanes over a link this slow. */
   private def refusal(maxDelayS: Double): Option[String] =
-    Option(LoopDuelKernel.refusal(timing, maxDelayS, model))
+    plant.fold(Some(_), kind => Option(LoopDuelKernel.refusal(timing, maxDelayS, kind)))
 
   /** What flies by lanes over links that the lanes know, or why nothing does. */
   private def lanesOf(pursuer: Policy, evader: Policy, shareEpisodes: Boolean): Either[String, String] =
@@ -91,9 +101,10 @@ final class DuelBatch(
       val each    = LaneMath.LANES
       val refused = Seq(pursuer, evader).flatMap(PolicyLanes.of(_).left.toOption).headOption
       model match
+        case _ if sees && !shareEpisodes => Left(SeesAlone)
         case _ if shareEpisodes && refused.isEmpty && lanes.isRight =>
           Right(s"$each candidates of an episode at a time")
-        case _: QuadrotorResponse =>
+        case _: QuadrotorResponse if !sees =>
           Right(s"$each quadrotors at a time; their loops by the scalar engine")
         case _ if refused.isDefined             => Left(s"a policy is no formula: ${refused.get.getMessage}")
         case _ if shareEpisodes && lanes.isLeft => Left(lanes.left.toOption.get)
@@ -131,10 +142,7 @@ final class DuelBatch(
       flyer.fly(worlds, numbers, captureRadiusM.toFloat, outcomes)
     outcomes
 
+  private inline val SeesAlone = "who sees by a sensor flies by lanes where candidates share episodes"
+
   /** Of some 200 kB for a minute each; a search flies the same few episodes again and again. */
   private inline val MostBytes = 64L << 20
-
-object DuelBatch:
-  /** Why no lanes fly a duel in which somebody sees, if so. */
-  private def sees(duel: Duel): Option[String] =
-    Option.when(duel.pursuer.eye.isDefined || duel.evader.eye.isDefined)("the lanes know no eyes")

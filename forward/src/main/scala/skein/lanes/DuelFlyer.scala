@@ -1,6 +1,7 @@
 package skein.lanes
 
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponse}
+import skein.fusion.SensorModel
 import skein.policy.Policy
 
 /** Flies a batch of worlds on one thread. Mutable. */
@@ -97,7 +98,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
 
 /** By [[LoopDuelKernel]], where a world's link allows. */
-private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse, other: DuelFlyer)
+private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: TimetableModel, other: DuelFlyer)
     extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = link match
@@ -132,6 +133,7 @@ private final class TimetableFlyer(
     duel: Duel,
     timing: LoopTiming,
     model: TimetableModel,
+    eyes: DuelEyes,
     timetables: Timetables,
     other: DuelFlyer
 ) extends LaneFlyer(other):
@@ -139,17 +141,51 @@ private final class TimetableFlyer(
   protected def canFly(link: Delays): Boolean = true
 
   protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
-    protected val kernel: TimetableDuels = TimetableDuels(duel, timing, model, pursuers, evaders)
+    protected val kernel: TimetableDuels = TimetableDuels(
+      duel,
+      timing,
+      model,
+      pursuers,
+      evaders,
+      eyes.pursuer.map(EyeLanes(_, duel.pursuer, duel.evader)).orNull,
+      eyes.evader.map(EyeLanes(_, duel.evader, duel.pursuer)).orNull
+    )
     private var timetable: Timetable     = null
 
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then
         val (link, key) = (worlds.link(world), worlds.key(world))
-        val episode     = if timing.isInstanceOf[LoopTiming.Paused] then () else (link, key)
-        timetable =
-          timetables.getOrMake(episode)(Timetable.of(2, duel.durationS, timing, link, key, model))
+        val isAlways    = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
+        val episode     = if isAlways then () else (link, key)
+        val sensors     = Seq(0 -> duel.evader.eye, 1 -> duel.pursuer.eye)
+        timetable = timetables.getOrMake(episode):
+          Timetable.of(
+            2,
+            duel.durationS,
+            timing,
+            link,
+            key,
+            model,
+            sensors.collect { case (self, Some(eye)) => self -> eye }.toMap
+          )
 
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
+
+/** By which alone the two of a duel know of one another, where they are not told. */
+private final case class DuelEyes(evader: Option[EyeLanes.Forms], pursuer: Option[EyeLanes.Forms]):
+  def isNobody: Boolean = evader.isEmpty && pursuer.isEmpty
+
+private object DuelEyes:
+  /** @return
+    *   or why they do not see by lanes
+    */
+  def of(duel: Duel): Either[String, DuelEyes] =
+    def forms(eye: Option[SensorModel]) =
+      eye.fold[Either[String, Option[EyeLanes.Forms]]](Right(None))(EyeLanes.of(_).map(Some(_)))
+    for
+      evader  <- forms(duel.evader.eye)
+      pursuer <- forms(duel.pursuer.eye)
+    yield DuelEyes(evader, pursuer)
 
 /** The timetables used last, for all threads.
   *

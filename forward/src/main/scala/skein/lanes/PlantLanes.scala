@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.Arrays
-import skein.formula.{Angles, Formula, Node, Trace, Untraceable}
+import skein.formula.{Formula, Untraceable}
 import skein.forward.Duelist
 import skein.vehicle.Plant
 
@@ -17,33 +17,25 @@ private[lanes] final class PlantLanes private (val plant: Plant[?], stepping: Fo
   if initial.length != count || reading.inputs.size != count then
     throw Untraceable(s"a state of $count doubles was expected")
 
-  /** Inputs are the state's numbers, then the commanded velocity and the time; [[First]] on, parameters. */
-  private def bound(
-      formula: Formula,
-      leaf: (Trace, Int) => Node,
-      made: (Trace, Vector[Node]) => Vector[Node]
-  ) =
-    val trace  = Trace()
-    val angles =
-      Angles(formula.trace, trace, leaf(trace, _), _ => None, number => trace.input(First + number))
-    val outputs = made(trace, formula.outputs.map((_, node) => angles.convert(node)))
-    val values  = formula.evaluate(angles.derived, Array.emptyDoubleArray, formula.parametersOf(plant))
-    PlantFunction(BoundFunction.of(outputs), values.map(_.toFloat), count)
+  /** Fills in the numbers of a state at rest, of all worlds. */
+  def rest(array: Array[Float], from: Int): Unit =
+    val worlds = TimetableVehicles.WORLDS
+    for i <- 0 until count do
+      Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 
-  /** The next state. */
-  val step: PlantFunction = bound(stepping, _.input(_), (_, outputs) => outputs)
+  /** The next state: of the state's numbers, then the commanded velocity and the time. */
+  val step: FixedFormula = FixedFormula(stepping, plant)
 
-  /** Position and velocity; inputs behind the state are where it starts. */
-  val read: PlantFunction = bound(
+  /** Position and velocity: of the state's numbers, then where it starts. */
+  val read: FixedFormula = FixedFormula(
     reading,
-    _.input(_),
+    plant,
+    2,
     (trace, outputs) =>
       outputs.zipWithIndex.map((node, i) => if i < 2 then trace.add(node, trace.input(count + i)) else node)
   )
 
 private[lanes] object PlantLanes:
-  private val First = 1 << 20
-
   def of(plant: Plant[?]): Either[String, PlantLanes] =
     for
       step <- Formula.of(plant, "step").left.map(refused)
@@ -60,39 +52,6 @@ private[lanes] object PlantLanes:
     case several: Product => several.productIterator.flatMap(numbersOf).toVector
     case _                => Vector.empty
 
-  /** A compiled method, and the numbers of its object. */
-  final class PlantFunction(bound: BoundFunction, numbers: Array[Float], count: Int):
-    def call: PlantCall = PlantCall(bound, numbers, count)
-
-  /** Mutable. */
-  final class PlantCall(bound: BoundFunction, numbers: Array[Float], count: Int):
-    private val call = LaneCall(bound)
-    for (input, place) <- bound.inputs.zipWithIndex if input >= First do
-      call.input(place, Array.fill(TimetableVehicles.WORLDS)(numbers(input - First)), 0)
-
-    /** @param others
-      *   inputs behind the state
-      * @param at
-      *   where the outputs begin
-      */
-    def apply(
-        state: Array[Array[Float]],
-        others: Array[Array[Float]],
-        outputs: Array[Array[Float]],
-        at: Int
-    ): Unit =
-      var place = 0
-      while place < bound.inputs.length do
-        val input = bound.inputs(place)
-        if input < count then call.input(place, state(input), 0)
-        else if input < First then call.input(place, others(input - count), 0)
-        place += 1
-      var output = 0
-      while output < bound.outputs do
-        call.output(output, outputs(output), at)
-        output += 1
-      call()
-
 /** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and how long it
   * is after the last of these. The scalar reference is `skein.forward.PlantVehicle`.
   */
@@ -102,33 +61,36 @@ private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
   private val step = lanes.step.call
   private val read = lanes.read.call
 
-  private def states(): Array[Array[Float]] = Array.ofDim[Float](lanes.count, WORLDS)
-  private var begun, next                   = states() // when the present step began, and what comes of it
+  private var begun, next          = Array.ofDim[Float](lanes.count * WORLDS) // when the present step began, and what comes of it
   private val north, east, whole, rest      = Array.ofDim[Float](WORLDS)
-  private val wholeStep                     = Array(north, east, whole)
-  private val restOfStep                    = Array(north, east, rest)
-  private val starts                        = Array(startX, startY)
-  private val seen                          = Array.ofDim[Array[Float]](4)
   private val speed                         = duelist.speed.toFloat
   private var isCommanded                   = false
   Arrays.fill(whole, lanes.plant.stepS.toFloat)
+  step.input(lanes.count, north, 0)
+  step.input(lanes.count + 1, east, 0)
+  read.input(lanes.count, startX, 0)
+  read.input(lanes.count + 1, startY, 0)
 
   def start(worlds: Int): Unit =
-    for i <- 0 until lanes.count do Arrays.fill(begun(i), lanes.initial(i))
+    lanes.rest(begun, 0)
     isCommanded = false
-    seen(0) = seenX; seen(1) = seenY; seen(2) = seenVx; seen(3) = seenVy
 
   def rest(world: Int): Unit =
     for i <- 0 until lanes.count do
-      begun(i)(world) = lanes.initial(i)
-      next(i)(world) = lanes.initial(i)
+      begun(i * WORLDS + world) = lanes.initial(i)
+      next(i * WORLDS + world) = lanes.initial(i)
     // Until its first command, where other worlds had theirs, it is told to stand still.
     north(world) = 0
     east(world) = 0
 
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     fly(times, at)
-    read(next, starts, seen, into)
+    read.inputs(0, lanes.count, next, 0)
+    read.output(0, seenX, into)
+    read.output(1, seenY, into)
+    read.output(2, seenVx, into)
+    read.output(3, seenVy, into)
+    read()
 
   def act(times: Array[Float], at: Int, commanded: Directions, from: Int): Unit =
     fly(times, at)
@@ -144,11 +106,17 @@ private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
   private def fly(times: Array[Float], at: Int): Unit =
     if isCommanded then
       for _ <- 1 to times(at).toInt do
-        step(begun, wholeStep, next, 0)
+        fly(whole)
         goOn()
       Arrays.fill(rest, times(at + 1))
-      step(begun, restOfStep, next, 0)
-    else for i <- begun.indices do System.arraycopy(begun(i), 0, next(i), 0, WORLDS)
+      fly(rest)
+    else System.arraycopy(begun, 0, next, 0, begun.length)
+
+  private def fly(forS: Array[Float]): Unit =
+    step.inputs(0, lanes.count, begun, 0)
+    step.input(lanes.count + 2, forS, 0)
+    step.outputs(lanes.count, next, 0)
+    step()
 
   private def goOn(): Unit =
     val before = begun

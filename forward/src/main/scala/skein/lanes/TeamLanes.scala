@@ -18,7 +18,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[Formula]):
   val count: Int = formulas.size
 
   private val view  = 4 * count
-  private val trace = Trace()
+  private val trace = Trace(MostOperations)
 
   private val angles: Vector[Angles] = Vector.tabulate(count): self =>
     def own(number: Int) = trace.input(ownInput(self, number))
@@ -95,6 +95,9 @@ private[lanes] object TeamLanes:
   private final val Stride      = 1 << 18
   private final val FirstShared = 1 << 30
 
+  /** Of all vehicles together. */
+  private final val MostOperations = 2_000_000
+
   private def sharedInput(number: Int) = FirstShared + number
 
   enum Source:
@@ -152,6 +155,7 @@ private final class Common private (val nodes: Vector[Node]):
         case None if node.args.isEmpty => node
         case None                      => trace.again(node, node.args.map(again))
     )
+    for node <- outputs; each <- Trace.landings(node) do again(each): Unit
     outputs.map(again)
 
 private object Common:
@@ -162,14 +166,12 @@ private object Common:
     val needed = expressions.map(Trace.needed)
     val users  = mutable.HashMap.empty[Node, Int].withDefaultValue(0)
     for each <- needed; node <- each do users(node) += 1
-    val ofInputs                        = mutable.HashMap.empty[Node, Boolean]
-    def isOfInputs(node: Node): Boolean = ofInputs.getOrElseUpdate(
-      node,
-      node.op match
+    val isOfInputs = mutable.HashMap.empty[Node, Boolean]
+    for each <- needed; node <- each do
+      isOfInputs(node) = node.op match
         case Op.Input             => node.index < inputs
         case Op.Const | Op.Always => true
         case _                    => node.args.forall(isOfInputs)
-    )
     def isCommon(node: Node) = users(node) > 1 && node.args.nonEmpty && isOfInputs(node)
     def isWorth(node: Node)  =
       val all = Trace.needed(Seq(node)).filter(_.args.nonEmpty)

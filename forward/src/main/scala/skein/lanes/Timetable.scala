@@ -10,9 +10,11 @@ import skein.forward.{
   LoopObserver,
   LoopTiming,
   Rollout,
+  Sight,
   Vehicle,
   VelocityResponse
 }
+import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 import skein.units.Instant
 import skein.vehicle.ConstantVelocity
@@ -30,7 +32,9 @@ import skein.vehicle.ConstantVelocity
   *   [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then places
   * @param times
   *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
-  *   time since the one before, and in a duel the ages of the own and of the opponent's reading; of a score, the time; s
+  *   time since the one before, and in a duel the ages of the own and of the opponent's reading; by who sees, the age of
+  *   the own reading, the time, and until when a belief is carried ([[EyeLanes.look]]); of a picture what
+  *   [[EyeLanes.expose]] takes; of a score, the time; s
   * @param views
   *   what is decided and scored upon: the places of all vehicles' readings, one view after the other
   * @param courses
@@ -56,25 +60,30 @@ private[skein] final class Timetable private (
 
 private[skein] object Timetable:
   val Fields: Int  = 6
-  val Numbers: Int = 3
+  val Numbers: Int = 4
 
-  /** The timetable of a world of this key, for so many vehicles of this kind. */
+  /** The timetable of a world of this key, for so many vehicles of this kind.
+    *
+    * @param eyes
+    *   of vehicles that see, in a duel
+    */
   def of(
       vehicles: Int,
       durationS: Double,
       timing: LoopTiming,
       link: Delays,
       key: Int,
-      model: TimetableModel
+      model: TimetableModel,
+      eyes: Map[Int, SensorModel] = Map.empty
   ): Timetable =
-    val notes = Notes(vehicles, model)
-    Rollout(still(vehicles, durationS), unpredicted(timing), link, Still(model)).fly(
+    val notes = Notes(vehicles, model, eyes)
+    Rollout(still(vehicles, durationS, eyes), unpredicted(timing), link, Still(model)).fly(
       key,
       observer = notes
     ): Unit
     Compiler(notes, vehicles, durationS, model).result
 
-  import TimetableKernel.{ACT, DECIDE, LOOK, PREDICT, SCORE}
+  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
   /** The same loop; what stands still is predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
@@ -82,8 +91,8 @@ private[skein] object Timetable:
     case other                             => other
 
   /** An engagement in which nothing moves; its roles and rivals decide no time. */
-  private def still(vehicles: Int, durationS: Double): Engagement = Engagement(
-    Vector.fill(vehicles)(Duelist(0, 0, 0, 0, 0, KeepHeading)),
+  private def still(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel]): Engagement = Engagement(
+    Vector.tabulate(vehicles)(self => Duelist(0, 0, 0, 0, 0, KeepHeading, eyes.get(self))),
     Role.Evader +: Vector.fill(vehicles - 1)(Role.Pursuer),
     Assignment(Vector.tabulate(vehicles)(self => Vector(if self == 0 then 1 else 0))),
     durationS
@@ -101,28 +110,34 @@ private[skein] object Timetable:
       def vy: Double                                   = 0
 
   /** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle. */
-  private final class Notes(vehicles: Int, model: TimetableModel) extends LoopObserver:
+  private final class Notes(vehicles: Int, model: TimetableModel, eyes: Map[Int, SensorModel])
+      extends LoopObserver:
     var size               = 0
     private var capacity   = 4096
     var kind: Array[Int]   = Array.ofDim[Int](capacity)
     var agent: Array[Int]  = Array.ofDim[Int](capacity)
     var atS: Array[Double] = Array.ofDim[Double](capacity) // a decision's: not before
 
-    // Of a decision.
+    // Of a decision; of a picture the errors, and whether what is in view is found.
     var elapsedS, ownAgeS, opponentAgeS: Array[Double] = Array.ofDim[Double](capacity)
 
+    /** Of a decision by who sees: until when what is believed is carried on. */
+    var aheadS: Array[Double] = Array.ofDim[Double](capacity)
+
     /** `LOOK`: the reading's number. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one
-      * more.
+      * more. `EXPOSE` and `JOIN`: the picture's.
       */
     var number: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `DECIDE` and `SCORE`: the view's number. */
+    /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
     var view: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `DECIDE` in a duel: the number of the opponent's decision that is known. */
+    /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
+      * the one that joined before.
+      */
     var opponent: Array[Int] = Array.ofDim[Int](capacity)
 
-    /** `PREDICT`: the number of the reading that is carried forward. */
+    /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
     var from: Array[Int] = Array.ofDim[Int](capacity)
 
     /** `PREDICT`: the number of the course, among [[courses]]. */
@@ -161,6 +176,7 @@ private[skein] object Timetable:
       from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
       atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
       ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
+      aheadS = aheadS.padTo(capacity, 0.0)
 
     private def look(vehicle: Int, timeS: Double): Int =
       looks(vehicle) += 1
@@ -222,6 +238,43 @@ private[skein] object Timetable:
         opponent(size - 1) = upon.sentDecision(1 - vehicle)
         ownAgeS(size - 1) = (atNs - upon.validAtNs(vehicle)) * 1e-9
         opponentAgeS(size - 1) = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
+      if eyes.contains(vehicle) then
+        opponentAgeS(size - 1) = atNs * 1e-9
+        aheadS(size - 1) = upon.forecast.fold(-1.0): forecast =>
+          val now = Instant.ofNanos(atNs)
+          forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
+
+    // By vehicle: when its pictures were taken, and which of them joined last and before that.
+    private val exposedNs         = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
+    private val newest, runnerUp  = Array.fill(vehicles)(-1)
+
+    override def exposed(
+        vehicle: Int,
+        picture: Int,
+        atNs: Long,
+        draws: (found: Double, bearing: Double, range: Double)
+    ): Unit =
+      val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
+      note(EXPOSE, vehicle, atNs * 1e-9, picture)
+      view(size - 1) = seen
+      elapsedS(size - 1) = SensorModel.normal(draws.bearing)
+      ownAgeS(size - 1) = SensorModel.normal(draws.range)
+      opponentAgeS(size - 1) = if draws.found < eyes(vehicle).detection then 1 else 0
+      exposedNs(vehicle)(picture % Sight.Ring) = atNs
+
+    override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
+      def takenNs(number: Int) =
+        if number < 0 then Long.MinValue else exposedNs(vehicle)(number % Sight.Ring)
+      val isOlder = takenNs(picture) < takenNs(newest(vehicle))
+      // Two are on the way at most, and whichever is overtaken twice is dropped.
+      require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")
+      note(JOIN, vehicle, atNs * 1e-9, picture)
+      opponent(size - 1) = if isOlder then 1 else 0
+      from(size - 1) = newest(vehicle)
+      if isOlder then runnerUp(vehicle) = picture
+      else
+        runnerUp(vehicle) = newest(vehicle)
+        newest(vehicle) = picture
 
     override def commanded(
         vehicle: Int,
@@ -283,6 +336,8 @@ private[skein] object Timetable:
           case ACT     => act(event, i)
           case SCORE   => score(event, i)
           case PREDICT => predict(event, i)
+          case EXPOSE  => expose(event, i)
+          case JOIN    => join(event)
       Timetable(
         vehicles,
         java.util.Arrays.copyOf(operations, size * Fields),
@@ -325,13 +380,13 @@ private[skein] object Timetable:
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
         case ACT     => headings(agent).usedAt(notes.number(event), at)
-        case SCORE   => usedAt(notes.view(event), at)
+        case SCORE | EXPOSE => usedAt(notes.view(event), at)
         case PREDICT =>
           readings(agent).usedAt(notes.from(event), at)
           decidedUpon(agent)(notes.from(event)) = true
           for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
             headings(agent).usedAt(part.decision, at)
-        case LOOK => ()
+        case LOOK | JOIN => ()
 
     private def usedAt(view: Int, at: Int): Unit =
       val seen = notes.views(view)
@@ -377,6 +432,7 @@ private[skein] object Timetable:
       )
       times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
       times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
+      times(size * Numbers + 3) = notes.aheadS(event).toFloat
       took(notes.elapsedS(event))
       releaseView(view, at)
       headings(agent).release(own, at)
@@ -411,6 +467,25 @@ private[skein] object Timetable:
       operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
       happens(event, acts = true)
       headings(vehicle).release(notes.number(event), at)
+
+    private def expose(event: Int, at: Int): Unit =
+      val view = notes.view(event)
+      operation(EXPOSE, notes.agent(event), tell(view), notes.number(event) % Sight.Ring)
+      times(size * Numbers + 1) = notes.elapsedS(event).toFloat
+      times(size * Numbers + 2) = notes.ownAgeS(event).toFloat
+      times(size * Numbers + 3) = notes.opponentAgeS(event).toFloat
+      took(notes.atS(event))
+      releaseView(view, at)
+
+    private def join(event: Int): Unit =
+      operation(
+        JOIN,
+        notes.agent(event),
+        notes.number(event) % Sight.Ring,
+        notes.opponent(event),
+        notes.from(event).max(0) % Sight.Ring
+      )
+      size += 1
 
     private def score(event: Int, at: Int): Unit =
       val view   = notes.view(event)

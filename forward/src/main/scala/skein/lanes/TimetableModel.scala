@@ -13,7 +13,9 @@ import skein.forward.{
 }
 import skein.vehicle.{Quadrotor, ReducedModel}
 
-/** A kind of vehicle that flies by [[Timetable]]s. */
+/** A kind of vehicle that flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has delays of its
+  * own.
+  */
 private[skein] trait TimetableModel:
   /** From a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double
@@ -30,6 +32,16 @@ private[skein] trait TimetableModel:
     *   its speed is that of a direction of length 1
     */
   def vehicles(duelist: Duelist): TimetableVehicles
+
+  /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
+  def fliesAlone: Boolean = true
+
+  /** All worlds' vehicles of one role, whose commands act at times of their own.
+    *
+    * @param keptRows
+    *   see [[LaneFlights]]
+    */
+  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
@@ -108,7 +120,8 @@ private[skein] object TimetableModel:
 
 /** Vehicles whose readings are carried forward. */
 private final class Predicted(model: TimetableModel, by: TimetablePredictor) extends TimetableModel:
-  export model.{clock, deadTimeS, handoverS}
+  export model.{clock, deadTimeS, flights, handoverS}
+  override def fliesAlone: Boolean                   = model.fliesAlone
   override def predictor: Option[TimetablePredictor] = Some(by)
   def vehicles(duelist: Duelist): TimetableVehicles  =
     val flown = model.vehicles(duelist)
@@ -122,6 +135,17 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
   def deadTimeS: Double                             = model.deadTimeS
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
+
+  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+    val longestS = 2 * LoopDuelKernel.MOST_S
+    timing match
+      // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
+      case stream: LoopTiming.Stream
+          if stream.periodS >= LagTimetables.LeastPeriodS && LagVehicles.canFly(model, longestS) =>
+        val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
+        LagVehicles(duelist, model, stream.periodS, longestS, earliestS)
+      case _ => LagFlights(duelist, model, timing.periodS, keptRows)
+
   def clock(): VehicleClock                         = new VehicleClock:
     private var actedS                                                      = 0.0
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
@@ -131,6 +155,10 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
       into(at + 2) = if model.lagS == 0 then 0 else StrictMath.exp(-dt / model.lagS).toFloat
       if acts then actedS = atS
 
+private object LagTimetables:
+  /** Below, too many periods' commands are under way for [[LagVehicles]]. */
+  private val LeastPeriodS = 0.02
+
 /** By [[TimetableDragVehicles]]. */
 private final class DragTimetables(model: ReducedModel) extends TimetableModel:
   def deadTimeS: Double                             = model.deadTimeS
@@ -138,12 +166,18 @@ private final class DragTimetables(model: ReducedModel) extends TimetableModel:
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
   def clock(): VehicleClock                         = PieceClock(ReducedModel.PieceS)
 
+  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+    DragFlights(duelist, model, timing.periodS, keptRows)
+
 /** By [[TimetablePlants]]. */
 private final class PlantTimetables(lanes: PlantLanes) extends TimetableModel:
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
   def clock(): VehicleClock                         = PieceClock(lanes.plant.stepS)
+
+  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+    PlantFlights(duelist, lanes, timing.periodS, keptRows)
 
 /** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
 private final class PieceClock(lengthS: Double) extends VehicleClock:
@@ -165,6 +199,11 @@ private final class QuadrotorTimetables(model: QuadrotorResponse) extends Timeta
   def deadTimeS: Double                             = 0
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
+
+  override def fliesAlone: Boolean = false
+  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+    throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by QuadrotorBatch")
+
   def clock(): VehicleClock                         = new VehicleClock:
     private var steps                                                       = hoveredNs / stepNs
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =

@@ -25,7 +25,7 @@ object LaneCompiler:
   def compile(inputs: Int, outputs: Vector[Node]): LaneFunction =
     val passes  = Passes.of(outputs)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
-    val scratch = passes.iterator.map(_.stores.size).sum
+    val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
     val bytes   = ClassFile
       .of(ClassFile.DebugElementsOption.DROP_DEBUG)
       .build(
@@ -103,7 +103,11 @@ private final class PassCompiler(code: CodeBuilder, pass: Pass, inputs: Int):
 
   def emit(): Unit =
     // Everything before the loop is found by writing the loop once for nothing.
-    val rehearsal = ClassFile.of()
+    val rehearsal = ClassFile.of(
+      ClassFile.StackMapsOption.DROP_STACK_MAPS,
+      ClassFile.DeadCodeOption.KEEP_DEAD_CODE,
+      ClassFile.DebugElementsOption.DROP_DEBUG
+    )
     rehearsal.build(
       ClassDesc.of("skein.simd.Rehearsal"),
       builder =>

@@ -56,7 +56,6 @@ private object Passes:
       passOf(node) = number
     def argsOf(node: Node): Vector[Node] =
       node.args.flatMap(arg => if passOf.contains(arg) then Vector(arg) else arg.args)
-    val places             = mutable.LinkedHashMap.empty[Node, Int]
     def isLeaf(node: Node) = node.op match
       case Op.Const | Op.Input | Op.Param | Op.Always => true
       case _                                          => false
@@ -68,7 +67,9 @@ private object Passes:
     def numbersOf(node: Node): Vector[Node] =
       if node.op.isCondition then argsOf(node).flatMap(numbersOf) else Vector(node)
     val numbers = needs.map(_.flatMap(numbersOf).distinct)
-    for node <- numbers.flatten if !isLeaf(node) do places.getOrElseUpdate(node, places.size): Unit
+    val lastUse = mutable.LinkedHashMap.empty[Node, Int]
+    for (each, pass) <- numbers.zipWithIndex; node <- each if !isLeaf(node) do lastUse(node) = pass
+    val places = placed(lastUse, passOf, number + 1)
     def conditionsOf(node: Node): Vector[Node] =
       if node.op.isCondition then node.args.flatMap(conditionsOf) :+ node else Vector.empty
     Vector.tabulate(number + 1): pass =>
@@ -78,9 +79,32 @@ private object Passes:
       Pass(
         again ++ own,
         loaded.map(node => node -> places(node)).toMap,
-        places.toVector.filter((node, _) => passOf(node) == pass),
+        own.filter(places.contains).map(node => node -> places(node)),
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
+
+  /** Where numbers are laid by from their pass to their last use: a place is given again as soon as it is free, so that
+    * all stay in a near cache. A pass loads before it stores.
+    */
+  private def placed(
+      lastUse: collection.Map[Node, Int],
+      passOf: collection.Map[Node, Int],
+      passes: Int
+  ): Map[Node, Int] =
+    val nodes        = lastUse.keysIterator.toVector
+    val (made, used) = (nodes.groupBy(passOf), nodes.groupBy(lastUse))
+    val places       = mutable.HashMap.empty[Node, Int]
+    val free         = mutable.Stack.empty[Int]
+    var most         = 0
+    for pass <- 0 until passes do
+      for node <- used.getOrElse(pass, Nil) do free.push(places(node))
+      for node <- made.getOrElse(pass, Nil) do
+        places(node) =
+          if free.nonEmpty then free.pop()
+          else
+            most += 1
+            most - 1
+    places.toMap
 
   /** The product that a sum is fused with. */
   def factor(sum: Node): Option[Node] =

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout}
+import skein.forward.{DelayTable, Duel, LoopTiming, Outcome, Reduced, Rollout, VelocityResponse}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
@@ -39,7 +39,18 @@ class LagDuelsSuite extends munit.FunSuite:
       pursuers.take(world, PaperPursuer(turnRates(world)))
       evaders.take(world, PaperEvader(radii(world)))
     val duel = Duel.paper.copy(durationS = durationS)
-    LoopDuelKernel(duel, LoopTiming.stream(periodS), model, MaxDelayS, pursuers, evaders, shortCut)
+    LoopDuelKernel(
+      duel,
+      LoopTiming.stream(periodS),
+      vehicles(model),
+      MaxDelayS,
+      pursuers,
+      evaders,
+      shortCut
+    )
+
+  private def vehicles(model: VelocityResponse): TimetableModel =
+    TimetableModel.of(model, Duel.paper).fold(fail(_), identity)
 
   private def fly(link: DelayTable, durationS: Double): LoopDuelKernel =
     val kernel = kernelOf(turnRates, radii, durationS)
@@ -97,7 +108,7 @@ class LagDuelsSuite extends munit.FunSuite:
 
     test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
       assertEquals(
-        LoopDuelKernel.refusal(LoopTiming.stream(0.1), link.maxS, lag),
+        LoopDuelKernel.refusal(LoopTiming.stream(0.1), link.maxS, vehicles(lag)),
         null,
         s"up to ${link.maxS} s"
       )

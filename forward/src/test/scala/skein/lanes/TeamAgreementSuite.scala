@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 import skein.forward.{DelayTable, Duelist, Engagement, LoopTiming, Reduced, Rollout}
 import skein.policy.{Course, TeamPolicy, TeamObservation}
-import skein.scenario.{Formation, Scenario, Surround}
+import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
@@ -22,7 +22,10 @@ class TeamAgreementSuite extends munit.FunSuite:
 
   private val scenarios: Seq[(String, SplitMix64 => Scenario)] = Seq(
     "surround"  -> (random => Surround(6, ringM = within(random, 5, 12), pursuerMps = within(random, 6, 12))),
-    "formation" -> (random => Formation(5, spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6)))
+    "formation" -> (random => Formation(5, spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6))),
+    "crossing"  -> (random =>
+      Crossing(6, entryM = 15, laneM = within(random, 1, 4), marginM = within(random, 0.5, 2))
+    )
   )
 
   for

@@ -31,6 +31,10 @@ class TeamLanesSuite extends munit.FunSuite:
     ),
     "formation" -> (random =>
       Formation(spacingM = within(random, 3, 6), leaderMps = within(random, 3, 6))
+    ),
+    "crossing" -> (random =>
+      // They meet after 2 s.
+      Crossing(6, entryM = 15, laneM = within(random, 1, 4), marginM = within(random, 0.5, 2))
     )
   )
 
@@ -162,11 +166,25 @@ class TeamLanesSuite extends munit.FunSuite:
             s"world $world, $number"
           )
 
+  test("twenty that avoid one another fly by lanes"):
+    val crossing = TeamCandidate(Engagement.of(Crossing().fleet, 4), Vector(Judged(Separation, Reduction.Least, 0)))
+    val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
+    assert(batch.engine(crossing).startsWith("SIMD"), batch.engine(crossing))
+    val one = new TeamWorlds:
+      def size: Int                            = 1
+      def key(world: Int): Int                 = 4
+      def link(world: Int): Delays             = DelayTable.vpn
+      def candidate(world: Int): TeamCandidate = crossing
+    val scalar = ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0)
+    assertEqualsDouble(batch.fly(one).values(0)(0), scalar, 2e-3)
+
   test("what cannot fly by lanes says why, and is flown by the scalar reference"):
-    val team     = Engagement.of(Crossing(4).fleet, 5)
+    val surround = Engagement.of(Surround(4).fleet, 5)
+    val team     = surround.copy(agents = surround.agents.map(_.copy(policy = Zigzag)))
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
-    assert(batch.engine(crossing).startsWith("scalar: a policy is no formula: skein.policy.Avoidance"))
+    val engine   = batch.engine(crossing)
+    assert(engine.startsWith("scalar: a policy is no formula: skein.lanes.Zigzag"), engine)
     val one = new TeamWorlds:
       def size: Int                            = 1
       def key(world: Int): Int                 = 4
@@ -178,6 +196,16 @@ class TeamLanesSuite extends munit.FunSuite:
     )
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
+
+/** How often it turns depends on what it sees. */
+object Zigzag extends TeamPolicy:
+  def course(seen: TeamObservation): Course =
+    var turns = 0
+    var north = seen.northM(seen.self)
+    while north > 1 do
+      north /= 2
+      turns += 1
+    Course(turns * 0.5, 3)
 
 // As docs/guides/search.md has it.
 /** How far the vehicles are from their middle, on average, m. */

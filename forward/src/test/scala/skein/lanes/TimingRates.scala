@@ -1,8 +1,11 @@
 package skein.lanes
 
 import skein.forward.*
+import skein.fusion.SensorModel
 import skein.policy.*
+import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
+import skein.units.Span
 import skein.vehicle.ReducedModel
 
 /** How fast does each loop fly by lanes, beside the scalar engine? `forward/Test/runMain skein.lanes.timingRates [text]`:
@@ -14,7 +17,19 @@ import skein.vehicle.ReducedModel
   val models = Seq[(String, VelocityResponse)](
     "lag"       -> Reduced.AirSim,
     "drag"      -> ReducedResponse(ReducedModel.AirSim),
-    "quadrotor" -> VelocityResponses.quadrotor()
+    "quadrotor" -> VelocityResponses.quadrotor(),
+    "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
+  )
+  // As docs/guides/cameras.md has one.
+  val eye = SensorModel(
+    everyS = 0.1,
+    fovRad = StrictMath.toRadians(100),
+    farthestM = 40,
+    detection = 0.95,
+    bearingSdRad = 0.002,
+    rangeBias = 1,
+    rangeSd = 0.03,
+    takes = LatencyDistribution.Uniform(Span.ofMillis(15), Span.ofMillis(120))
   )
   for
     shared        <- Seq(true, false)
@@ -25,10 +40,12 @@ import skein.vehicle.ReducedModel
       LoopTiming.Futures(),
       LoopTiming.Predictive(predictor = model.predictor)
     )
-    row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}"
+    sees <- if shared && name == "lag" then Seq(false, true) else Seq(false)
+    row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${if sees then " by eye" else ""}"
     if only.forall(row.contains)
   do
-    val batch                                     = DuelBatch(Duel.paper, timing, model, threads = 1)
+    val duel = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
+    val batch                                     = DuelBatch(duel, timing, model, threads = 1)
     def worlds(count: Int, from: Int): DuelWorlds = new DuelWorlds:
       def size: Int                       = count
       override def shareEpisodes: Boolean = shared
@@ -48,10 +65,10 @@ import skein.vehicle.ReducedModel
       batch.fly(worlds(count, 0)): Unit
       count * 1200.0 / ((os.getProcessCpuTime - from) * 1e-3)
     val slow  = !isFast || name == "quadrotor"
-    val count = if slow then 64 else 40960
+    val count = if slow then 64 else if sees || name == "bicycle" then 8192 else 40960
     for _ <- 1 to 4 do rate(count): Unit
     val lanes                        = Vector.fill(5)(rate(count)).max
-    val rollout                      = Rollout(Duel.paper, timing, DelayTable.vpn, model)
+    val rollout                      = Rollout(duel, timing, DelayTable.vpn, model)
     def scalar(flights: Int): Double =
       val from = times.getCurrentThreadCpuTime
       for flight <- 1 to flights do rollout.fly(flight): Unit

@@ -1,0 +1,160 @@
+package skein.formula
+
+import java.lang.classfile.Opcode
+import java.lang.classfile.instruction.InvokeDynamicInstruction
+import java.lang.constant.{ClassDesc, MethodTypeDesc}
+import scala.jdk.CollectionConverters.*
+import skein.formula.Thing.*
+import skein.formula.Value.*
+
+/** Which code runs when a method is called while another is traced: methods are gone into, closures applied, and what
+  * the JDK and Scala do to numbers, boxes and arrays is done here.
+  *
+  * @param enter
+  *   runs a method
+  */
+private[formula] final class Calls(
+    files: ClassFiles,
+    trace: Trace,
+    numbers: Arithmetic,
+    objects: Objects,
+    enter: (MethodCode, Vector[Value]) => Value,
+    refuse: String => Nothing
+):
+  import Calls.*
+  import numbers.{asNumber, decided, known, number, unboxed}
+  import objects.*
+
+  def invoked(
+      owner: String,
+      name: String,
+      desc: MethodTypeDesc,
+      kind: Opcode,
+      args: Vector[Value]
+  ): Value =
+    intrinsic(owner, name, desc.descriptorString, args).getOrElse:
+      val dispatches = kind == Opcode.INVOKEVIRTUAL || kind == Opcode.INVOKEINTERFACE
+      val receiver   = if kind == Opcode.INVOKESTATIC then None else Some(decided(args.head))
+      if receiver.contains(Null) then refuse(s"it calls $name of nothing")
+      receiver match
+        case Some(Made(id)) if dispatches && thing(id).isInstanceOf[Closure] =>
+          val closure = thing(id).asInstanceOf[Closure]
+          if closure.method == name then
+            applied(closure, args.tail, desc.returnType)
+          else into(closure.interface, name, desc, args)
+        case Some(value) if dispatches => into(classOfThing(value).getOrElse(owner), name, desc, args)
+        case _                         => into(owner, name, desc, args)
+
+  private def hasBody(owner: String, name: String, desc: MethodTypeDesc) =
+    files.method(owner, name, desc.descriptorString).isDefined
+
+  private def into(owner: String, name: String, desc: MethodTypeDesc, args: Vector[Value]): Value =
+    val where = owner.replace('/', '.')
+    if (owner.startsWith("java/") || owner.startsWith("jdk/")) && !Arithmetical(owner) then
+      refuse(s"it calls $where.$name, which is not arithmetic")
+    files.method(owner, name, desc.descriptorString) match
+      case Some(code)                              => enter(code, args)
+      case None if files.classModel(owner).isEmpty =>
+        refuse(s"it calls $name of $where, which has no class file: a lambda expression? A class has one")
+      case None => refuse(s"it calls $where.$name, which has no bytecode")
+
+  def closure(dynamic: InvokeDynamicInstruction, captured: Vector[Value]): Value =
+    if dynamic.bootstrapMethod.owner.descriptorString != "Ljava/lang/invoke/LambdaMetafactory;" then
+      Known("a text", None)
+    else
+      dynamic.bootstrapArgs.get(1) match
+        case handle: java.lang.constant.DirectMethodHandleDesc =>
+          import java.lang.constant.DirectMethodHandleDesc.Kind as Handle
+          val kind = handle.kind match
+            case Handle.STATIC | Handle.INTERFACE_STATIC => Thing.Kind.Static
+            case Handle.CONSTRUCTOR                      => Thing.Kind.Constructor
+            case _                                       => Thing.Kind.Instance
+          val impl = Impl(
+            ClassFiles.internalName(handle.owner),
+            handle.methodName,
+            handle.lookupDescriptor,
+            kind
+          )
+          val interface = ClassFiles.internalName(dynamic.typeSymbol.returnType)
+          make(Closure(interface, dynamic.name.stringValue, impl, captured))
+        case _ => refuse("a closure of an unknown kind")
+
+  private def applied(closure: Closure, args: Vector[Value], answers: ClassDesc): Value =
+    val impl          = closure.impl
+    val desc          = MethodTypeDesc.ofDescriptor(impl.descriptor)
+    val all           = closure.captured ++ args
+    val (first, rest) = if impl.kind == Thing.Kind.Instance then all.splitAt(1) else (Vector.empty, all)
+    val fitting       = rest.zip(desc.parameterList.asScala).map(fit)
+    val answer        = impl.kind match
+      case Thing.Kind.Static   => into(impl.owner, impl.name, desc, fitting)
+      case Thing.Kind.Instance =>
+        val owner = classOfThing(decided(first.head)).getOrElse(impl.owner)
+        into(
+          if hasBody(impl.owner, impl.name, desc) then impl.owner else owner,
+          impl.name,
+          desc,
+          first ++ fitting
+        )
+      case Thing.Kind.Constructor =>
+        val made = make(Record(impl.owner, Map.empty))
+        into(impl.owner, "<init>", desc, made +: fitting): Unit
+        made
+    fit(answer, answers)
+
+  private def fit(value: Value, to: ClassDesc): Value = value match
+    case Boxed(inner) if to.isPrimitive                => inner
+    case _: (Number | Whole | Long) if !to.isPrimitive => Boxed(value)
+    case _                                             => value
+
+  private def intrinsic(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
+    (owner, name) match
+      case ("java/lang/Math" | "java/lang/StrictMath", _) => numbers.function(owner, name, desc, args)
+      // It is thrown, and refused then.
+      case (thrown, "<init>") if classOf[Throwable].isAssignableFrom(files.load(thrown)) => Some(Null)
+      case ("java/lang/Object", "<init>")                                                => Some(Null)
+      case ("java/lang/System", "arraycopy")                                             => copied(args)
+      case ("scala/reflect/ClassTag$", "apply")                                          => args(1) match
+          case Known(of: Class[?], _) => Some(Known(scala.reflect.ClassTag(of), None))
+          case _                      => None
+      case ("scala/runtime/ScalaRunTime$", "array_length") => Some(Whole(trace.const(lengthOf(args(1)))))
+      case ("scala/runtime/ScalaRunTime$", "array_apply")  =>
+        Some(inObject(element(args(1), known(args(2), "an index"))))
+      case ("scala/runtime/ScalaRunTime$", "array_update") =>
+        update(args(1), known(args(2), "an index"), args(3))
+        Some(Null)
+      case (array, "clone") if array.startsWith("[") =>
+        Some(make(Elements(Vector.tabulate(lengthOf(args(0)))(element(args(0), _)))))
+      case ("java/lang/Integer" | "java/lang/Long", _) if desc.forall("IJ()".contains(_)) =>
+        Some(ofKnown(owner, name, desc, args))
+      case ("java/lang/Double", "isNaN") =>
+        val x = number(if desc == "(D)Z" then args(0) else unboxed(args(0)))
+        Some(Whole(asNumber(trace.not(trace.equal(x, x)))))
+      case ("java/lang/Double" | "java/lang/Integer" | "java/lang/Boolean" | "java/lang/Long", "valueOf")
+          if desc.length > 3 && desc(2) == ')' =>
+        Some(Boxed(args(0)))
+      case ("java/lang/Double", "doubleValue") | ("java/lang/Integer", "intValue") |
+          ("java/lang/Boolean", "booleanValue") =>
+        Some(unboxed(args(0)))
+      case ("scala/runtime/BoxesRunTime", "boxToDouble" | "boxToInteger" | "boxToBoolean" | "boxToLong") =>
+        Some(Boxed(args(0)))
+      case (
+            "scala/runtime/BoxesRunTime",
+            "unboxToDouble" | "unboxToInt" | "unboxToBoolean" | "unboxToLong"
+          ) =>
+        Some(unboxed(args.last))
+      case _ => None
+
+  /** A static method of whole numbers that are known. */
+  private def ofKnown(owner: String, name: String, desc: String, args: Vector[Value]): Value =
+    val numbers = args.map:
+      case Long(number) => java.lang.Long.valueOf(number)
+      case value        => java.lang.Integer.valueOf(known(value, s"what $name is asked"))
+    val types  = java.lang.invoke.MethodType.fromMethodDescriptorString(desc, null)
+    val method = Class.forName(owner.replace('/', '.')).getMethod(name, types.parameterArray*)
+    method.invoke(null, numbers*) match
+      case number: java.lang.Long => Long(number)
+      case number                 => Whole(trace.const(Objects.wholeOf(number)))
+
+private object Calls:
+  /** Classes of the JDK whose methods may be gone into. */
+  private val Arithmetical = Set("java/lang/Math", "java/lang/StrictMath", "java/lang/Object")

@@ -1,0 +1,289 @@
+package skein.formula
+
+import java.lang.constant.ClassDesc
+import scala.collection.mutable
+import skein.formula.Thing.*
+import skein.formula.Value.*
+
+/** Objects and arrays while a method is traced. Those that it makes exist here alone; those that were there before are
+  * read, never changed. What is read of the object whose method it is becomes a parameter if it is a double, and else
+  * something that another object must have alike ([[guards]]) to share the trace.
+  */
+private[formula] final class Objects(
+    files: ClassFiles,
+    trace: Trace,
+    numbers: Arithmetic,
+    refuse: String => Nothing
+):
+  import Objects.*
+  import numbers.{decided, known, noFloats}
+
+  private var heap   = Map.empty[Int, Thing]
+  private var made   = 0
+  private val params = mutable.LinkedHashMap.empty[Path, Node]
+  private val alike  = mutable.LinkedHashMap.empty[Guard, Unit]
+
+  /** What was changed after it was made, each time. */
+  private val changed = mutable.ArrayBuffer.empty[Int]
+
+  /** The ways to the doubles read of the object, in the order of the trace's parameters. */
+  def parameters: Vector[Path] = params.keys.toVector
+
+  /** What another object must have alike. */
+  def guards: Vector[Guard] = alike.keys.toVector
+
+  def thing(id: Int): Thing = heap(id)
+
+  def make(thing: Thing): Value =
+    made += 1
+    heap += made -> thing
+    Made(made)
+
+  private def change(id: Int, thing: Thing): Unit =
+    heap += id -> thing
+    changed += id
+
+  /** All that was made until now. */
+  def now: Moment = Moment(heap, changed.size)
+
+  def backTo(moment: Moment): Unit = heap = moment.things
+
+  /** Makes one of what two ways have left, the second of which ends now. */
+  final class Merge(condition: Node, parted: Moment, first: Moment):
+    private val (yes, no) = (first.things, heap)
+    private val pairs     = mutable.HashMap.empty[(Value, Value), Value]
+    heap = yes ++ no
+
+    /** Of what was there before the ways parted. */
+    def things(): Unit =
+      for id <- changed.drop(parted.changes).distinct; a <- yes.get(id); b <- no.get(id) if a != b do
+        change(id, (a, b) match
+          case (Record(name, of), Record(_, or))       => Record(name, fields(of, or))
+          case (Elements(of, frozen), Elements(or, _)) => Elements(of.zip(or).map(value), frozen)
+          case _                                       => a)
+
+    private def fields(a: Map[String, Value], b: Map[String, Value]): Map[String, Value] =
+      (a.keySet ++ b.keySet).iterator
+        .map: name =>
+          name -> ((a.get(name), b.get(name)) match
+            case (Some(one), Some(other)) => value(one, other)
+            case (one, other)             => one.orElse(other).get)
+        .toMap
+
+    def value(a: Value, b: Value): Value = (a, b) match
+      case _ if a == b            => a
+      case (Number(x), Number(y)) => Number(trace.where(condition, x, y))
+      case (Whole(x), Whole(y))   => Whole(trace.where(condition, x, y))
+      case (Boxed(x), Boxed(y))   => Boxed(value(x, y))
+      case _                      => pairs.getOrElseUpdate((a, b), ofThings(a, b))
+
+    private def ofThings(a: Value, b: Value): Value = (thingOf(a, yes), thingOf(b, no)) match
+      case (Some(one), Some(other)) =>
+        alikeOf(one, other) match
+          case (Record(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
+          case (Thing.Either(of, x), Record(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
+          case (Record(of, x), Thing.Either(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
+          case (Thing.Either(of, x), Thing.Either(or, y)) if of == or =>
+            make(Thing.Either(of, fields(x, y)))
+          case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
+            make(Elements(x.zip(y).map(value), isFrozen = true))
+          case _ => Undecided
+      case _ => Undecided
+
+    /** What was made; or, of a case class of doubles that was there before, the same. */
+    private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
+      case Made(id)                                    => Some(in(id))
+      case Known(what, path) if isOfDoubles(what.getClass) =>
+        val fields = doublesOf(what.getClass).map: field =>
+          val way = path.map(before => Path(Some(before), Step.Of(field)))
+          field.getName -> held(open(field).get(what), way, field.getType)
+        Some(Record(ClassFiles.nameOf(what.getClass), fields.toMap))
+      case _ => None
+
+    /** A tuple of two numbers has a class of its own where one of them is a constant. */
+    private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
+      case (Some(x), Some(y)) if x != y => (unspecialised(a), unspecialised(b))
+      case _                            => (a, b)
+
+    private def classOf(thing: Thing) = thing match
+      case Record(of, _)       => Some(of)
+      case Thing.Either(of, _) => Some(of)
+      case _                   => None
+
+    private def unspecialised(thing: Thing): Thing = thing match
+      case Record(Specialised(of), fields)       => Record(of, boxed(fields))
+      case Thing.Either(Specialised(of), fields) => Thing.Either(of, boxed(fields))
+      case other                                 => other
+
+    private def boxed(fields: Map[String, Value]) = fields.collect:
+      case (SpecialisedField(name), value) => name -> Boxed(value)
+
+  /** Changes an object that was made. */
+  def put(of: Value, name: String, value: Value): Unit = of match
+    case Made(id) => heap(id) match
+        case Record(className, fields) => change(id, Record(className, fields + (name -> value)))
+        case _                         => refuse("it changes one of two objects, as a condition decides")
+    case _ => refuse(s"it changes $name of an object that was there before; a formula changes nothing")
+
+  def static(owner: String, name: String): Value =
+    val field = found(files.load(owner), name)
+    if !java.lang.reflect.Modifier.isFinal(field.getModifiers) && !ClassFiles.isLibrary(owner) then
+      refuse(s"it reads the variable $name, which everybody shares")
+    held(open(field).get(null), None, field.getType)
+
+  def fieldOf(of: Value, name: String, kind: ClassDesc): Value = decided(of) match
+    case Made(id) => heap(id) match
+        case Record(_, fields)       => fields.getOrElse(name, zeroOf(kind))
+        case Thing.Either(_, fields) => fields.getOrElse(name, zeroOf(kind))
+        case _                       => refuse(s"it reads $name of an array or a closure")
+    case Known(what, path) =>
+      val field = found(what.getClass, name)
+      if !java.lang.reflect.Modifier.isFinal(field.getModifiers) && !ClassFiles.isLibrary(ClassFiles.nameOf(what.getClass))
+      then
+        refuse(s"it reads the variable $name; a formula's object has values alone")
+      val value = open(field).get(what)
+      held(value, path.map(way => Path(Some(way), Step.Of(field))), field.getType)
+    case Null => refuse(s"it reads $name of nothing")
+    case _    => refuse(s"it reads $name of a number")
+
+  private def zeroOf(kind: ClassDesc): Value = kind.descriptorString match
+    case "D"                      => Number(trace.const(0))
+    case "J"                      => Long(0)
+    case "F"                      => noFloats()
+    case text if text.length == 1 => Whole(trace.const(0))
+    case _                        => Null
+
+  private def found(in: Class[?], name: String): java.lang.reflect.Field =
+    Iterator
+      .iterate[Class[?]](in)(_.getSuperclass)
+      .takeWhile(_ != null)
+      .flatMap(each => each.getDeclaredFields.find(_.getName == name))
+      .nextOption()
+      .getOrElse(refuse(s"${in.getName} has no field $name"))
+
+  private def open(field: java.lang.reflect.Field): java.lang.reflect.Field =
+    if field.trySetAccessible() then field
+    else refuse(s"it uses ${field.getDeclaringClass.getName}, which is not arithmetic")
+
+  /** What an object that was there before holds. */
+  private def held(value: AnyRef, path: Option[Path], kind: Class[?]): Value =
+    def alikeIn(expected: Any): Unit = path.foreach(way => alike(Guard(way, expected)) = ())
+    value match
+      case null                     => alikeIn(null); Null
+      case number: java.lang.Double =>
+        val node =
+          path.fold(trace.const(number))(way => params.getOrElseUpdate(way, trace.param(params.size)))
+        if kind == classOf[Double] then Number(node)
+        else
+          alikeIn(number.getClass)
+          Boxed(Number(node))
+      case _: java.lang.Float     => noFloats()
+      case number: java.lang.Long =>
+        alikeIn(number)
+        if kind == classOf[scala.Long] then Long(number) else Boxed(Long(number))
+      case simple: (java.lang.Integer | java.lang.Short | java.lang.Byte | java.lang.Boolean |
+            java.lang.Character) =>
+        alikeIn(simple)
+        val node = Whole(trace.const(wholeOf(simple)))
+        if kind.isPrimitive then node else Boxed(node)
+      case text: String => alikeIn(text); Known(text, None)
+      case other        => alikeIn(other.getClass); Known(other, path)
+
+  def element(array: Value, index: Int): Value = decided(array) match
+    case Made(id) => heap(id) match
+        case Elements(values, _) if values.indices.contains(index) => values(index)
+        case Elements(values, _) => refuse(s"index $index of an array of ${values.size}")
+        case _                   => refuse("an element of what is no array")
+    case Known(what, path) if what.getClass.isArray =>
+      val size = java.lang.reflect.Array.getLength(what)
+      if index < 0 || index >= size then refuse(s"index $index of an array of $size")
+      val way = path.map(before => Path(Some(before), Step.At(index)))
+      held(java.lang.reflect.Array.get(what, index), way, what.getClass.getComponentType)
+    case _ => refuse("an element of what is no array")
+
+  def update(array: Value, index: Int, value: Value): Unit = decided(array) match
+    case Made(id) => heap(id) match
+        case Elements(values, false) if values.indices.contains(index) =>
+          val fitting = (values(index), value) match
+            case (_: (Number | Whole | Long), Boxed(inner)) => inner
+            case _                                          => value
+          change(id, Elements(values.updated(index, fitting)))
+        case Elements(values, false) => refuse(s"index $index of an array of ${values.size}")
+        case _                       => refuse("it changes one of two arrays, as a condition decides")
+    case _ => refuse("it changes an array that was there before; a formula changes nothing")
+
+  def inObject(value: Value): Value = value match
+    case _: (Number | Whole | Long) => Boxed(value)
+    case _                          => value
+
+  def lengthOf(array: Value): Int = decided(array) match
+    case Made(id) => heap(id) match
+        case Elements(values, _) => values.size
+        case _                   => refuse("the length of what is no array")
+    case Known(what, path) if what.getClass.isArray =>
+      val size = java.lang.reflect.Array.getLength(what)
+      path.foreach(way => alike(Guard(way, Guard.Length(size))) = ())
+      size
+    case _ => refuse("the length of what is no array")
+
+  def classOfThing(value: Value): Option[String] = value match
+    case Made(id) => heap(id) match
+        case Record(name, _)             => Some(name)
+        case Thing.Either(name, _)       => Some(name)
+        case Closure(interface, _, _, _) => Some(interface)
+        case _                           => None
+    case Known(what, _)   => Some(ClassFiles.nameOf(what.getClass))
+    case Boxed(Number(_)) => Some("java/lang/Double")
+    case Boxed(Whole(_))  => Some("java/lang/Integer")
+    case _                => None
+
+  def isA(value: Value, name: String): Boolean = decided(value) match
+    case Null                                        => false
+    case Made(id) if heap(id).isInstanceOf[Elements] =>
+      heap(id).asInstanceOf[Elements].values.headOption match
+        case Some(_: Number) => name == "[D"
+        case Some(_: Whole)  => name == "[I"
+        case _               => name == "[Ljava/lang/Object;"
+    case Known(what, _) => files.load(name.replace('/', '.')).isInstance(what)
+    case other          =>
+      classOfThing(other).exists(own => files.load(name).isAssignableFrom(files.load(own)))
+
+  /** What `System.arraycopy` does. */
+  def copied(args: Vector[Value]): Option[Value] =
+    val Vector(fromAt, toAt, count) = Vector(1, 3, 4).map(i => known(args(i), "an index"))
+    decided(args(2)) match
+      case Made(id) => heap(id) match
+          case Elements(values, false) =>
+            val copy = Vector.tabulate(count)(i => element(args(0), fromAt + i))
+            change(id, Elements(values.patch(toAt, copy, count)))
+            Some(Null)
+          case _ => refuse("it changes one of two arrays, as a condition decides")
+      case _ => refuse("it changes an array that was there before; a formula changes nothing")
+
+private[formula] object Objects:
+  /** What was made until a moment, and how many changes there were until then. */
+  final case class Moment(things: Map[Int, Thing], changes: Int)
+
+  /** Scala's classes of tuples of primitive numbers, and their fields. */
+  private val Specialised      = """(scala/Tuple[12])\$mc[A-Z]+\$sp""".r
+  private val SpecialisedField = """(\w+)\$mc[A-Z]\$sp""".r
+
+  private def doublesOf(kind: Class[?]): Vector[java.lang.reflect.Field] =
+    kind.getDeclaredFields.toVector.filterNot(each => java.lang.reflect.Modifier.isStatic(each.getModifiers))
+
+  private def isOfDoubles(kind: Class[?]): Boolean =
+    classOf[Product].isAssignableFrom(kind) && kind.getSuperclass == classOf[Object] &&
+      doublesOf(kind).forall(each => each.getType == classOf[Double] || isOfDoubles(each.getType))
+
+  def wholeOf(simple: AnyRef): Int = simple match
+    case number: java.lang.Number       => number.intValue
+    case truth: java.lang.Boolean       => if truth then 1 else 0
+    case character: java.lang.Character => character.charValue.toInt
+    case other                          => throw IllegalArgumentException(other.toString)
+
+/** What an object must have at the end of a way: a class, a number, nothing, or a [[Guard.Length]]. */
+private[formula] final case class Guard(path: Path, expected: Any)
+
+private[formula] object Guard:
+  /** Of an array. */
+  final case class Length(value: Int)

@@ -1,0 +1,124 @@
+package skein.fusion
+
+import skein.fusion.SensorFormulas.*
+import skein.policy.CameraPursuer
+import skein.units.{Instant, Vector3}
+
+/** What [[SensorModel]], the filter behind it and [[skein.policy.CameraPursuer]] compute, of numbers alone: formulas, for
+  * compilers. Times are in seconds since the flight's start.
+  */
+private[skein] final case class SensorFormulas(model: SensorModel):
+
+  /** What comes of a picture of an opponent that is found if it is in view.
+    *
+    * @param bearing
+    *   and `range`: see [[SensorModel.seen]]
+    */
+  def pictured(
+      axisRad: Double,
+      ownNed: Vector3,
+      opponentNed: Vector3,
+      bearing: Double,
+      range: Double
+  ): Pictured =
+    val (place, covariance) = model.seen(axisRad, ownNed, opponentNed, bearing, range)
+    Pictured(if model.isInView(axisRad, ownNed, opponentNed) then 1 else 0, place, covariance)
+
+  /** What is believed after a picture, which is not older than all before. */
+  def joined(before: Believed, picture: Pictured, validS: Double): Believed =
+    val belief =
+      Belief(
+        Instant.Epoch,
+        before.positionNed,
+        before.velocityNed,
+        before.position,
+        before.cross,
+        before.velocity
+      )
+    val carried = belief.carriedBy(validS - before.atS, model.fusion.acceleration)
+    val after   =
+      if before.isKnown > 0 then carried.joinedPosition(picture.positionNed, picture.covariance)
+      else
+        Belief.first(
+          Instant.Epoch,
+          picture.positionNed,
+          picture.covariance,
+          model.fusion.topSpeed.value
+        )
+    if picture.isFound > 0 then
+      Believed(
+        1,
+        validS,
+        after.positionNed,
+        after.velocityNed,
+        after.position,
+        after.cross,
+        after.velocity
+      )
+    else before
+
+  /** What a decision is made upon, and where the camera looks from then on.
+    *
+    * @param startNed
+    *   of the opponent
+    * @param aheadS
+    *   until what is decided acts, where the own place is that of then; else −1
+    */
+  def decidedUpon(
+      known: Believed,
+      startNed: Vector3,
+      ownNed: Vector3,
+      nowS: Double,
+      aheadS: Double
+  ): DecidedUpon =
+    val ageS     = if known.isKnown > 0 then nowS - known.atS else nowS
+    val carriedS = if aheadS < 0 || known.isKnown <= 0 then 0.0 else CameraPursuer.carriedS(ageS + aheadS)
+    val place    = if known.isKnown > 0 then known.positionNed else startNed
+    val velocity = if known.isKnown > 0 then known.velocityNed else Vector3.Zero
+    val way      = place + velocity * carriedS - ownNed
+    val heading  = StrictMath.atan2(velocity.y, velocity.x)
+    DecidedUpon(
+      way.x,
+      way.y,
+      velocity.x,
+      velocity.y,
+      StrictMath.cos(heading),
+      StrictMath.sin(heading),
+      ageS,
+      StrictMath.atan2(way.y, way.x)
+    )
+
+private[skein] object SensorFormulas:
+  /** @param isFound
+    *   1 or 0
+    */
+  final case class Pictured(isFound: Double, positionNed: Vector3, covariance: Matrix3)
+
+  /** A [[Belief]], if there is one.
+    *
+    * @param isKnown
+    *   1 or 0
+    */
+  final case class Believed(
+      isKnown: Double,
+      atS: Double,
+      positionNed: Vector3,
+      velocityNed: Vector3,
+      position: Matrix3,
+      cross: Matrix3,
+      velocity: Matrix3
+  )
+
+  /** The way to the opponent, m, its velocity, m/s, the direction of that, how old what is known is, s, and the direction
+    * in which it is.
+    */
+  final case class DecidedUpon(
+      northM: Double,
+      eastM: Double,
+      northMps: Double,
+      eastMps: Double,
+      cos: Double,
+      sin: Double,
+      ageS: Double,
+      axisRad: Double
+  )

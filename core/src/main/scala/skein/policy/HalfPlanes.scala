@@ -1,0 +1,145 @@
+package skein.policy
+
+import skein.policy.Avoidance.Velocity
+import skein.policy.HalfPlanes.*
+
+/** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. Filled in by [[put]].
+  *
+  * Both questions are answered by linear programming, in the plane and in three dimensions, in [[Rounds]] rounds: each
+  * takes in the half plane that the velocity so far breaks most, and finds the best velocity on its edge, as incremental
+  * programming does (de Berg, Cheong, van Kreveld, Overmars: ''Computational Geometry'', 3rd ed., 2008, chapter 4; van den
+  * Berg and others as in [[Avoidance]], section 5). No more rounds are needed than there are half planes, and hardly ever
+  * more than five.
+  */
+private[policy] final class HalfPlanes(val count: Int):
+  private val normalNorth = new Array[Double](count)
+  private val normalEast  = new Array[Double](count)
+  private val least       = new Array[Double](count)
+
+  def put(number: Int, normalNorth: Double, normalEast: Double, least: Double): Unit =
+    this.normalNorth(number) = normalNorth
+    this.normalEast(number) = normalEast
+    this.least(number) = least
+
+  /** By how far a velocity breaks one, of its normal's length. */
+  def broken(number: Int, of: Velocity): Double =
+    least(number) - (normalNorth(number) * of.north + normalEast(number) * of.east)
+
+  /** The velocity nearest to one that is wanted, within all half planes and no faster than allowed. */
+  def nearest(wanted: Velocity, mostMps: Double): Nearest =
+    val taken   = HalfPlanes(count.min(Rounds))
+    var found   = wanted.limited(mostMps)
+    var missing = 0.0
+    for round <- 0 until taken.count do
+      if takeMostBroken(found, taken, round) > Slack then
+        val next = taken.onEdge(round, wanted, mostMps)
+        found = next.velocity
+        missing = missing.max(next.missing)
+    if count > Rounds then missing = missing.max(takeMostBroken(found, taken, 0) - Slack)
+    Nearest(found, missing)
+
+  /** The velocity that breaks the worst of them least, and of those that do so about equally the one nearest to that
+    * wanted: the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a length of 1, or of 0.
+    */
+  def leastBroken(wanted: Velocity, mostMps: Double): Velocity =
+    val taken = HalfPlanes(count.min(Rounds))
+    var found = wanted
+    var worst = Double.NegativeInfinity
+    for round <- 0 until taken.count do
+      if takeMostBroken(found, taken, round) > worst + Slack then
+        // In the minimum with it, it is the worst.
+        found = taken.whereWorst(round).inTurn(
+          Velocity(
+            wanted.north + Weight * taken.normalNorth(round),
+            wanted.east + Weight * taken.normalEast(round)
+          ),
+          mostMps
+        )
+        worst = taken.broken(round, found)
+    found
+
+  /** Puts the one that a velocity breaks most among those taken.
+    *
+    * @return
+    *   by how much
+    */
+  private def takeMostBroken(of: Velocity, taken: HalfPlanes, at: Int): Double =
+    var most      = broken(0, of)
+    var north     = normalNorth(0)
+    var east      = normalEast(0)
+    var mostLeast = least(0)
+    for k <- 1 until count do
+      val its = broken(k, of)
+      if its > most then
+        most = its
+        north = normalNorth(k)
+        east = normalEast(k)
+        mostLeast = least(k)
+    taken.put(at, north, east, mostLeast)
+    most
+
+  /** The nearest velocity, of few half planes in their order. */
+  private def inTurn(wanted: Velocity, mostMps: Double): Velocity =
+    var found = wanted.limited(mostMps)
+    for i <- 0 until count do if broken(i, found) > 0 then found = onEdge(i, wanted, mostMps).velocity
+    found
+
+  /** On the edge of one, the nearest velocity within those before. */
+  private def onEdge(number: Int, wanted: Velocity, mostMps: Double): Nearest =
+    // The edge: foot + t (−east, north), for low ≤ t ≤ high.
+    val north     = normalNorth(number)
+    val east      = normalEast(number)
+    val square    = north * north + east * east
+    val footNorth = north * (least(number) / square)
+    val footEast  = east * (least(number) / square)
+    val inside    = mostMps * mostMps * square - least(number) * least(number)
+    val half      = math.sqrt(inside.max(0)) / square
+    var low       = -half
+    var high      = half
+    for k <- 0 until number do
+      val rise  = normalEast(k) * north - normalNorth(k) * east
+      val lacks = least(k) - (normalNorth(k) * footNorth + normalEast(k) * footEast)
+      // Along an edge beside it, the other half plane holds everywhere or nowhere.
+      val from = lacks / (rise + Tiny)
+      if rise >= 0 then low = low.max(from) else high = high.min(from)
+    val along = ((wanted.east - footEast) * north - (wanted.north - footNorth) * east) / square
+    val at    = along.max(low).min(high)
+    Nearest(Velocity(footNorth - at * east, footEast + at * north), (low - high).max(-inside))
+
+  /** Where none of those before is broken more than one. */
+  private def whereWorst(number: Int): HalfPlanes =
+    val planes = HalfPlanes(number)
+    for k <- 0 until number do
+      planes.put(
+        k,
+        normalNorth(k) - normalNorth(number),
+        normalEast(k) - normalEast(number),
+        least(k) - least(number)
+      )
+    planes
+
+private[policy] object HalfPlanes:
+
+  /** What is nearest to a velocity that is wanted.
+    *
+    * @param missing
+    *   0 if it is within all half planes; more if there is no such velocity
+    */
+  final case class Nearest(velocity: Velocity, missing: Double)
+
+  /** Of a vehicle's neighbours few bound its velocity. */
+  val Rounds = 8
+
+  /** m/s by which a half plane may be broken, far above what floats make of an edge and far below what a vehicle flies. */
+  private val Slack = 1e-4
+
+  /** A least that, with a normal of 0, bounds nothing. */
+  val Always: Double = -1e6
+
+  /** m/s. A violation counts so much more than the distance from what is wanted that only edges within 10⁻³ rad of one
+    * another are not told apart.
+    */
+  private val Weight = 1e4
+
+  /** In a sum with it nothing but 0 changes. */
+  private val Tiny = 1e-30

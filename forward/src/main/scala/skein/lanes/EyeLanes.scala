@@ -1,0 +1,157 @@
+package skein.lanes
+
+import java.util.Arrays
+import skein.formula.{Formula, Untraceable}
+import skein.forward.{Duelist, Sight}
+import skein.fusion.{SensorFormulas, SensorModel}
+
+/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same pictures at the same
+  * times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.Sight`. Mutable.
+  */
+private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Duelist):
+  import EyeLanes.*
+  import TimetableAgents.WORLDS
+
+  private val expose = forms.pictured.call
+  private val update = forms.joined.call
+  private val decide = forms.decidedUpon.call
+
+  private val pictures        = Array.fill(Sight.Ring)(Array.emptyFloatArray)
+  private val validS          = Array.ofDim[Float](Sight.Ring)
+  private var newest, before  = Array.ofDim[Float](Belief * WORLDS)
+  private var replayed        = Array.ofDim[Float](Belief * WORLDS)
+  private val axis            = Array.ofDim[Float](WORLDS)
+  private val ownDown         = everywhere(own.altitudeDownM)
+  private val opponentDown    = everywhere(opponent.altitudeDownM)
+  private val startX          = everywhere(opponent.startX)
+  private val startY          = everywhere(opponent.startY)
+  private val bearing, range  = Array.ofDim[Float](WORLDS)
+  private val nowS, aheadS    = Array.ofDim[Float](WORLDS)
+  private val exposedS        = Array.ofDim[Float](WORLDS)
+
+  /** What is decided upon; velocities are the opponent's own. */
+  val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
+  val heading: Directions                                  = Directions(WORLDS)
+
+  expose.input(0, axis, 0)
+  expose.input(3, ownDown, 0)
+  expose.input(6, opponentDown, 0)
+  expose.input(7, bearing, 0)
+  expose.input(8, range, 0)
+  update.input(Belief + Picture, exposedS, 0)
+  decide.input(Belief, startX, 0)
+  decide.input(Belief + 1, startY, 0)
+  decide.input(Belief + 2, opponentDown, 0)
+  decide.input(Belief + 5, ownDown, 0)
+  decide.input(Belief + 6, nowS, 0)
+  decide.input(Belief + 7, aheadS, 0)
+  for (array, output) <- Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, axis).zipWithIndex
+  do decide.output(output, array, 0)
+
+  def start(): Unit =
+    for state <- Seq(newest, before) do Arrays.fill(state, 0f)
+    Arrays.fill(
+      axis,
+      StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
+    )
+
+  /** Takes a picture.
+    *
+    * @param times
+    *   from `at` on: when; the errors of the bearing and of the range; whether what is in view is found
+    */
+  def expose(
+      picture: Int,
+      ours: TimetableVehicles,
+      oursAt: Int,
+      theirs: TimetableVehicles,
+      theirsAt: Int,
+      times: Array[Float],
+      at: Int
+  ): Unit =
+    if pictures(picture).length == 0 then pictures(picture) = Array.ofDim[Float](Picture * WORLDS)
+    validS(picture) = times(at)
+    Arrays.fill(bearing, times(at + 1))
+    Arrays.fill(range, times(at + 2))
+    expose.input(1, ours.seenX, oursAt)
+    expose.input(2, ours.seenY, oursAt)
+    expose.input(4, theirs.seenX, theirsAt)
+    expose.input(5, theirs.seenY, theirsAt)
+    expose.outputs(Picture, pictures(picture), 0)
+    expose()
+    if times(at + 3) == 0 then Arrays.fill(pictures(picture), 0, WORLDS, 0f)
+
+  /** What a picture showed enters the belief.
+    *
+    * @param isOlder
+    *   whether it was taken before the one that entered last
+    */
+  def join(picture: Int, isOlder: Boolean, last: Int): Unit =
+    if isOlder then
+      step(before, picture, replayed)
+      step(replayed, last, newest)
+      val free = before
+      before = replayed
+      replayed = free
+    else
+      val free = before
+      before = newest
+      newest = free
+      step(before, picture, newest)
+
+  private def step(from: Array[Float], picture: Int, into: Array[Float]): Unit =
+    Arrays.fill(exposedS, validS(picture))
+    update.inputs(0, Belief, from, 0)
+    update.inputs(Belief, Picture, pictures(picture), 0)
+    update.outputs(Belief, into, 0)
+    update()
+
+  /** Tells [[northM]] and what follows, and turns the camera there.
+    *
+    * @param nowS
+    *   since the start
+    * @param aheadS
+    *   see [[SensorFormulas.decidedUpon]]
+    */
+  def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =
+    Arrays.fill(this.nowS, nowS)
+    Arrays.fill(this.aheadS, aheadS)
+    decide.inputs(0, Belief, newest, 0)
+    decide.input(Belief + 3, ours.seenX, oursAt)
+    decide.input(Belief + 4, ours.seenY, oursAt)
+    decide()
+
+  private def everywhere(value: Double) = Array.fill(WORLDS)(value.toFloat)
+
+private[lanes] object EyeLanes:
+  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Pictured]]. */
+  private val Belief  = 35
+  private val Picture = 13
+
+  /** Below, what floats leave of a covariance is no covariance. */
+  private val LeastSd = 2e-4
+
+  /** Compiled. */
+  final class Forms(
+      val pictured: FixedFormula,
+      val joined: FixedFormula,
+      val decidedUpon: FixedFormula
+  )
+
+  /** @return
+    *   or why this sensor does not fly by lanes
+    */
+  def of(model: SensorModel): Either[String, Forms] =
+    val formulas                    = SensorFormulas(model)
+    def form(name: String, inputs: Int) = Formula.of(formulas, name).map: formula =>
+      require(formula.inputs.size == inputs, s"$name of ${formula.inputs.mkString(", ")}")
+      FixedFormula(formula, formulas)
+    if model.bearingSdRad < LeastSd || model.rangeSd < LeastSd then
+      Left(s"the lanes know sensors with deviations of $LeastSd rad, and $LeastSd of the range, at least")
+    else
+      (for
+        pictured    <- form("pictured", 9)
+        joined      <- form("joined", Belief + Picture + 1)
+        decidedUpon <- form("decidedUpon", Belief + 8)
+      yield Forms(pictured, joined, decidedUpon)).left
+        .map((why: Untraceable) => s"the sensor is no formula: ${why.getMessage}")
