@@ -5,6 +5,7 @@ import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, Envir
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.Scenarios
 
 /** How fast environments fly where nobody looks at them, beside the engine's own flights: what
   * `bench/python/environments.py` is held against. The duel over `vpn`, under `stream`.
@@ -21,7 +22,9 @@ private val periods = 600
 private def environments(count: Int): (Double, Float) =
   val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count)).order(ByteOrder.nativeOrder)
   val batch =
-    EnvironmentBatch.of(EnvironmentSettings(), count, Autoreset.NextStep, block).fold(sys.error(_), identity)
+    EnvironmentBatch
+      .of(EnvironmentSettings(), count, Autoreset.NextStep, block)(using Scenarios.ours)
+      .fold(sys.error(_), identity)
   batch.reset(Array.tabulate(count)(_.toLong))
   val rate = bestRate(() => (0 until 200).foreach(_ => batch.step()))
   (rate * 200 * count, block.getFloat(4 * (2 + 2 * 9) * count))
