@@ -62,9 +62,17 @@ object LearnedUnderDelay:
     val role     = PolicyFile.role(side).fold(sys.error, identity)
     val searched =
       if role == Role.Pursuer then
-        "the best of lead-pursuit" -> PolicyFile(role, PolicyFamily.leadPursuit, Vector(0.5453, 0.7326, 2.996))
+        "the best of lead-pursuit" -> PolicyFile(
+          role,
+          PolicyFamily.leadPursuit,
+          Vector(0.5453, 0.7326, 2.996)
+        )
       else
-        "the best of chauffeur-evader" -> PolicyFile(role, PolicyFamily.chauffeurEvader, Vector(8, 0.5, 4))
+        "the best of chauffeur-evader" -> PolicyFile(
+          role,
+          PolicyFamily.chauffeurEvader,
+          Vector(1.528, 0.3126, 6.317)
+        )
     val policies = ("the paper's" -> PolicyFile.paperOf(role)) +: searched +: taught
     for
       (loop, link)   <- flown

@@ -12,7 +12,7 @@ object LearningCurves:
   private val colours = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9).map(Colour(_))
 
   def main(args: Array[String]): Unit =
-    val (out, title) = (Path.of(args(0)), args(1))
+    val (out, title)     = (Path.of(args(0)), args(1))
     val (levels, curves) = args.toVector.drop(2).map(_.split("=", 2)).partitionMap:
       case Array(name, value) => value.toDoubleOption.map(name -> _).toLeft(name -> read(Path.of(value)))
       case _                  => sys.error("expected NAME=FILE.csv or NAME=NUMBER")

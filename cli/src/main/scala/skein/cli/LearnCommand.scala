@@ -6,7 +6,7 @@ import skein.flight.NotFlown
 import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, RunningStats}
 import skein.measure.FlightSummary
-import skein.policy.NeuralShape
+import skein.policy.{NeuralShape, Role}
 import skein.report.Section
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.{ClusterEvaluator, Conditions, Effort, Judge}
@@ -49,7 +49,7 @@ final case class LearnOptions(
     turnRate: Option[Double],
     @arg(doc = "of Adam (default: 0.001; ppo: 0.0003)")
     learningRate: Option[Double],
-    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo: 0.99)")
+    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo and evaders: 0.99)")
     discount: Option[Double],
     @arg(doc = "transitions of an update (default: 256)")
     batch: Option[Int],
@@ -293,7 +293,7 @@ object LearnCommand:
       options.turnRate.getOrElse(3.0),
       LearnerSettings(
         hidden = shape.hidden,
-        discount = options.discount.getOrElse(if onPolicy then 0.99 else 0.98),
+        discount = options.discount.getOrElse(if onPolicy || role == Role.Evader then 0.99 else 0.98),
         rate = options.learningRate.getOrElse(if onPolicy then 3e-4 else 1e-3),
         batch = options.batch.getOrElse(256),
         updatesPerStep = options.updatesPerStep.getOrElse(0.125)

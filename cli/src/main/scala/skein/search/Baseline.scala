@@ -19,4 +19,9 @@ final case class Baseline(word: String, name: String, parameters: Vector[(String
 object Baseline:
   /** The paper's policy of a role. */
   def of(paper: PolicyFile): Baseline =
-    Baseline("paper", paper.family.name, paper.family.space.axes.map(_.name).zip(paper.parameters), paper.label)
+    Baseline(
+      "paper",
+      paper.family.name,
+      paper.family.space.axes.map(_.name).zip(paper.parameters),
+      paper.label
+    )

@@ -101,8 +101,8 @@ final case class TeamQuestion(
         (),
         s"--scenario: expected one of multirotors, came ${plain.name}, which has cars: fly and budget fly it"
       )
-      flown <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
-      by    <- TeamObjective.parse(objective, plain).left.map("--objective: " + _)
+      flown  <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
+      by     <- TeamObjective.parse(objective, plain).left.map("--objective: " + _)
       delays <- Conditions.delays(link).left.map("--link: " + _)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield TeamSetup(

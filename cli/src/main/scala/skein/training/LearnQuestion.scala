@@ -65,18 +65,18 @@ final case class LearnQuestion(
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
       role      <- PolicyFile.role(role).left.map("--side: " + _)
-      game <- if isDuel then duel(role) else team(role)
+      game      <- if isDuel then duel(role) else team(role)
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
-      flown    <- conditions.resolved
-      delays   <- Conditions.delays(link).left.map("--link: " + _)
-      _ <- within("--steps", steps.toDouble, 1, MostSteps)
-      _ <- within("--environments", environments, 1, MostEnvironments)
-      _ <- within("--lesson", lessonS, 1, 3600, " s")
-      _ <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
-      _ <- within("--episodes", episodes, 2, MostEpisodes)
-      _ <- within("--fresh", fresh, 2, MostEpisodes)
-      _ <- learner.mistake.map(asOption).toLeft(())
-      _ <- Either.cond(
+      flown  <- conditions.resolved
+      delays <- Conditions.delays(link).left.map("--link: " + _)
+      _      <- within("--steps", steps.toDouble, 1, MostSteps)
+      _      <- within("--environments", environments, 1, MostEnvironments)
+      _      <- within("--lesson", lessonS, 1, 3600, " s")
+      _      <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
+      _      <- within("--episodes", episodes, 2, MostEpisodes)
+      _      <- within("--fresh", fresh, 2, MostEpisodes)
+      _      <- learner.mistake.map(asOption).toLeft(())
+      _      <- Either.cond(
         algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments,
         (),
         s"--batch: expected at most the ${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
@@ -93,7 +93,8 @@ final case class LearnQuestion(
     for
       kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
       stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
-      by     <- TeamObjective.parse(objective, stated, TeamObjective.naturally(role)).left.map("--objective: " + _)
+      by     <-
+        TeamObjective.parse(objective, stated, TeamObjective.naturally(role)).left.map("--objective: " + _)
     yield LearnGame.OfTeam(by, stated)
 
 object LearnQuestion:
@@ -134,8 +135,9 @@ final case class LearnSetup(
 
   /** What every result is held against: the paper's policy of the role, or what the scenario's own come to. */
   val baseline: Baseline = game match
-    case _: LearnGame.OfDuel  => Baseline.of(PolicyFile.paperOf(role))
-    case team: LearnGame.OfTeam => Baseline("own", s"${team.scenario.name}'s own", Vector.empty, "its own policies")
+    case _: LearnGame.OfDuel    => Baseline.of(PolicyFile.paperOf(role))
+    case team: LearnGame.OfTeam =>
+      Baseline("own", s"${team.scenario.name}'s own", Vector.empty, "its own policies")
 
   /** Steps of one environment between two times at which everything may be saved. */
   val stepsPerRound: Int = (question.lessonS * 1000 / question.conditions.periodMs).round.toInt.max(1)
@@ -149,7 +151,7 @@ final case class LearnSetup(
   /** Who judges policies of [[family]], and the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator = game match
     case duel: LearnGame.OfDuel =>
-      val batch                    = conditions.batch(threads)
+      val batch                       = conditions.batch(threads)
       def evaluator(of: PolicyFamily) = DuelEvaluator(
         batch,
         conditions.duel.durationS,
@@ -164,7 +166,7 @@ final case class LearnSetup(
       val (paper, learned) = (evaluator(PolicyFamily.paperOf(role)), evaluator(family))
       judge => if judge == Judge.Baseline then paper else learned
     case team: LearnGame.OfTeam =>
-      val batch                               = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
+      val batch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
       def evaluator(of: Vector[Double] => Fleet) =
         TeamEvaluator(batch, candidate(team, of), delays, team.objective.terms.map(_._1), question.seed)
       val own     = evaluator(_ => team.scenario.fleet)

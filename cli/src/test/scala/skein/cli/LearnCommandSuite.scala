@@ -109,7 +109,10 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
     refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
     refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)
-    refused("scenario: expected one with a pursuer and vehicles of another role", team("formation", "slot-rms")*)
+    refused(
+      "scenario: expected one with a pursuer and vehicles of another role",
+      team("formation", "slot-rms")*
+    )
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")

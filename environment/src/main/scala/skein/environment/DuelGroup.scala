@@ -204,4 +204,3 @@ private final class DuelGroup(
 
 private object DuelGroup:
   private def turning(rateRadPerS: Double): Policy = if rateRadPerS > 0 then SteeredPolicy(0) else Turned(0)
-

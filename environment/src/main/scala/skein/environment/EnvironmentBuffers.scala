@@ -55,10 +55,10 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
       agent += 1
     -1
 
-  def distance(number: Int, metres: Float): Unit          = distances.put(number, metres): Unit
-  def time(number: Int, seconds: Float): Unit             = times.put(number, seconds): Unit
-  def terminated(number: Int, value: Boolean): Unit       = terminations.put(number, byte(value)): Unit
-  def truncated(number: Int, value: Boolean): Unit        = truncations.put(number, byte(value)): Unit
+  def distance(number: Int, metres: Float): Unit         = distances.put(number, metres): Unit
+  def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
+  def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit
+  def truncated(number: Int, value: Boolean): Unit       = truncations.put(number, byte(value)): Unit
   def due(agent: Int, number: Int, value: Boolean): Unit = dues.put(agent * count + number, byte(value)): Unit
   private def byte(value: Boolean): Byte                 = if value then 1 else 0
 

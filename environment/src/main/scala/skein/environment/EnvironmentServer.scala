@@ -96,7 +96,8 @@ object EnvironmentServer:
         try channel.map(FileChannel.MapMode.READ_WRITE, 0, channel.size)
         finally channel.close()
       .toEither.left.map(reason => s"file: expected one to read and write, came $reason")
-      batch <- EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours)
+      batch <-
+        EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours)
     yield batch
 
   private def seeds(in: DataInputStream, count: Int) = Array.fill(count)(in.readLong())

@@ -77,7 +77,11 @@ final case class EnvironmentSettings(
   private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
     for
       roles <- roles
-      _ <- Either.cond(objective.isEmpty, (), s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'")
+      _     <- Either.cond(
+        objective.isEmpty,
+        (),
+        s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'"
+      )
       flown <- flown(altitudeM)
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
@@ -94,14 +98,27 @@ final case class EnvironmentSettings(
   private[environment] def side(using Scenarios): Either[String, ScenarioSide] =
     for
       roles <- roles
-      role  <- Either.cond(roles.size == 1, roles.head, "learners: expected pursuer or evader, came 'both', which is the duel's")
-      _     <- Either.cond(opponent.isEmpty, (), s"opponent: expected none with scenario ${scenario}, whose others fly their own policies, came '$opponent'")
+      role  <- Either.cond(
+        roles.size == 1,
+        roles.head,
+        "learners: expected pursuer or evader, came 'both', which is the duel's"
+      )
+      _ <- Either.cond(
+        opponent.isEmpty,
+        (),
+        s"opponent: expected none with scenario ${scenario}, whose others fly their own policies, came '$opponent'"
+      )
       found <- ScenarioSide.of(this, role)
       (stated, members, by) = found
       flown <- flown(-stated.agents(members.head).startPositionNed.z)
       (timing, delays, vehicle) = flown
       made = ScenarioSide(this, stated, role, members, by, timing, delays, vehicle.response)
-      _ <- Try(Rollout(made.engagement(members.head, PaperPursuer(), None, 0), timing, delays, vehicle.response)).toEither.left.map("scenario: " + _.getMessage)
+      _ <- Try(Rollout(
+        made.engagement(members.head, PaperPursuer(), None, 0),
+        timing,
+        delays,
+        vehicle.response
+      )).toEither.left.map("scenario: " + _.getMessage)
     yield made
 
   private def roles = Learners.get(learners).toRight(
@@ -204,7 +221,7 @@ object EnvironmentSettings:
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
             case "moves_in_flight"       => number(value => settings.copy(movesInFlight = value.toInt))
             case "evader_rate_rad_per_s" => number(value => settings.copy(evaderRateRadPerS = value))
-            case _                 => Left(s"no setting '$name'")
+            case _                       => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
     Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")

@@ -11,10 +11,10 @@ import java.util.concurrent.Semaphore
 private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   import Resumed.GivenUp
 
-  private val goesOn, waits                      = Semaphore(0)
-  @volatile private var failure                  = Option.empty[Throwable]
-  @volatile private var isGivenUp                = false
-  private var thread: Option[Thread]             = None
+  private val goesOn, waits          = Semaphore(0)
+  @volatile private var failure      = Option.empty[Throwable]
+  @volatile private var isGivenUp    = false
+  private var thread: Option[Thread] = None
 
   /** Lets it run. Nothing may be read that it writes until [[await]] has returned. */
   def goOn(): Unit = thread match
@@ -33,7 +33,7 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   private def run(): Unit =
     try body(() => suspend())
     catch
-      case GivenUp         => ()
+      case GivenUp          => ()
       case wrong: Throwable => failure = Some(wrong)
     finally waits.release()
 

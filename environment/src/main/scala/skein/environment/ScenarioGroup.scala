@@ -63,7 +63,7 @@ private final class ScenarioGroup(
   private def judge(number: Int): Unit =
     val flight   = flights(number)
     val captured = settings.captureRadiusM > 0 && flight.leastM <= settings.captureRadiusM
-    val gained   = if !captured then 0f else if side.role == Role.Pursuer then CaptureReward else -CaptureReward
+    val gained = if !captured then 0f else if side.role == Role.Pursuer then CaptureReward else -CaptureReward
     into.reward(0, number, gained - (flight.loss / EnvironmentSettings.RewardM).toFloat)
     into.distance(number, flight.distanceM.toFloat)
     into.time(number, flight.scoredAtS.toFloat)

@@ -44,8 +44,8 @@ private[environment] final case class ScenarioSide(
   def engagement(learner: Int, policy: Policy, beside: Option[Policy], seed: Long): Engagement =
     val random = SplitMix64(seed)
     val flown  = agents.zipWithIndex.map: (agent, place) =>
-      val (least, most)     = settings.startWithinM
-      val (moved, bearing)  = (least + random.nextDouble() * (most - least), 2 * math.Pi * random.nextDouble())
+      val (least, most)    = settings.startWithinM
+      val (moved, bearing) = (least + random.nextDouble() * (most - least), 2 * math.Pi * random.nextDouble())
       val chosen: AgentPolicy =
         if place == learner then policy
         else if agent.role == role then beside.getOrElse(agent.policy)
@@ -68,11 +68,12 @@ private[environment] final case class ScenarioSide(
 
   /** What the learner pays at a score. */
   def loss(distanceM: Double, northM: Array[Double], eastM: Array[Double]): Double = objective match
-    case None    => if role == Role.Pursuer then distanceM else -distanceM
+    case None     => if role == Role.Pursuer then distanceM else -distanceM
     case Some(by) =>
       val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
       var sum    = 0.0
-      for (weight, measure) <- by.terms; reduced <- measure.reduced do sum += weight * reduced.quantity.of(places)
+      for (weight, measure) <- by.terms; reduced <- measure.reduced do
+        sum += weight * reduced.quantity.of(places)
       by.direction.sign * sum
 
 private[environment] object ScenarioSide:
@@ -89,7 +90,9 @@ private[environment] object ScenarioSide:
       kind     <- scenarios.kind(settings.scenario).left.map("scenario: " + _)
       scenario <- ScenarioSettings.ofKeys(kind, settings.set).left.map("set: " + _)
       agents = scenario.agents
-      _ <- refusal(scenario).map(why => s"scenario: expected one of multirotors that are told of one another, came ${scenario.name}, $why").toLeft(())
+      _ <- refusal(scenario).map(why =>
+        s"scenario: expected one of multirotors that are told of one another, came ${scenario.name}, $why"
+      ).toLeft(())
       members = agents.indices.filter(agents(_).role == role).toVector
       _ <- Either.cond(
         members.nonEmpty && members.size < agents.size,
@@ -98,15 +101,23 @@ private[environment] object ScenarioSide:
       )
       objective <-
         if settings.objective.isEmpty then Right(None)
-        else TeamObjective.parse(settings.objective, scenario, TeamObjective.naturally(role)).left.map("objective: " + _).map(Some(_))
-      _ <- objective.toVector.flatMap(_.measures).find(measure => !isSummed(measure.reduced.get.reduction)).map: measure =>
+        else
+          TeamObjective.parse(
+            settings.objective,
+            scenario,
+            TeamObjective.naturally(role)
+          ).left.map("objective: " + _).map(Some(_))
+      _ <- objective.toVector.flatMap(_.measures).find(measure =>
+        !isSummed(measure.reduced.get.reduction)
+      ).map: measure =>
         s"objective: expected means over time, which can be rewarded as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
     yield (scenario, members, objective)
 
   private def isSummed(reduction: Reduction) = reduction == Reduction.Mean || reduction == Reduction.Rms
 
-  private def roles(agents: Vector[Agent]) = agents.map(_.role.name.toLowerCase(java.util.Locale.ROOT)).distinct.mkString(" and ")
+  private def roles(agents: Vector[Agent]) =
+    agents.map(_.role.name.toLowerCase(java.util.Locale.ROOT)).distinct.mkString(" and ")
 
   private def refusal(scenario: Scenario): Option[String] =
     if scenario.agents.exists(_.kind != VehicleKind.Multirotor) then Some("which has cars")

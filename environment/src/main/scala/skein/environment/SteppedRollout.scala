@@ -63,7 +63,10 @@ private final class SteppedRollout(side: ScenarioSide, learner: Int) extends Aut
         val engagement = side.engagement(learner, outside, beside, seed)
         begun(engagement.agents.map(_.startX).toArray, engagement.agents.map(_.startY).toArray)
         Rollout(engagement, side.timing, side.link, side.response)
-          .fly(WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt), observer = scores): Unit
+          .fly(
+            WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt),
+            observer = scores
+          ): Unit
         // Nobody was to decide after the end.
         isOver = true
         suspend()

@@ -107,5 +107,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(read(s"skein.fly { scenario = surround, policies = [\"$file\"] }").isRight)
     val said = read(s"skein.fly { scenario = formation, policies = [\"$file\"] }").left.getOrElse("")
     assert(
-      clue(said).contains("policies: expected with a scenario of a pursuer and vehicles of another role, came with 'formation'")
+      clue(said).contains(
+        "policies: expected with a scenario of a pursuer and vehicles of another role, came with 'formation'"
+      )
     )

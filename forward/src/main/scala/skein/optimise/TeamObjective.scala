@@ -58,7 +58,8 @@ object TeamObjective:
     )
 
   /** Where nothing else is said, a pursuer wants little of what is measured, an evader much. */
-  def naturally(role: Role): Direction = if role == Role.Evader then Direction.Maximise else Direction.Minimise
+  def naturally(role: Role): Direction =
+    if role == Role.Evader then Direction.Maximise else Direction.Minimise
 
   private def measureOf(
       scenario: Scenario,
@@ -71,7 +72,7 @@ object TeamObjective:
       case _                     =>
         val others = scenario.measures.filter(_.reduced.isEmpty).map(keyOf)
         val note   = if others.contains(name) then s": $name is told of recorded flights alone" else ""
-        val these =
+        val these  =
           if known.isEmpty then s"another scenario, since ${scenario.name} has no measure of a quantity"
           else s"one of ${known.keys.mkString(", ")}"
         Left(s"expected $these, came '$name${arguments.fold("")(a => s"($a)")}'$note")

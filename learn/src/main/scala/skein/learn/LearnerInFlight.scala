@@ -54,16 +54,16 @@ object LearnerInFlight:
 
   /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate. */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
-    def count: Int                     = 1
-    def actions: Int                   = 1
-    def observations: Int              = reached.length
-    def seen: Array[Float]             = reached
-    val rewards: Array[Float]          = Array(reward)
-    val terminated: Array[Boolean]     = Array(false)
-    def ended: Array[Boolean]          = terminated
+    def count: Int                               = 1
+    def actions: Int                             = 1
+    def observations: Int                        = reached.length
+    def seen: Array[Float]                       = reached
+    val rewards: Array[Float]                    = Array(reward)
+    val terminated: Array[Boolean]               = Array(false)
+    def ended: Array[Boolean]                    = terminated
     def begin(round: Long, actor: Network): Unit = none
-    def step(acts: Array[Float]): Unit = none
-    private def none                   = throw UnsupportedOperationException("one step of a flight")
+    def step(acts: Array[Float]): Unit           = none
+    private def none                             = throw UnsupportedOperationException("one step of a flight")
 
   /** A learner as it was kept.
     *

@@ -27,7 +27,9 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders:
     else
       Option
         .when(Files.exists(target.resolve("dist"))):
-          Using.resource(Files.list(target.resolve("dist")))(_.iterator.asScala.find(_.toString.endsWith(".whl")))
+          Using.resource(
+            Files.list(target.resolve("dist"))
+          )(_.iterator.asScala.find(_.toString.endsWith(".whl")))
         .flatten
         .toRight("./sbtw python/wheel was not run before")
 
@@ -65,5 +67,9 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders:
     try
       val status = Process(command, Some(root.resolve("python").toFile): Option[File])
         .!(ProcessLogger(line => output.append(line).append('\n'): Unit))
-      Either.cond(status == 0, output.toString, s"${command.mkString(" ")}: ${output.toString.takeRight(4000)}")
+      Either.cond(
+        status == 0,
+        output.toString,
+        s"${command.mkString(" ")}: ${output.toString.takeRight(4000)}"
+      )
     catch case missing: IOException => Left(missing.getMessage)
