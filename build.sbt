@@ -295,6 +295,17 @@ lazy val python = project
   .settings(
     publish / skip := true,
     Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / stage).value, target.value, streams.value.log),
+    // What is tested is the wheel of now, where one can be built; else why there is none.
+    Test / test := (Test / test)
+      .dependsOn(Def.taskDyn {
+        val (why, log) = (target.value / "no-wheel.txt", streams.value.log)
+        IO.delete(Seq(why, target.value / "dist"))
+        Wheel.obstacle(target.value / "fetched") match {
+          case Some(reason) => Def.task { log.warn(s"no wheel is built or tested: $reason"); IO.write(why, reason) }
+          case None         => Def.task { Wheel.wheel.value; () }
+        }
+      })
+      .value,
     libraryDependencies ++= munit
   )
 

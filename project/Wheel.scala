@@ -1,5 +1,5 @@
 import sbt.*
-import scala.sys.process.Process
+import scala.sys.process.{Process, ProcessLogger}
 
 /** The Python package as one file: `./sbtw python/wheel`. */
 object Wheel {
@@ -7,6 +7,17 @@ object Wheel {
 
   /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's first day. */
   private val firstDay = "315532800"
+
+  /** Why no wheel can be built here, if none can: tests go without it then. */
+  def obstacle(scratch: File): Option[String] = {
+    val said   = new StringBuilder
+    val fetch  =
+      Seq("python3", "-m", "pip", "download", "--quiet", "--no-deps", "--dest", scratch.getPath, "setuptools>=77")
+    val status =
+      try Process(fetch).!(ProcessLogger(line => said.append(line).append('\n')))
+      catch { case missing: java.io.IOException => said.append(missing.getMessage); 1 }
+    if (status == 0) None else Some(s"${fetch.mkString(" ")}: ${said.toString.takeRight(500)}")
+  }
 
   /** @param sources
     *   with `pyproject.toml`

@@ -1,7 +1,9 @@
 """Steps a second, beside Gymnasium's own: python bench/python/environments.py; the engine alone, without Python:
-./sbtw 'bench/runMain skein.bench.EnvironmentRates'"""
+./sbtw 'bench/runMain skein.bench.EnvironmentRates'. With a number: what so many steps take."""
 
 import os
+import resource
+import sys
 import time
 
 import gymnasium as gym
@@ -31,7 +33,27 @@ def rates(env):
     return by_clock, by_processor
 
 
+def many(steps, count=4096):
+    """What so many steps take, as `bench/runMain skein.bench.EnvironmentSteps` says it of the JVM."""
+    env = gym.make_vec("skein_uav/Pursuit-v0", num_envs=count, link="vpn", copy=False, autoreset_mode="SameStep")
+    env.reset(seed=0)
+    actions = np.zeros((count, 1), np.float32)
+    ends, distance, start = 0, 0.0, time.perf_counter()
+    for _ in range(steps // count):
+        _, _, _, truncated, infos = env.step(actions)
+        if truncated[0]:
+            ends, distance = ends + 1, distance + infos["distance_m"][0]
+    print(
+        f"{steps // count * count:,} steps in {time.perf_counter() - start:.1f} s, {time.process_time():.1f} s of processor time "
+        f"with start and compilation; most memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024} MB; the first "
+        f"environment ended {ends} times, at {distance / max(ends, 1):.3f} m"
+    )
+
+
 if __name__ == "__main__":
+    if sys.argv[1:]:
+        many(int(sys.argv[1]))
+        sys.exit()
     print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors")
     for name, settings, sizes in (
         ("skein_uav/Pursuit-v0", {"link": "vpn"}, (1, 64, 1024, 4096)),

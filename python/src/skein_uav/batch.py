@@ -104,7 +104,7 @@ class InProcess:
             raise _translated(mistake) from None
 
     def close(self) -> None:
-        pass
+        self._batch.close()
 
     def _told(self, call: Any) -> Any:
         try:

@@ -21,15 +21,16 @@ Observation, 9 numbers (float32), in the frame whose x-axis is the learner's las
 == ================= ===== ====================================================
 
 Action, 1 number from -1 to 1 (values beyond are clipped): for the pursuer the rate of turn to the right, as a share of
-1 rad/s; for the evader an immediate turn to the right, as a share of half a turn.
+1 rad/s; for the evader an immediate turn to the right, as a share of half a turn. With ``turn_rate_rad_per_s`` it is, for
+both, the share of that rate.
 
 Reward of the pursuer: minus the distance divided by 10 m, once a period, and 10 for a capture. Of the
-evader: the opposite.
+evader: the opposite. In other scenarios than the duel, ``objective`` may stand in the place of the distance.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -84,17 +85,29 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         A latency profile: ``none``, ``direct``, ``vpn``, ``vpn-mixed``, ``constant:200ms``, …
     period_ms : float
         Between decisions for one vehicle, ms.
-    plant : str
-        What flies: ``reduced``, ``drag``, ``quadrotor``, or a model file.
+    plant : str, optional
+        What flies: ``reduced``, ``drag``, ``quadrotor``, or a model file; by default ``reduced``, and ``drag`` with another
+        scenario than the duel.
     altitude_m, episode_s : float
         In m and s.
     capture_radius_m : float
         A distance of at most this ends an episode; 0: none does.
     start_within_m : (float, float)
         How far from the pursuer the evader begins, least and most, in any direction, with any headings; (0, 0): as the
-        paper's duel begins.
+        paper's duel begins. In another scenario: how far from where it begins each vehicle does.
     moves_in_flight : int
         Commands to a vehicle that may be unanswered.
+    scenario : str
+        Whose pursuer or evader learns: the paper's ``duel``, or for example ``surround``. In environment i the learner is
+        number i of its side, counted round; all others fly their own policies.
+    settings : mapping, optional
+        Of the scenario, for example ``{"vehicles": 4}``.
+    objective : str
+        In another scenario than the duel: what is rewarded in the place of the distance to the nearest opponent, a sum of
+        means of its measures, for example ``off-ring``; a pursuer wants little of it and an evader much, unless
+        ``minimise`` or ``maximise`` stands before it.
+    turn_rate_rad_per_s : float, optional
+        The most that the learner turns. By default a pursuer 1 rad/s; an evader's actions are turns at once.
     autoreset_mode : AutoresetMode or str
         As Gymnasium defines them.
     copy : bool
@@ -121,12 +134,16 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         loop: str = "stream",
         link: str = "vpn",
         period_ms: float = 100.0,
-        plant: str = "reduced",
+        plant: str = "",
         altitude_m: float = 20.0,
         episode_s: float = 60.0,
         capture_radius_m: float = 0.0,
         start_within_m: tuple[float, float] = (0.0, 0.0),
         moves_in_flight: int = 2,
+        scenario: str = "duel",
+        settings: Mapping[str, Any] | None = None,
+        objective: str = "",
+        turn_rate_rad_per_s: float | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = True,
         render_mode: str | None = None,
@@ -147,7 +164,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         self.single_action_space = action_space()
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        settings = {
+        texts = {
             "learners": learner,
             "opponent": opponent,
             "loop": loop,
@@ -160,8 +177,13 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "start_most_m": start_within_m[1],
             "start_least_m": start_within_m[0],
             "moves_in_flight": moves_in_flight,
+            "scenario": scenario,
+            "objective": objective,
         }
-        self._block, self._backend = open_batch(settings, 1, num_envs, self.autoreset_mode, backend)
+        texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
+        if turn_rate_rad_per_s is not None:
+            texts["turn_rate_rad_per_s" if learner == "pursuer" else "evader_rate_rad_per_s"] = turn_rate_rad_per_s
+        self._block, self._backend = open_batch(texts, 1, num_envs, self.autoreset_mode, backend)
         self._observations = self._block.observations[0].T
         self._finals = self._block.finals[0].T
         self._actions = self._block.actions[0]

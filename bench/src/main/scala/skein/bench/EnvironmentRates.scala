@@ -1,10 +1,12 @@
 package skein.bench
 
+import java.nio.file.{Files, Path}
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.Scenarios
 
 /** How fast environments fly where nobody looks at them, beside the engine's own flights: what
   * `bench/python/environments.py` is held against. The duel over `vpn`, under `stream`.
@@ -16,12 +18,40 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
   val (steps, distance) = flights(4096)
   println(f"flights of a search n=4096: ${steps / 1e6}%.1f M steps/s, first comes to $distance%.3f m")
 
+/** What so many environment steps take, of 4,096 environments whose actions are always 0, under same-step autoreset: time
+  * by the clock and by the processors, and the most memory that the process had. Run:
+  * `./sbtw 'bench/runMain skein.bench.EnvironmentSteps 200000000'`; from Python it is `bench/python/environments.py`'s.
+  */
+@main def EnvironmentSteps(steps: Long): Unit =
+  val count = 4096
+  val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count)).order(ByteOrder.nativeOrder)
+  val batch = EnvironmentBatch
+    .of(EnvironmentSettings(), count, Autoreset.SameStep, block)(using Scenarios.ours)
+    .fold(sys.error(_), identity)
+  batch.reset(Array.tabulate(count)(_.toLong))
+  val from                = System.nanoTime()
+  var (ends, distance)    = (0L, 0.0)
+  for _ <- 0L until steps / count do
+    batch.step()
+    if block.get(4 * (2 + 2 * 9 + 2) * count + count) != 0 then
+      ends += 1
+      distance += block.getFloat(4 * (2 + 2 * 9) * count)
+  val seconds   = (System.nanoTime() - from) * 1e-9
+  val processor = ProcessHandle.current.info.totalCpuDuration.get.toMillis * 1e-3
+  val most      = Files.readString(Path.of("/proc/self/status")).linesIterator.find(_.startsWith("VmHWM")).getOrElse("")
+  println(
+    f"${steps / count * count}%,d steps in $seconds%.1f s, $processor%.1f s of processor time with start and compilation; " +
+      f"most memory ${most.split("\\s+")(1).toLong / 1024} MB; the first environment ended $ends times, at ${distance / ends.max(1)}%.3f m"
+  )
+
 private val periods = 600
 
 private def environments(count: Int): (Double, Float) =
   val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count)).order(ByteOrder.nativeOrder)
   val batch =
-    EnvironmentBatch.of(EnvironmentSettings(), count, Autoreset.NextStep, block).fold(sys.error(_), identity)
+    EnvironmentBatch
+      .of(EnvironmentSettings(), count, Autoreset.NextStep, block)(using Scenarios.ours)
+      .fold(sys.error(_), identity)
   batch.reset(Array.tabulate(count)(_.toLong))
   val rate = bestRate(() => (0 until 200).foreach(_ => batch.step()))
   (rate * 200 * count, block.getFloat(4 * (2 + 2 * 9) * count))

@@ -3,8 +3,8 @@ package skein.budget
 import skein.optimise.Objective
 import skein.policy.Role
 import skein.scenario.Scenarios
-import skein.search.{Conditions, TeamQuestion}
-import skein.settings.PolicyFile
+import skein.search.Conditions
+import skein.settings.{PolicyFile, ScenarioSettings}
 import upickle.default.ReadWriter
 
 /** What a budget is asked of, in the words of the user: enough for another process to fly the same. */
@@ -56,7 +56,7 @@ object BudgetQuestion:
     def swept(threads: Int)(using scenarios: Scenarios): Either[String, BudgetSubject] =
       for
         kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
-        stated <- TeamQuestion.read(kind, set).left.map("--set: " + _)
+        stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
         asked  <- ScenarioQuestion.of(stated, objective, conditions, seed, threads)
         swept  <- asked.swept(plantIsTold)
       yield swept

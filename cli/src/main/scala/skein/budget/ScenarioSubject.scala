@@ -5,9 +5,9 @@ import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
-import skein.optimise.{RunningStats, TeamEvaluator, WeightedSum}
+import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective, WeightedSum}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
-import skein.search.{Conditions, TeamQuestion, UntilWrong}
+import skein.search.{Conditions, UntilWrong}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -22,7 +22,7 @@ final case class ScenarioQuestion(
     threads: Int
 ):
   /** As users write it. */
-  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
+  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamObjective.keyOf(measure))
 
   /** Of the sum, where all terms agree. */
   def unit: String = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
@@ -71,7 +71,7 @@ object ScenarioQuestion:
       seed: Long,
       threads: Int
   ): Either[String, ScenarioQuestion] =
-    val measures = scenario.measures.map(measure => TeamQuestion.keyOf(measure) -> measure)
+    val measures = scenario.measures.map(measure => TeamObjective.keyOf(measure) -> measure)
     val known    = measures.map(_._1).mkString(", ")
     for
       first <-
@@ -89,7 +89,7 @@ object ScenarioQuestion:
 final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
     extends ScenarioSubject(question, flown.vehicle.description):
   private val candidate =
-    TeamCandidate(plane, TeamQuestion.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
+    TeamCandidate(plane, TeamObjective.judged(question.terms.map(_._2), durationS, periodMs * 1e-3))
 
   private def fly(timing: LoopTiming, link: DelayTable, episodes: Int, isCancelled: () => Boolean) =
     TeamEvaluator(batch(timing), _ => candidate, link, question.terms.map(_._1), question.seed)
@@ -184,7 +184,7 @@ object FlownSubject:
           Track.ofPositions(agent.name, agent.role.name, places.result())
         ))
         .toRight("its vehicles were not all seen")
-    val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamQuestion.keyOf)
+    val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     FlownSubject(
       question,
       flown.vehicle.description,

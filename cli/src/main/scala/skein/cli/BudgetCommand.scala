@@ -6,8 +6,7 @@ import skein.budget.*
 import skein.optimise.WeightedSum
 import skein.record.LoopKind
 import skein.scenario.Scenarios
-import skein.search.TeamQuestion
-import skein.settings.PolicyFile
+import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.significant
 import skein.units.Span
@@ -154,7 +153,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       _          <- ForwardOptions.ofDuels("--policy" -> options.policy)(forward)
       kind       <- scenarios.kind(name).left.map("--scenario: " + _)
       set        <- Arguments.settings(options.set).map(_.toMap)
-      scenario   <- TeamQuestion.read(kind, set).left.map("--set: " + _)
+      scenario   <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
       conditions <- forward.conditions(period, scenario.duration)
     yield BudgetQuestion.OfScenario(
       name,

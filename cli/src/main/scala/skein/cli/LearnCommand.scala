@@ -5,11 +5,12 @@ import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
 import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, RunningStats}
-import skein.policy.NeuralShape
+import skein.measure.FlightSummary
+import skein.policy.{NeuralShape, Role}
 import skein.report.Section
-import skein.scenario.Scenarios
-import skein.search.{ClusterEvaluator, Effort, Judge}
-import skein.settings.PolicyFile
+import skein.scenario.{PaperDuel, Scenarios}
+import skein.search.{ClusterEvaluator, Conditions, Effort, Judge}
+import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.training.*
 import skein.units.Decimals.significant
 import skein.units.Span
@@ -19,8 +20,12 @@ import skein.view.{Shows, TaskShow}
 final case class LearnOptions(
     @arg(doc = "sac, ddpg or ppo (default: sac)")
     algorithm: Option[String],
-    @arg(doc = "whose task is learned: duel, the only one so far")
+    @arg(doc =
+      "in which is learned: the duel, or any with pursuers and evaders, one of whom learns what all of the side fly (default: duel)"
+    )
     scenario: Option[String],
+    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    set: Seq[String],
     @arg(doc = "pursuer or evader: who learns (default: pursuer)")
     side: Option[String],
     @arg(doc = "the latency profile: none, direct, vpn, constant:200ms, … (default: vpn)")
@@ -36,13 +41,15 @@ final case class LearnOptions(
     environments: Option[Int],
     @arg(doc = "how long an episode lasts in which it learns (default: 20s)")
     lesson: Option[String],
-    @arg(doc = "how far from each other episodes of learning begin, in metres (default: 3..30)")
+    @arg(doc =
+      "how far from each other episodes of learning begin, in metres (default: 3..30); in other scenarios than the duel, how far from where the scenario puts it each vehicle begins (default: 0..5)"
+    )
     start: Option[String],
-    @arg(doc = "the most that a pursuer turns, rad/s (default: 3, as far as families of search go)")
+    @arg(doc = "the most that it turns, rad/s (default: 3, as far as families of search go)")
     turnRate: Option[Double],
     @arg(doc = "of Adam (default: 0.001; ppo: 0.0003)")
     learningRate: Option[Double],
-    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo: 0.99)")
+    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo and evaders: 0.99)")
     discount: Option[Double],
     @arg(doc = "transitions of an update (default: 256)")
     batch: Option[Int],
@@ -138,7 +145,7 @@ final class LearnCommand(program: String)(using Scenarios)
   ): Either[String, Unit] =
     import setup.question
     shown.say(
-      s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} against ${setup.opponent.label}
+      s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} ${against(setup)}
          |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
@@ -165,8 +172,14 @@ final class LearnCommand(program: String)(using Scenarios)
           conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
             .map(_ => if !isDone then shown.say(goOn))
 
+  private def against(setup: LearnSetup) = setup.game.opponent match
+    case Some(opponent) => s"against ${opponent.label}"
+    case None           =>
+      val sharing = setup.game.scenario.agents.count(_.role == setup.role)
+      s"of ${setup.game.scenario.title}, which ${if sharing == 1 then "one flies" else s"$sharing fly"}; ${setup.game.text}"
+
   private def progress(setup: LearnSetup, state: LearnState): String =
-    val unit = setup.objective.unit
+    val unit = setup.game.unit
     state.best.fold("not judged yet"): best =>
       s"now ${state.scores.last.mean.significant(4)} $unit, best ${best.mean.significant(4)} $unit"
 
@@ -192,7 +205,7 @@ final class LearnCommand(program: String)(using Scenarios)
       )
     yield shown.say(s"written: ${(file ++ pictures).mkString(", ")}")
 
-  /** Flies the policy in virtual time, against the paper's policy of the other side. */
+  /** Flies the policy in virtual time, against the scenario's own of the other side. */
   private def virtual(
       setup: LearnSetup,
       measure: Measuring,
@@ -200,7 +213,7 @@ final class LearnCommand(program: String)(using Scenarios)
       flights: Int,
       shown: Shown
   ): Either[String, Option[RunningStats]] =
-    if !setup.isAgainstPaper then
+    if !setup.isFlownAsTaught then
       shown.say(
         "no flights: they are flown against the paper's policy, and this one was not taught against it"
       )
@@ -217,8 +230,8 @@ final class LearnCommand(program: String)(using Scenarios)
   )(body: Measuring => Either[String, Unit]): Either[String, Unit] = options match
     case None =>
       body(Measuring(
-        LearnWork.judges(setup, threads),
-        LearnCommand.flown(setup.question, _, _),
+        setup.judges(threads),
+        LearnCommand.flown(setup, _, _),
         isElsewhere = false
       ))
     case Some(asked) =>
@@ -245,27 +258,30 @@ object LearnCommand:
     * @return
     *   or what was expected, what came, and in which option
     */
-  def question(options: LearnOptions)(using Scenarios): Either[String, LearnQuestion] =
+  def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
     import options.forward
     val algorithm = options.algorithm.getOrElse("sac")
     val onPolicy  = algorithm == "ppo"
+    val scenario  = options.scenario.orElse(scenarios.firstWithoutDuel).getOrElse(PaperDuel.Name)
     for
-      _ <- Either.cond(
-        options.scenario.forall(_ == "duel"),
-        (),
-        s"--scenario: expected duel, the only task to be learned so far, came '${options.scenario.getOrElse("")}'"
-      )
+      named <- Arguments.settings(options.set)
+      set    = named.toMap
+      isDuel = scenario == PaperDuel.Name && set.isEmpty
       role       <- PolicyFile.role(options.side.getOrElse("pursuer")).left.map("--side: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       lesson     <- Span.parse(options.lesson.getOrElse("20s")).left.map("--lesson: " + _)
-      conditions <- forward.conditions(period)
+      plain      <- forward.conditions(period)
+      conditions <- if isDuel then Right(plain) else ofTeam(scenario, set, forward, plain)
       opponent   <- forward.opponentOf(role)
       shape      <- NeuralShape.parse(options.network.getOrElse("32x32")).left.map("--network: " + _)
-      start      <- range(options.start.getOrElse("3..30"))
+      start      <- range(options.start.getOrElse(if isDuel then "3..30" else "0..5"))
+      objective  <- forward.objective.orElse(Option.when(isDuel)("last10s")).toRight(
+        "--objective: expected with a scenario: a sum of its measures, for example off-ring"
+      )
     yield LearnQuestion(
       algorithm,
       PolicyFile.name(role),
-      forward.objective.getOrElse("last10s"),
+      objective,
       conditions,
       options.link.getOrElse("vpn"),
       opponent.text,
@@ -277,14 +293,33 @@ object LearnCommand:
       options.turnRate.getOrElse(3.0),
       LearnerSettings(
         hidden = shape.hidden,
-        discount = options.discount.getOrElse(if onPolicy then 0.99 else 0.98),
+        discount = options.discount.getOrElse(if onPolicy || role == Role.Evader then 0.99 else 0.98),
         rate = options.learningRate.getOrElse(if onPolicy then 3e-4 else 1e-3),
         batch = options.batch.getOrElse(256),
         updatesPerStep = options.updatesPerStep.getOrElse(0.125)
       ),
       options.episodes.getOrElse(20),
       options.fresh.getOrElse(1000),
-      forward.seed.getOrElse(1)
+      forward.seed.getOrElse(1),
+      scenario,
+      set
+    )
+
+  /** Conditions in which a scenario's team flies: as high as it does. */
+  private def ofTeam(
+      scenario: String,
+      set: Map[String, String],
+      forward: ForwardOptions,
+      conditions: Conditions
+  )(using scenarios: Scenarios): Either[String, Conditions] =
+    for
+      _      <- ForwardOptions.ofDuels()(forward)
+      kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
+    // Teams fly low, where the model of three parameters does not hold.
+    yield conditions.copy(
+      plant = forward.plant.getOrElse("drag"),
+      altitudeM = -stated.agents.head.startPositionNed.z
     )
 
   private def range(text: String): Either[String, (Double, Double)] =
@@ -294,7 +329,7 @@ object LearnCommand:
       case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
 
   /** @param distances
-    *   means of the last 10 s, m, of so many flights in virtual time with a policy, against the paper's
+    *   what so many flights in virtual time with a policy come to: [[LearnGame.came]]
     * @param isElsewhere
     *   whether workers do it
     */
@@ -304,13 +339,18 @@ object LearnCommand:
       isElsewhere: Boolean
   )
 
-  /** Means of the last 10 s, m, of flights in virtual time with a policy against the paper's, flown by this process. */
-  private[skein] def flown(question: LearnQuestion, policy: PolicyFile, count: Int)(using
+  /** What flights in virtual time with a policy come to, flown by this process. */
+  private[skein] def flown(setup: LearnSetup, policy: PolicyFile, count: Int)(using
       Scenarios
-  ): Either[String, Vector[Double]] =
+  ): Either[String, Vector[Double]] = summaries(setup, policy, count).map(_.flatMap(setup.game.came))
+
+  /** Such flights. */
+  private[skein] def summaries(setup: LearnSetup, policy: PolicyFile, count: Int)(using
+      Scenarios
+  ): Either[String, Vector[FlightSummary]] =
     for
-      flights <- LearnWork.flights(question, policy, count)
+      flights <- LearnWork.flights(setup, policy, count)
       (settings, plans) = flights
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
       _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
-    yield landed.flatMap(LearnWork.distanceOf)
+    yield landed

@@ -5,7 +5,6 @@ import mainargs.{ParserForClass, arg}
 import skein.learn.LearnerInFlight
 import skein.loop.LoopKind
 import skein.loop.learning.Learning
-import skein.policy.LearnedPolicy
 import skein.scenario.Scenarios
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.training.LearnFile
@@ -79,7 +78,7 @@ final case class LearnInFlight(
           setup.algorithm,
           file.question.learner,
           setup.role,
-          LearnedPolicy.mostTurn(setup.role, file.question.turnRateRadPerS),
+          setup.bounds,
           updates,
           every,
           seed

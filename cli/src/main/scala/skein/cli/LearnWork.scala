@@ -6,7 +6,7 @@ import scala.collection.immutable.ArraySeq
 import skein.cluster.{Solver, Solvers}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
-import skein.scenario.{PaperDuel, Scenarios}
+import skein.scenario.Scenarios
 import skein.search.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
@@ -18,7 +18,7 @@ private[cli] object LearnWork:
   import SearchFile.given
 
   /** @param probe
-    *   what the paper's policy came to at the coordinator
+    *   what the baseline came to at the coordinator
     */
   private final case class ProbedQuestion(question: LearnQuestion, probe: Vector[RunningStats])
       derives ReadWriter
@@ -26,14 +26,7 @@ private[cli] object LearnWork:
   private val Probes = 0 until 4
 
   private def probe(setup: LearnSetup) =
-    judges(setup, threads = 1)(Judge.Baseline).tallies(Vector(setup.paper.parameters), Probes)
-
-  /** In this process: what was learned, and the paper's policy as the baseline. */
-  def judges(setup: LearnSetup, threads: Int): Judge => ValueEvaluator =
-    val batch    = setup.batch(threads)
-    val baseline = setup.evaluator(batch, setup.paper.family)
-    val learned  = setup.evaluator(batch)
-    judge => if judge == Judge.Baseline then baseline else learned
+    setup.judges(threads = 1)(Judge.Baseline).tallies(Vector(setup.baseline.candidate), Probes)
 
   def question(setup: LearnSetup): ArraySeq[Byte] =
     ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(setup.question, probe(setup))).getBytes(UTF_8))
@@ -48,11 +41,11 @@ private[cli] object LearnWork:
       _ <- Either.cond(
         came == posed.probe,
         (),
-        s"the paper's policy comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
+        s"the baseline comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link or --plant names another content here?"
       )
     yield () =>
-      val by = judges(setup, threads = 1)
+      val by = setup.judges(threads = 1)
       work => answer(setup, by, work)
 
   private def answer(setup: LearnSetup, by: Judge => ValueEvaluator, work: ArraySeq[Byte])(using
@@ -70,35 +63,36 @@ private[cli] object LearnWork:
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(_.prepended(Episodes)), onAnswer)
 
-  /** Flights with a policy against the paper's, as the commands fly it.
+  /** Flights of the scenario with a policy in the place of its own, as the commands fly it.
     *
     * @return
     *   settings, and a plan for each flight; or why there are none
     */
   def flights(
-      question: LearnQuestion,
+      setup: LearnSetup,
       policy: PolicyFile,
       count: Int
   ): Either[String, (FlySettings, Vector[FlightPlan])] =
-    import question.conditions
+    import setup.question as asked
+    import asked.conditions
     for
       loop <- LoopKind.parse(conditions.loop)
-      link <- Arguments.latency(question.link)
+      link <- Arguments.latency(asked.link)
     yield
       val settings = FlySettings(
         List(loop),
         List(link),
         Span.ofSeconds(conditions.durationS),
         Span.ofMillis(conditions.periodMs),
-        question.seed,
-        PaperDuel(altitudeM = conditions.altitudeM)
+        asked.seed,
+        setup.game.scenario
       )
       val plans =
         for plan <- settings.plansWith(ChosenPolicy(policy.name, policy)); number <- 0 until count
         yield plan.copy(seed = settings.seed + number)
       (settings, plans)
 
-  /** The same flights' mean distances of the last 10 s, flown elsewhere; none where there is none. */
+  /** What the same flights came to, flown elsewhere; none where a flight has no such value. */
   def distances(run: BlockExecutor, policy: PolicyFile, count: Int)(
       onWait: => Unit
   ): Either[String, Vector[Option[Double]]] =
@@ -120,18 +114,15 @@ private[cli] object LearnWork:
       val number  = in.getLong.toInt
       val weights = Vector.fill(in.remaining / 8)(in.getDouble)
       for (settings, plans) <-
-          flights(setup.question, PolicyFile(setup.role, setup.family, weights), number + 1)
+          flights(setup, PolicyFile(setup.role, setup.family, weights), number + 1)
       yield SpreadFlights.one(settings, plans(number)) match
         case Left(missing) =>
           ArraySeq.from(missing.message.take(MostReason).getBytes(UTF_8)).prepended(NotFlown)
         case Right(flown) =>
           val out = ByteBuffer.allocate(9).put(Flown)
-          distanceOf(flown).foreach(out.putDouble)
+          setup.game.came(flown).foreach(out.putDouble)
           ArraySeq.unsafeWrapArray(out.array.take(out.position()))
     catch case _: BufferUnderflowException => Left(s"a flight's block is cut off after ${work.length} bytes")
-
-  def distanceOf(flown: skein.measure.FlightSummary): Option[Double] =
-    flown.distance.flatMap(_.lastTenSeconds).map(_.mean)
 
   private def distance(answer: ArraySeq[Byte]): Either[String, Option[Double]] =
     answer.headOption match

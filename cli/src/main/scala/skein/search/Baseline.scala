@@ -1,5 +1,7 @@
 package skein.search
 
+import skein.settings.PolicyFile
+
 /** What a search's result is held against, on the same episodes.
   *
   * @param word
@@ -13,3 +15,13 @@ package skein.search
   */
 final case class Baseline(word: String, name: String, parameters: Vector[(String, Double)], label: String):
   def candidate: Vector[Double] = parameters.map(_._2)
+
+object Baseline:
+  /** The paper's policy of a role. */
+  def of(paper: PolicyFile): Baseline =
+    Baseline(
+      "paper",
+      paper.family.name,
+      paper.family.space.axes.map(_.name).zip(paper.parameters),
+      paper.label
+    )

@@ -1,20 +1,19 @@
 package skein.search
 
 import skein.forward.{Delays, Engagement}
-import skein.lanes.{Judged, TeamBatch, TeamCandidate}
+import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.optimise.{
-  Direction,
   Evaluator,
   RunningStats,
   Search,
   SearchMethod,
   TeamEvaluator,
-  ValueEvaluator,
-  WeightedSum
+  TeamObjective,
+  ValueEvaluator
 }
 import skein.policy.{Axis, SearchSpace}
-import skein.scenario.{Measure, Nearest, Scenario, ScenarioKind, Scenarios, Window}
-import skein.settings.ConfigKeys
+import skein.scenario.{Nearest, Scenario, ScenarioKind, Scenarios}
+import skein.settings.{ConfigKeys, ScenarioSettings}
 import skein.units.Decimals.significant
 import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
@@ -74,7 +73,7 @@ final case class TeamQuestion(
     for
       kind <- scenarios.kind(scenario).left.map("--scenario: " + _)
       _    <- Either.cond(vary.nonEmpty, (), "--vary: expected a setting to search, for example ring-m=4..12")
-      plain <- read(kind, set).left.map("--set: " + _)
+      plain <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
       axes  <- UntilWrong.each(vary)(axis(kind, plain, _))
       _     <- Either.cond(
         axes.map(_.name).distinct.size == axes.size,
@@ -86,7 +85,7 @@ final case class TeamQuestion(
       corners <-
         UntilWrong.each(
           space.grid(2)
-        )(corner => read(kind, settings(set, space, corner))).left.map("--vary: " + _)
+        )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _ <- Either.cond(
         corners.forall(corner => altitudesM(corner) == altitudesM(plain)),
         (),
@@ -102,19 +101,15 @@ final case class TeamQuestion(
         (),
         s"--scenario: expected one of multirotors, came ${plain.name}, which has cars: fly and budget fly it"
       )
-      flown <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
-      sum   <- WeightedSum
-        .parse(objective, measures(plain).keys.mkString(", "), hyphened = true)(measureOf(plain, _, _))
-        .left
-        .map("--objective: " + _)
+      flown  <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
+      by     <- TeamObjective.parse(objective, plain).left.map("--objective: " + _)
       delays <- Conditions.delays(link).left.map("--link: " + _)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield TeamSetup(
       this,
       kind,
       space,
-      sum.terms,
-      sum.stated.getOrElse(Direction.Minimise),
+      by,
       flown,
       delays,
       method
@@ -125,43 +120,9 @@ object TeamQuestion:
 
   private val MostFresh = 1_000_000
 
-  /** A scenario's measures that a search can judge by, by their keys: those of a quantity, in their order. */
-  def measures(scenario: Scenario): scala.collection.immutable.ListMap[String, Measure] =
-    scenario.measures.filter(_.reduced.nonEmpty).map(measure => keyOf(measure) -> measure).to(
-      scala.collection.immutable.ListMap
-    )
-
-  /** `off ring` as `off-ring`. */
-  def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
-
-  /** What measures of a quantity judge an episode by. */
-  def judged(measures: Vector[Measure], durationS: Double, periodS: Double): Vector[Judged] =
-    measures.map(_.reduced.get).map(by =>
-      Judged(
-        by.quantity,
-        by.reduction,
-        by.over match
-          case Window.Whole          => 0
-          case Window.After(seconds) => seconds
-          case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
-      )
-    )
-
   /** Settings by key, with those of a candidate. */
   def settings(set: Map[String, String], space: SearchSpace, candidate: Vector[Double]): Map[String, String] =
     set ++ space.axes.zip(candidate).map((axis, value) => axis.name -> value.toString)
-
-  /** A scenario of these settings, by their keys.
-    *
-    * @return
-    *   or every mistake
-    */
-  def read(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
-    val names = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
-    kind
-      .read(settings.map((key, value) => names.getOrElse(key, key) -> value))
-      .left
-      .map(_.map(ConfigKeys.ofMistake).mkString("; "))
 
   private def axis(kind: ScenarioKind[?], plain: Scenario, varied: Varied): Either[String, Axis] =
     val defaults = plain.productElementNames.map(ConfigKeys.ofField).zip(plain.productIterator).toMap
@@ -178,33 +139,21 @@ object TeamQuestion:
           s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-  private def measureOf(plain: Scenario, name: String, arguments: Option[String]): Either[String, Measure] =
-    val known = measures(plain)
-    (known.get(name), arguments) match
-      case (Some(measure), None) => Right(measure)
-      case _                     =>
-        val others = plain.measures.filter(_.reduced.isEmpty).map(keyOf)
-        val note   = if others.contains(name) then s": ${name} is told of recorded flights alone" else ""
-        Left(
-          s"expected one of ${known.keys.mkString(", ")}, came '$name${arguments.fold("")(a => s"($a)")}'$note"
-        )
-
 /** A search over a scenario's settings, ready to run.
   *
-  * @param terms
-  *   weights and measures of the objective
+  * @param objective
+  *   of the scenario as it is unless told otherwise
   */
 final case class TeamSetup(
     question: TeamQuestion,
     kind: ScenarioKind[?],
     space: SearchSpace,
-    terms: Vector[(Double, Measure)],
-    direction: Direction,
+    objective: TeamObjective,
     conditions: Conditions.Resolved,
     delays: Delays,
     by: SearchMethod
 ) extends ReadySearch:
-  val search: Search = Search(space, by, direction, question.seed)
+  val search: Search = Search(space, by, objective.direction, question.seed)
 
   private val durationS = conditions.duel.durationS
   private val periodS   = conditions.timing.periodS
@@ -232,7 +181,7 @@ final case class TeamSetup(
   private def batch(threads: Int) = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
 
   def judges(threads: Int): Judge => ValueEvaluator =
-    val same = TeamEvaluator(batch(threads), candidate, delays, terms.map(_._1), question.seed)
+    val same = TeamEvaluator(batch(threads), candidate, delays, objective.terms.map(_._1), question.seed)
     _ => same
 
   def measured(
@@ -245,8 +194,8 @@ final case class TeamSetup(
 
   /** The scenario as a candidate has it; its settings were seen to be right. */
   def scenario(candidate: Vector[Double]): Scenario =
-    TeamQuestion
-      .read(kind, TeamQuestion.settings(question.set, space, candidate))
+    ScenarioSettings
+      .ofKeys(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
   def engine(threads: Int): String = batch(threads).engine(candidate(space.defaults))
@@ -257,15 +206,15 @@ final case class TeamSetup(
 
   private def candidate(values: Vector[Double]): TeamCandidate =
     val own      = scenario(values)
-    val measures = TeamQuestion.measures(own).values.map(measure => measure.name -> measure).toMap
+    val measures = TeamObjective.measures(own).values.map(measure => measure.name -> measure).toMap
     TeamCandidate(
       Engagement.of(own.fleet, durationS),
-      TeamQuestion.judged(terms.map((_, measure) => measures(measure.name)), durationS, periodS)
+      TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodS)
     )
 
-  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamQuestion.keyOf(measure))
-  def text: String    = s"${direction.text} $formula"
-  def unit: String    = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
+  def formula: String = objective.formula
+  def text: String    = objective.text
+  def unit: String    = objective.unit
 
   /** As a configuration that `./skein fly --config` flies. */
   def file(found: Found): (String, String) =

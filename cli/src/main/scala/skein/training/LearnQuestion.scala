@@ -1,14 +1,14 @@
 package skein.training
 
 import skein.environment.EnvironmentSettings
-import skein.forward.Delays
-import skein.lanes.DuelBatch
-import skein.learn.{Algorithm, DuelTask, LearnerSettings}
-import skein.optimise.{DuelEvaluator, Objective, ValueEvaluator, WeightedSum}
-import skein.policy.{LearnedPolicy, PolicyFamily, Role}
-import skein.search.Conditions
-import skein.scenario.Scenarios
-import skein.settings.PolicyFile
+import skein.forward.{Delays, Engagement}
+import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.learn.{Algorithm, LearnerSettings, SideTask}
+import skein.optimise.{DuelEvaluator, Objective, TeamEvaluator, TeamObjective, ValueEvaluator, WeightedSum}
+import skein.policy.{Fleet, LearnedPolicy, PolicyFamily, Role}
+import skein.scenario.{PaperDuel, Scenarios}
+import skein.search.{Baseline, Conditions, Judge}
+import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
 import upickle.default.ReadWriter
 
@@ -17,7 +17,7 @@ import upickle.default.ReadWriter
   * @param conditions
   *   under which is learned and judged
   * @param opponent
-  *   a policy as [[PolicyFile.text]] writes it, of the other role
+  *   a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
   * @param objective
   *   by which the policy is judged now and then; what is learned is a small, or a great, distance
   * @param steps
@@ -29,7 +29,7 @@ import upickle.default.ReadWriter
   * @param startLeastM
   *   it begins with the evader so far away
   * @param turnRateRadPerS
-  *   the most that a pursuer turns
+  *   the most that it turns
   * @param episodes
   *   on which the policy is judged now and then
   * @param fresh
@@ -51,36 +51,51 @@ final case class LearnQuestion(
     learner: LearnerSettings,
     episodes: Int,
     fresh: Int,
-    seed: Long
+    seed: Long,
+    scenario: String = PaperDuel.Name,
+    set: Map[String, String] = Map.empty
 ) derives ReadWriter:
   import LearnQuestion.*
+
+  /** Whether it is the paper's. */
+  def isDuel: Boolean = scenario == PaperDuel.Name && set.isEmpty
 
   /** @return or what was expected, what came, and in which option */
   def setup(using Scenarios): Either[String, LearnSetup] =
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
       role      <- PolicyFile.role(role).left.map("--side: " + _)
-      objective <- Objective.parse(objective, role).left.map("--objective: " + _)
+      game      <- if isDuel then duel(role) else team(role)
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
-      flown    <- conditions.resolved
-      delays   <- Conditions.delays(link).left.map("--link: " + _)
-      opponent <- PolicyFile
-        .parse(Role.opponentOf(role), opponent)
-        .left
-        .map("--opponent: " + _)
-      _ <- within("--steps", steps.toDouble, 1, MostSteps)
-      _ <- within("--environments", environments, 1, MostEnvironments)
-      _ <- within("--lesson", lessonS, 1, 3600, " s")
-      _ <- within("--turn-rate", turnRateRadPerS, 1e-3, 10, " rad/s")
-      _ <- within("--episodes", episodes, 2, MostEpisodes)
-      _ <- within("--fresh", fresh, 2, MostEpisodes)
-      _ <- learner.mistake.map(asOption).toLeft(())
-      _ <- Either.cond(
+      flown  <- conditions.resolved
+      delays <- Conditions.delays(link).left.map("--link: " + _)
+      _      <- within("--steps", steps.toDouble, 1, MostSteps)
+      _      <- within("--environments", environments, 1, MostEnvironments)
+      _      <- within("--lesson", lessonS, 1, 3600, " s")
+      _      <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
+      _      <- within("--episodes", episodes, 2, MostEpisodes)
+      _      <- within("--fresh", fresh, 2, MostEpisodes)
+      _      <- learner.mistake.map(asOption).toLeft(())
+      _      <- Either.cond(
         algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments,
         (),
         s"--batch: expected at most the ${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
       )
-    yield LearnSetup(this, algorithm, role, objective, flown, delays, opponent)
+    yield LearnSetup(this, algorithm, role, game, flown, delays)
+
+  private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
+    for
+      by    <- Objective.parse(objective, role).left.map("--objective: " + _)
+      other <- PolicyFile.parse(Role.opponentOf(role), opponent).left.map("--opponent: " + _)
+    yield LearnGame.OfDuel(by, other, PaperDuel(altitudeM = conditions.altitudeM))
+
+  private def team(role: Role)(using scenarios: Scenarios): Either[String, LearnGame] =
+    for
+      kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
+      by     <-
+        TeamObjective.parse(objective, stated, TeamObjective.naturally(role)).left.map("--objective: " + _)
+    yield LearnGame.OfTeam(by, stated)
 
 object LearnQuestion:
   given ReadWriter[LearnerSettings] = ReadWriter.derived
@@ -112,15 +127,17 @@ final case class LearnSetup(
     question: LearnQuestion,
     algorithm: Algorithm,
     role: Role,
-    objective: Objective,
+    game: LearnGame,
     conditions: Conditions.Resolved,
-    delays: Delays,
-    opponent: PolicyFile
+    delays: Delays
 ):
   val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden))
 
-  /** The paper's policy of the role, which every result is held against. */
-  val paper: PolicyFile = PolicyFile.paperOf(role)
+  /** What every result is held against: the paper's policy of the role, or what the scenario's own come to. */
+  val baseline: Baseline = game match
+    case _: LearnGame.OfDuel    => Baseline.of(PolicyFile.paperOf(role))
+    case team: LearnGame.OfTeam =>
+      Baseline("own", s"${team.scenario.name}'s own", Vector.empty, "its own policies")
 
   /** Steps of one environment between two times at which everything may be saved. */
   val stepsPerRound: Int = (question.lessonS * 1000 / question.conditions.periodMs).round.toInt.max(1)
@@ -131,22 +148,40 @@ final case class LearnSetup(
   /** The policy is judged after so many rounds each. */
   val roundsPerScore: Int = (rounds / LearnSetup.Scores).max(1)
 
-  def batch(threads: Int): DuelBatch = conditions.batch(threads)
+  /** Who judges policies of [[family]], and the baseline. */
+  def judges(threads: Int): Judge => ValueEvaluator = game match
+    case duel: LearnGame.OfDuel =>
+      val batch                       = conditions.batch(threads)
+      def evaluator(of: PolicyFamily) = DuelEvaluator(
+        batch,
+        conditions.duel.durationS,
+        of,
+        role,
+        duel.against.policy,
+        delays,
+        duel.objective,
+        question.seed,
+        shareEpisodes = false
+      )
+      val (paper, learned) = (evaluator(PolicyFamily.paperOf(role)), evaluator(family))
+      judge => if judge == Judge.Baseline then paper else learned
+    case team: LearnGame.OfTeam =>
+      val batch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
+      def evaluator(of: Vector[Double] => Fleet) =
+        TeamEvaluator(batch, candidate(team, of), delays, team.objective.terms.map(_._1), question.seed)
+      val own     = evaluator(_ => team.scenario.fleet)
+      val learned = evaluator(PolicyFile(role, family, _).flownIn(team.scenario.fleet))
+      judge => if judge == Judge.Baseline then own else learned
 
-  def evaluator(batch: DuelBatch, of: PolicyFamily = family): ValueEvaluator = DuelEvaluator(
-    batch,
-    conditions.duel.durationS,
-    of,
-    role,
-    opponent.policy,
-    delays,
-    objective,
-    question.seed,
-    shareEpisodes = false
-  )
+  private def candidate(team: LearnGame.OfTeam, fleet: Vector[Double] => Fleet)(parameters: Vector[Double]) =
+    val durationS = conditions.duel.durationS
+    TeamCandidate(
+      Engagement.of(fleet(parameters), durationS),
+      TeamObjective.judged(team.objective.measures, durationS, conditions.timing.periodS)
+    )
 
   /** @return or what was expected and came */
-  def task: Either[String, DuelTask] =
+  def task(using Scenarios): Either[String, SideTask] =
     val settings = EnvironmentSettings(
       learners = question.role,
       loop = question.conditions.loop,
@@ -156,21 +191,30 @@ final case class LearnSetup(
       altitudeM = question.conditions.altitudeM,
       episodeS = question.lessonS,
       startWithinM = (question.startLeastM, question.startMostM),
-      turnRateRadPerS = question.turnRateRadPerS
+      turnRateRadPerS = question.turnRateRadPerS,
+      evaderRateRadPerS = question.turnRateRadPerS,
+      scenario = question.scenario,
+      set = question.set,
+      objective = if question.isDuel then "" else game.text
     )
-    DuelTask.of(settings, Some(opponent), question.environments, question.seed)
+    SideTask.of(settings, game.opponent, question.environments, question.seed)
 
   def title: String =
-    s"${question.algorithm}, ${question.role}, ${question.conditions.loop} over ${question.link}"
+    val where = if question.isDuel then "" else s" of ${question.scenario}"
+    s"${question.algorithm}, ${question.role}$where, ${question.conditions.loop} over ${question.link}"
 
   /** For an axis of a picture. */
-  def measure: String = WeightedSum.withUnit(objective.formula, objective.unit)
+  def measure: String = WeightedSum.withUnit(game.formula, game.unit)
 
-  def isAgainstPaper: Boolean = opponent == PolicyFile.paperOf(opponent.role)
+  /** Whether flights of the scenario, with its own policies of all others, are what was learned in. */
+  def isFlownAsTaught: Boolean = game.opponent.forall(other => other == PolicyFile.paperOf(other.role))
 
   /** What an actor's weights make. */
   def policy(weights: Vector[Double]): PolicyFile =
-    PolicyFile(role, family, weights ++ LearnedPolicy.mostTurn(role, question.turnRateRadPerS))
+    PolicyFile(role, family, weights ++ bounds)
+
+  /** The most that it turns, as a [[LearnedPolicy]]'s last parameters. */
+  def bounds: Vector[Double] = Vector(question.turnRateRadPerS, 0.0)
 
 object LearnSetup:
   /** In all, about. */

@@ -10,9 +10,9 @@ import skein.units.Decimals.significant
 /** What was learned, measured on episodes that learning never met.
   *
   * @param paper
-  *   the paper's policy of the same side on the same episodes
+  *   the baseline on the same episodes
   * @param flights
-  *   mean distances of the last 10 s of flights in virtual time, m, where such were flown
+  *   what flights in virtual time came to, where such were flown: [[LearnGame.came]]
   */
 final case class LearnResult(
     setup: LearnSetup,
@@ -22,7 +22,7 @@ final case class LearnResult(
     paper: RunningStats,
     flights: Option[RunningStats]
 ):
-  import setup.{objective, question}
+  import setup.{baseline, game, question}
 
   /** As a table. */
   def section: Section =
@@ -35,16 +35,21 @@ final case class LearnResult(
         tally.count.toString,
         unit
       )
-    val episodes = s"fresh episodes, ${objective.formula}"
+    val episodes = s"fresh episodes, ${game.formula}"
     Section(
       s"Learned by ${question.algorithm} under ${question.conditions.loop} over ${question.link}",
       s"The best of ${state.scores.size} policies, met after ${state.best.fold(0L)(_.steps)} steps.",
       table = Some(TextTable(
         Vector("<policy", "<where", "mean", "± 95 %", "of", "<unit"),
         Vector(
-          row(setup.family.name, episodes, fresh, objective.unit),
-          row(setup.paper.family.name, episodes, paper, objective.unit)
-        ) ++ flights.map(row(setup.family.name, "flights in virtual time, last 10 s", _, "m"))
+          row(setup.family.name, episodes, fresh, game.unit),
+          row(baseline.name, episodes, paper, game.unit)
+        ) ++ flights.map(row(
+          setup.family.name,
+          s"flights in virtual time, ${game.cameTo.what}",
+          _,
+          game.cameTo.unit
+        ))
       ))
     )
 
@@ -53,7 +58,7 @@ final case class LearnResult(
       setup.title,
       setup.measure,
       Seq((question.algorithm, LearningCurve.learned, state.scores)),
-      Seq((setup.paper.family.name, LearningCurve.paper, paper.mean))
+      Seq((baseline.name, LearningCurve.paper, paper.mean))
     )
 
   def csv: String =
@@ -63,9 +68,12 @@ final case class LearnResult(
       "\n"
     )
 
+  private def scenario =
+    (question.scenario +: question.set.toVector.sorted.map((key, value) => s"$key=$value")).mkString(" ")
+
   /** As a policy file. */
   def file: String = policy.hocon(
-    SearchResult.objective(objective.text, objective.unit, fresh, setup.paper.family.name, paper) +
+    SearchResult.objective(game.text, game.unit, fresh, baseline.name, paper) +
       s"""learned {
        |  by = "./skein learn"
        |  complete = ${state.rounds == setup.rounds}
@@ -74,6 +82,7 @@ final case class LearnResult(
        |  periodMs = ${question.conditions.periodMs}
        |  link = "${question.link}"
        |  plant = "${question.conditions.plant}"
+       |  scenario = "${scenario}"
        |  opponent = "${question.opponent}"
        |  altitudeM = ${question.conditions.altitudeM}
        |  steps = ${state.rounds * setup.stepsOfRound}
@@ -97,6 +106,6 @@ object LearnResult:
       state,
       policy,
       by(Judge.Winner).tallies(Vector(policy.parameters), range).head,
-      by(Judge.Baseline).tallies(Vector(setup.paper.parameters), range).head,
+      by(Judge.Baseline).tallies(Vector(setup.baseline.candidate), range).head,
       None
     )

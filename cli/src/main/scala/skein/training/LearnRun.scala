@@ -4,8 +4,9 @@ import java.nio.file.Path
 import scala.concurrent.duration.Duration
 import scala.concurrent.{Await, ExecutionContext, Future, blocking}
 import scala.util.Try
-import skein.learn.{DuelTask, Learner, Training, Workers}
+import skein.learn.{SideTask, Learner, Training, Workers}
 import skein.optimise.{Direction, Evaluator, RunningStats}
+import skein.scenario.Scenarios
 
 /** Learns round by round, judges the policy now and then, and keeps its state on disk.
   *
@@ -35,11 +36,22 @@ final class LearnRun(
     */
   def run(from: LearnState, threads: Int, isStopped: () => Boolean)(
       onRound: LearnState => Unit
+  )(using Scenarios): Either[String, LearnState] =
+    setup.task.flatMap: task =>
+      try learn(from, threads, isStopped, onRound, task)
+      finally task.close()
+
+  private def learn(
+      from: LearnState,
+      threads: Int,
+      isStopped: () => Boolean,
+      onRound: LearnState => Unit,
+      task: SideTask
   ): Either[String, LearnState] =
     val workers = Workers(threads)
     try
       for
-        task <- setup.task
+        _ <- Right(())
         learner = setup.algorithm.learner(
           task.observations,
           task.actions,
@@ -48,7 +60,7 @@ final class LearnRun(
           question.seed,
           workers
         )
-        _ = if from.rounds == 0 then DuelTask.times.foreach(learner.actor.ignore)
+        _ = if from.rounds == 0 then SideTask.times.foreach(learner.actor.ignore)
         _     <- folder.fold(Right(()))(LearnFile.load(_, from, learner))
         state <- rounds(from, task, learner, isStopped, onRound)
       yield state
@@ -56,7 +68,7 @@ final class LearnRun(
 
   private def rounds(
       from: LearnState,
-      task: DuelTask,
+      task: SideTask,
       learner: Learner,
       isStopped: () => Boolean,
       onRound: LearnState => Unit
@@ -83,7 +95,7 @@ final class LearnRun(
           val isLast = state.rounds == setup.rounds
           if isLast || state.rounds % setup.roundsPerScore == 0 then
             judged()
-            judging = Some(judgingOf(state.rounds * setup.stepsOfRound, DuelTask.parameters(learner.actor)))
+            judging = Some(judgingOf(state.rounds * setup.stepsOfRound, SideTask.parameters(learner.actor)))
             if isLast || !isElsewhere then judged()
           if isLast || nanoTime() - savedAt > SaveNanos then
             mistake = save()
@@ -107,7 +119,7 @@ final class LearnRun(
     import policy.*
     val tally  = Await.result(came, Duration.Inf)
     val better = state.best.forall: best =>
-      if setup.objective.direction == Direction.Minimise then tally.mean < best.mean
+      if setup.game.direction == Direction.Minimise then tally.mean < best.mean
       else tally.mean > best.mean
     state.copy(
       scores = state.scores :+ LearnScore(steps, tally.mean, tally.sd),

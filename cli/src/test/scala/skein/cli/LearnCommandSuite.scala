@@ -84,7 +84,7 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       def later()     =
         now += 60_000_000_000L
         now
-      LearnRun(setup, setup.evaluator(setup.batch(1)), Some(folder), () => later())
+      LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => later())
         .run(from, 1, () => done >= rounds)(state => done = state.rounds)
         .fold(fail(_), identity)
     val whole  = learn(temporaryFolder(), LearnState(), setup.rounds)
@@ -104,7 +104,16 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(err).contains(expected))
       assertEquals(err.linesIterator.size, 1)
     refused("--algorithm: expected sac, ddpg, ppo, came 'td3'", "--algorithm", "td3")
-    refused("--scenario: expected duel", "--scenario", "surround")
+    refused("--scenario: expected duel, surround", "--scenario", "surrond")
+    refused("--objective: expected with a scenario", "--scenario", "surround")
+    refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
+    def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
+    refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)
+    refused(
+      "scenario: expected one with a pursuer and vehicles of another role",
+      team("formation", "slot-rms")*
+    )
+    refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")
     refused("discount: expected 0 up to less than 1", "--discount", "NaN")
@@ -123,7 +132,7 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)
     val setup    = question.setup.fold(fail(_), identity)
-    val rounds   = LearnRun(setup, setup.evaluator(setup.batch(1)), Some(folder), () => 0)
+    val rounds   = LearnRun(setup, setup.judges(1)(Judge.Candidates), Some(folder), () => 0)
     var done     = 0
     assertEquals(
       rounds.run(LearnState(), 1, () => done == setup.rounds)(_ => done += 1).map(_.rounds),

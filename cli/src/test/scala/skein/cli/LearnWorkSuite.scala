@@ -41,12 +41,12 @@ class LearnWorkSuite extends munit.FunSuite:
   test("episodes measured elsewhere come to what they come to here, to the bit"):
     for judge <- Seq(Judge.Winner, Judge.Baseline) do
       val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
-      val candidates = Vector(if judge == Judge.Baseline then setup.paper.parameters else policy.parameters)
-      val here       = LearnWork.judges(setup, threads = 2)(judge).tallies(candidates, 0 until 40)
+      val candidates = Vector(if judge == Judge.Baseline then setup.baseline.candidate else policy.parameters)
+      val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 40)
       assertEquals(elsewhere.tallies(candidates, 0 until 40), here)
 
   test("so do flights in virtual time"):
-    val here = LearnCommand.flown(question, policy, 2).fold(fail(_), identity)
+    val here = LearnCommand.flown(setup, policy, 2).fold(fail(_), identity)
     assertEquals(LearnWork.distances(worker, policy, 2)(()).map(_.flatten), Right(here))
     assertEquals(here.size, 2)
 
@@ -58,7 +58,7 @@ class LearnWorkSuite extends munit.FunSuite:
       .flatMap(_.setup)
       .fold(fail(_), identity)
     assert(short.rounds >= 3, short.rounds.toString)
-    val here                 = short.evaluator(short.batch(1))
+    val here                 = short.judges(1)(Judge.Candidates)
     val round                = CountDownLatch(1)
     val elsewhere: Evaluator = (candidates, episodes) =>
       assert(round.await(60, TimeUnit.SECONDS), "learning waited for its judge")
@@ -72,4 +72,4 @@ class LearnWorkSuite extends munit.FunSuite:
   test("a worker to whom the question comes to something else refuses"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
     val told  = LearnWork.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
-    assert(clue(told).left.exists(_.startsWith("the paper's policy comes to")))
+    assert(clue(told).left.exists(_.startsWith("the baseline comes to")))

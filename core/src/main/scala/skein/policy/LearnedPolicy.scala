@@ -57,7 +57,7 @@ object LearnedPolicy:
   def shape(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
 
-  /** The most that a policy of a role turns: rad/s until the next decision, and rad at once.
+  /** The most that a policy of a role turns where nothing says otherwise: rad/s until the next decision, and rad at once.
     *
     * @param rateRadPerS
     *   of a pursuer

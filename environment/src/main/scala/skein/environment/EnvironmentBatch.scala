@@ -4,17 +4,24 @@ import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
 import skein.lanes.SteppedDuels.WORLDS
+import skein.policy.Policy
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 
-/** Many episodes of the duel, step by step. One side or both are decided for from outside ([[EnvironmentSettings]]), at the
-  * moments at which the loop decides, on readings as old as the link makes them. Observations and actions are in
-  * [[EnvironmentBuffers]].
+/** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for from outside
+  * ([[EnvironmentSettings]]), at the moments at which the loop decides, on readings as old as the link makes them.
+  * Observations and actions are in [[EnvironmentBuffers]].
   *
   * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once a period),
   * divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode without a
   * capture sum to minus its mean distance, as `./skein search` has it, times the number of periods, divided by 10 m.
   *
-  * One call at a time. A step allocates nothing, except where many groups share the processors.
+  * In other scenarios something else may be rewarded in the place of the distance.
+  *
+  * The duel flies by lanes, [[DuelGroup]]. Other scenarios are flown by the scalar reference, [[ScenarioGroup]]: one vehicle
+  * of each environment is decided for, the others of its role fly their own policies, or what [[fly]] says.
+  *
+  * One call at a time. A step of the duel allocates nothing, except where many groups share the processors.
   *
   * @param count
   *   of environments
@@ -22,23 +29,31 @@ import skein.settings.PolicyFile
   *   of [[EnvironmentBuffers.bytes]]
   */
 final class EnvironmentBatch private (
-    config: EnvironmentSettings.Resolved,
+    config: EnvironmentSettings.Resolved | ScenarioSide,
     val count: Int,
     autoreset: Autoreset,
     block: ByteBuffer
-):
-  private val timetables = EnvironmentTimetables(config)
-  private val buffers    = EnvironmentBuffers(block, config.learners.size, count)
-  private val groups     = Array.tabulate((count + WORLDS - 1) / WORLDS): group =>
-    EnvironmentGroup(
-      config,
-      timetables,
-      autoreset,
-      group * WORLDS,
-      (count - group * WORLDS).min(WORLDS),
-      buffers
-    )
+) extends AutoCloseable:
+  private val groups: Array[EnvironmentGroup] = config match
+    case duel: EnvironmentSettings.Resolved =>
+      val timetables = EnvironmentTimetables(duel)
+      val buffers    = EnvironmentBuffers(block, duel.learners.size, count)
+      Array.tabulate((count + WORLDS - 1) / WORLDS): group =>
+        val first = group * WORLDS
+        DuelGroup(duel, timetables, autoreset, first, (count - first).min(WORLDS), buffers)
+    case side: ScenarioSide =>
+      Array(ScenarioGroup(side, autoreset, count, EnvironmentBuffers(block, 1, count)))
   private var isReset = false
+
+  /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides, from their
+    * next episodes on.
+    */
+  def fly(policy: Policy): Unit = groups.foreach:
+    case team: ScenarioGroup => team.fly(policy)
+    case _                   => ()
+
+  /** Ends all episodes; nothing may be called any more. */
+  def close(): Unit = groups.foreach(_.close())
 
   /** Every environment begins anew.
     *
@@ -96,9 +111,9 @@ object EnvironmentBatch:
       autoreset: Autoreset,
       block: ByteBuffer,
       opponent: Option[PolicyFile] = None
-  ): Either[String, EnvironmentBatch] =
+  )(using Scenarios): Either[String, EnvironmentBatch] =
     for
-      config <- settings.resolvedAgainst(opponent)
+      config <- if settings.isDuel then settings.resolvedAgainst(opponent) else settings.side
       _      <- Either.cond(count >= 1 && count <= Most, (), s"num_envs: expected 1 to $Most, came $count")
       made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
@@ -118,5 +133,5 @@ object EnvironmentBatch:
   ): EnvironmentBatch =
     EnvironmentSettings
       .read(settings)
-      .flatMap(of(_, count, Autoreset.fromOrdinal(autoreset), block))
+      .flatMap(of(_, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)

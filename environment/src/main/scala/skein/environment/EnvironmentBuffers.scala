@@ -43,10 +43,22 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
 
   def action(agent: Int, number: Int): Float              = actions.get(agent * count + number)
   def reward(agent: Int, number: Int, value: Float): Unit = rewards.put(agent * count + number, value): Unit
-  def distance(number: Int, metres: Float): Unit          = distances.put(number, metres): Unit
-  def time(number: Int, seconds: Float): Unit             = times.put(number, seconds): Unit
-  def terminated(number: Int, value: Boolean): Unit       = terminations.put(number, byte(value)): Unit
-  def truncated(number: Int, value: Boolean): Unit        = truncations.put(number, byte(value)): Unit
+
+  /** Of some environments, one whose action is not finite, or −1. */
+  def misfit(first: Int, count: Int): Int =
+    var agent = 0
+    while agent < agents do
+      var number = first
+      while number < first + count do
+        if !(Math.abs(action(agent, number)) <= Float.MaxValue) then return number
+        number += 1
+      agent += 1
+    -1
+
+  def distance(number: Int, metres: Float): Unit         = distances.put(number, metres): Unit
+  def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
+  def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit
+  def truncated(number: Int, value: Boolean): Unit       = truncations.put(number, byte(value)): Unit
   def due(agent: Int, number: Int, value: Boolean): Unit = dues.put(agent * count + number, byte(value)): Unit
   private def byte(value: Boolean): Byte                 = if value then 1 else 0
 

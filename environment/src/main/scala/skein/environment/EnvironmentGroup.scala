@@ -1,221 +1,31 @@
 package skein.environment
 
-import java.nio.FloatBuffer
-import skein.lanes.SteppedDuels
-import skein.policy.Role
-import skein.signal.SplitMix64
+/** Some of a batch's environments, which are stepped together. Mutable; one thread at a time. */
+private trait EnvironmentGroup extends AutoCloseable:
 
-/** Up to [[SteppedDuels.WORLDS]] environments that fly side by side over one link: what befalls their messages is the
-  * same in all of them. Mutable; one thread at a time.
-  *
-  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends before, by a capture, the next
-  * begins at once in the loop that runs already, and lasts until the run's end.
-  *
-  * @param first
-  *   of the batch's environments
-  * @param count
-  *   of environments
-  */
-private final class EnvironmentGroup(
-    config: EnvironmentSettings.Resolved,
-    timetables: EnvironmentTimetables,
-    autoreset: Autoreset,
-    first: Int,
-    count: Int,
-    into: EnvironmentBuffers
-):
-  import EnvironmentGroup.*
-  import SteppedDuels.{FIELDS, WORLDS}
+  /** Every environment begins anew.
+    *
+    * @param newSeeds
+    *   of the whole batch; a negative one: the environment goes on with its own
+    */
+  def reset(newSeeds: Array[Long]): Unit
 
-  private val settings  = config.settings
-  private val vehicles  = config.learners.map(role => if role == Role.Evader then 0 else 1).toArray
-  private val isOutside = Array(vehicles.contains(0), vehicles.contains(1))
-  private val duels     =
-    val evader  = if isOutside(0) then Turned(0) else config.evader
-    val pursuer = if isOutside(1) then SteeredPolicy(0) else config.pursuer
-    SteppedDuels(config.duel, config.model, evader, pursuer, isOutside)
-
-  private val seeds    = Array.ofDim[Long](WORLDS)
-  private val episodes = Array.ofDim[Long](WORLDS)
-  private val isDone   = Array.ofDim[Boolean](WORLDS)
-
-  /** When each world's episode began, since the run's start, s. */
-  private val beganS = Array.ofDim[Float](WORLDS)
-  private val seen   = Array.ofDim[Float](FIELDS * WORLDS)
-  private val startM = Array.ofDim[Float](WORLDS)
-  private var runs   = 0L
-  private var isOver = true
-
-  /** Whether nobody has decided in this run. */
-  private var isFirst = true
-
-  /** Every environment begins anew. */
-  def reset(newSeeds: Array[Long]): Unit =
-    for world <- 0 until count do seed(world, newSeeds(first + world))
-    if newSeeds(first) >= 0 then runs = 0
-    startRun()
-    for world <- 0 until count do clear(world)
-    show(into.observations)
-
-  /** Some environments begin anew. */
-  def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit =
-    val chosen = (0 until count).filter(world => mask(first + world))
-    for world <- chosen do seed(world, newSeeds(first + world))
-    if chosen.nonEmpty then
-      val others = isDone.clone
-      if isOver then startRun() else chosen.foreach(begin)
-      System.arraycopy(others, 0, isDone, 0, WORLDS)
-      for world <- chosen do
-        isDone(world) = false
-        clear(world)
-      show(into.observations)
-
-  private def seed(world: Int, seed: Long): Unit =
-    if seed >= 0 then
-      seeds(world) = seed
-      episodes(world) = 0
+  /** Those of the mask begin anew. */
+  def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit
 
   /** An environment whose action is not finite, or −1. */
-  def misfit(): Int =
-    var agent = 0
-    while agent < vehicles.length do
-      var world = 0
-      while world < count do
-        val action = into.action(agent, first + world)
-        if !(action >= -Huge && action <= Huge) then return first + world
-        world += 1
-      agent += 1
-    -1
+  def misfit(): Int
 
   /** An environment that has ended and was not reset, or −1. */
-  def ended: Int =
-    val world = if autoreset == Autoreset.Disabled then isDone.indexOf(true) else -1
-    if world < 0 then -1 else first + world
+  def ended: Int
 
   /** One step of every environment. */
-  def step(): Unit =
-    if isOver then nextRun()
-    else
-      var agent = 0
-      while agent < vehicles.length do
-        val vehicle = vehicles(agent)
-        if duels.isDue(vehicle) then
-          var world = 0
-          while world < count do
-            duels.tell(vehicle, world, commanded(vehicle, into.action(agent, first + world)))
-            world += 1
-        agent += 1
-      duels.decide()
-      // What was scored before the first decision counts for the first step.
-      if !isFirst then duels.forgetScores()
-      isFirst = false
-      val goesOn = duels.flyOn()
-      isOver = !goesOn || duels.scoredAtS + Tolerance >= settings.episodeS
-      judge()
+  def step(): Unit
 
-  private def commanded(vehicle: Int, action: Float): Float =
-    val share = math.max(-1f, math.min(1f, action))
-    if vehicle == 1 then share * settings.turnRateRadPerS.toFloat else share * math.Pi.toFloat
-
-  /** Rewards, and who has ended. */
-  private def judge(): Unit =
-    // Both learners' rewards are of the same distance: what is the pursuer's loss is the evader's gain.
-    var world = 0
-    var again = false
-    while world < count do
-      val number   = first + world
-      val wasDone  = isDone(world)
-      val captured = settings.captureRadiusM > 0 && duels.distanceLeast(world) <= settings.captureRadiusM
-      val cost     = duels.distanceSum(world) / EnvironmentSettings.RewardM
-      into.distance(number, duels.distance(world))
-      into.time(number, duels.scoredAtS - beganS(world))
-      if wasDone then
-        // Its action was ignored; it shows its next episode's first observation.
-        isDone(world) = false
-        begin(world)
-        clear(world)
-      else
-        var agent = 0
-        while agent < vehicles.length do
-          val loss = cost - (if captured then CaptureReward else 0)
-          into.reward(agent, number, if vehicles(agent) == 1 then -loss else loss)
-          agent += 1
-        into.terminated(number, captured)
-        into.truncated(number, isOver && !captured)
-        isDone(world) = captured || isOver
-      again |= isDone(world)
-      world += 1
-    autoreset match
-      case Autoreset.SameStep if again =>
-        show(into.finals)
-        restartDone()
-        show(into.observations)
-      case _ => show(into.observations)
-
-  /** Under `SameStep`: distance and time stay those of the episode that ended. */
-  private def restartDone(): Unit =
-    if isOver then startRun()
-    else for world <- 0 until count if isDone(world) do begin(world)
-    java.util.Arrays.fill(isDone, false)
-
-  /** Under `NextStep`: everybody's next episode begins with a run of its own. */
-  private def nextRun(): Unit =
-    // Who began anew just when the run ended begins the same episode once more.
-    for world <- 0 until count if !isDone(world) do episodes(world) -= 1
-    startRun()
-    for world <- 0 until count do clear(world)
-    show(into.observations)
-
-  private def startRun(): Unit =
-    duels.start(timetables(SplitMix64.seedOf(seeds(0), runs)), settings.episodeS.toFloat)
-    runs += 1
-    isOver = false
-    isFirst = true
-    java.util.Arrays.fill(isDone, false)
-    for world <- 0 until count do begin(world)
-    if !duels.flyOn() then
-      throw IllegalStateException(
-        "nothing is decided in an episode: are the answers later than the time-out?"
-      )
-    java.util.Arrays.fill(beganS, 0f)
-
-  /** An environment's next episode begins. */
-  private def begin(world: Int): Unit =
-    val start = Start.of(config.duel, settings.startWithinM, SplitMix64.seedOf(seeds(world), episodes(world)))
-    episodes(world) += 1
-    beganS(world) = duels.scoredAtS
-    startM(world) = start.distanceM
-    duels.restart(world, 0, start.evaderNorthM, start.evaderEastM, start.evaderHeadingRad)
-    duels.restart(world, 1, start.pursuerNorthM, start.pursuerEastM, start.pursuerHeadingRad)
-
-  /** What an environment shows beside its first observation. */
-  private def clear(world: Int): Unit =
-    val number = first + world
-    into.distance(number, startM(world))
-    into.time(number, 0)
-    for agent <- vehicles.indices do into.reward(agent, number, 0)
-    into.terminated(number, false)
-    into.truncated(number, false)
-
-  /** What the learners that are due see; the others' observations stay as they are. */
-  private def show(to: FloatBuffer): Unit =
-    var agent = 0
-    while agent < vehicles.length do
-      val isDue = duels.isDue(vehicles(agent))
-      var world = 0
-      while world < count do
-        into.due(agent, first + world, isDue)
-        world += 1
-      if isDue then
-        duels.observe(vehicles(agent), seen)
-        var field = 0
-        while field < FIELDS do
-          to.put((agent * FIELDS + field) * into.count + first, seen, field * WORLDS, count): Unit
-          field += 1
-      agent += 1
+  def close(): Unit = ()
 
 private object EnvironmentGroup:
   val CaptureReward = 10f
 
-  private val Huge      = 1e30f
-  private val Tolerance = 1e-4f
+  /** Times of scores are floats. */
+  val Tolerance = 1e-4f

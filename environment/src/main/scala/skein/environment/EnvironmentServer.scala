@@ -8,6 +8,7 @@ import java.nio.file.attribute.PosixFilePermissions
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import scala.util.control.NonFatal
+import skein.scenario.Scenarios
 
 /** Environments behind a Unix socket, for processes that fork, or that no Java should live in. What is seen and done
   * stands in a file that both sides map ([[EnvironmentBuffers]]); over the socket go only words:
@@ -56,22 +57,26 @@ object EnvironmentServer:
       case Left(mistake) => answer(out, 1, mistake)
       case Right(batch)  =>
         out.write(0)
-        var going = true
-        while going do
-          val request = in.read()
-          if request < 0 then going = false
-          else
-            try
-              request match
-                case 1 => batch.step()
-                case 2 => batch.reset(seeds(in, batch.count))
-                case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
-                case _ => throw EOFException(s"expected 1, 2 or 3, came $request")
-              out.write(0)
-            catch
-              case mistake: IllegalArgumentException => answer(out, 1, mistake.getMessage)
-              case mistake: IOException              => throw mistake
-              case NonFatal(mistake)                 => answer(out, 2, mistake.getMessage)
+        try stepped(batch, in, out)
+        finally batch.close()
+
+  private def stepped(batch: EnvironmentBatch, in: DataInputStream, out: DataOutputStream): Unit =
+    var going = true
+    while going do
+      val request = in.read()
+      if request < 0 then going = false
+      else
+        try
+          request match
+            case 1 => batch.step()
+            case 2 => batch.reset(seeds(in, batch.count))
+            case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
+            case _ => throw EOFException(s"expected 1, 2 or 3, came $request")
+          out.write(0)
+        catch
+          case mistake: IllegalArgumentException => answer(out, 1, mistake.getMessage)
+          case mistake: IOException              => throw mistake
+          case NonFatal(mistake)                 => answer(out, 2, mistake.getMessage)
 
   private def opened(words: String): Either[String, EnvironmentBatch] =
     val told = words.linesIterator.map(_.split("=", 2)).collect { case Array(name, value) =>
@@ -91,7 +96,8 @@ object EnvironmentServer:
         try channel.map(FileChannel.MapMode.READ_WRITE, 0, channel.size)
         finally channel.close()
       .toEither.left.map(reason => s"file: expected one to read and write, came $reason")
-      batch <- EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)
+      batch <-
+        EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours)
     yield batch
 
   private def seeds(in: DataInputStream, count: Int) = Array.fill(count)(in.readLong())

@@ -1,12 +1,13 @@
 package skein.environment
 
 import scala.jdk.CollectionConverters.*
+import scala.util.Try
 import skein.flight.AirSimFleet
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Rollout}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
-import skein.scenario.Scenarios
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.Span
@@ -16,18 +17,28 @@ import skein.units.Span
   * @param learners
   *   `pursuer`, `evader`, or `both`
   * @param opponent
-  *   a policy file or a family's name; empty: the paper's. Not asked for where both learn
+  *   a policy file or a family's name; empty: the paper's. Not asked for where both learn, nor in other scenarios than the
+  *   duel, where all who do not learn fly their own
   * @param plant
-  *   see [[VehicleChoice.parse]]
+  *   see [[VehicleChoice.parse]]; empty: `reduced` in the duel, else `drag`
   * @param captureRadiusM
   *   a distance of at most this ends an episode; 0: none does
   * @param startWithinM
   *   an episode begins with the evader so far from the pursuer, least and most, in any direction, each commanded in any
-  *   direction; both 0: as the paper's duel begins
+  *   direction; both 0: as the paper's duel begins. In other scenarios: every vehicle so far from where it begins
   * @param movesInFlight
   *   of one vehicle
   * @param turnRateRadPerS
   *   the most that a pursuer who learns turns
+  * @param evaderRateRadPerS
+  *   the most that an evader who learns turns; 0: its actions are turns at once, of up to half a turn
+  * @param scenario
+  *   whose pursuer or evader learns
+  * @param set
+  *   settings of the scenario, by their keys
+  * @param objective
+  *   in other scenarios than the duel: a sum of means of the scenario's measures, which is rewarded; empty: the distance
+  *   to the nearest opponent
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -35,15 +46,27 @@ final case class EnvironmentSettings(
     loop: String = "stream",
     link: String = "vpn",
     periodMs: Double = 100,
-    plant: String = "reduced",
+    plant: String = "",
     altitudeM: Double = 20,
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
     movesInFlight: Int = LoopTiming.MostOutstanding,
-    turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS
+    turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS,
+    evaderRateRadPerS: Double = 0,
+    scenario: String = PaperDuel.Name,
+    set: Map[String, String] = Map.empty,
+    objective: String = ""
 ):
   import EnvironmentSettings.*
+
+  /** Whether it is the paper's, which flies by lanes. */
+  def isDuel: Boolean = scenario == PaperDuel.Name && set.isEmpty
+
+  /** The most that who learns turns: rad/s until the next decision, and rad at once. */
+  def mostTurn(role: Role): (Double, Double) =
+    if role == Role.Pursuer then (turnRateRadPerS, 0)
+    else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
 
   /** @return or what was expected and came */
   private[environment] def resolved: Either[String, Resolved] = resolvedAgainst(None)
@@ -53,19 +76,69 @@ final case class EnvironmentSettings(
     */
   private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
     for
-      roles <- Learners.get(learners).toRight(
-        s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
+      roles <- roles
+      _     <- Either.cond(
+        objective.isEmpty,
+        (),
+        s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'"
       )
+      flown <- flown(altitudeM)
+      (timing, delays, vehicle) = flown
+      paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
+      model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
+      against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
+      (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
+        if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
+      _ <- Option(
+        SteppedDuels.refusal(evader)
+      ).orElse(Option(SteppedDuels.refusal(pursuer))).map("opponent: " + _).toLeft(())
+    yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
+
+  /** The side that learns of another scenario than the duel. */
+  private[environment] def side(using Scenarios): Either[String, ScenarioSide] =
+    for
+      roles <- roles
+      role  <- Either.cond(
+        roles.size == 1,
+        roles.head,
+        "learners: expected pursuer or evader, came 'both', which is the duel's"
+      )
+      _ <- Either.cond(
+        opponent.isEmpty,
+        (),
+        s"opponent: expected none with scenario ${scenario}, whose others fly their own policies, came '$opponent'"
+      )
+      found <- ScenarioSide.of(this, role)
+      (stated, members, by) = found
+      flown <- flown(-stated.agents(members.head).startPositionNed.z)
+      (timing, delays, vehicle) = flown
+      made = ScenarioSide(this, stated, role, members, by, timing, delays, vehicle.response)
+      _ <- Try(Rollout(
+        made.engagement(members.head, PaperPursuer(), None, 0),
+        timing,
+        delays,
+        vehicle.response
+      )).toEither.left.map("scenario: " + _.getMessage)
+    yield made
+
+  private def roles = Learners.get(learners).toRight(
+    s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
+  )
+
+  /** The loop's timing, the link, and what flies at an altitude. */
+  private def flown(atM: Double): Either[String, (LoopTiming, Delays, VehicleChoice)] =
+    for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
       _       <- within("period_ms", periodMs, 1, 10_000)
-      _       <- within("altitude_m", altitudeM, 1e-3, FlySettings.MostAltitudeM)
+      _       <- within("altitude_m", atM, 1e-3, FlySettings.MostAltitudeM)
       _       <- within("episode_s", episodeS, 1, 3600)
       _       <- within("capture_radius_m", captureRadiusM, 0, MostM)
       _       <- within("start_within_m", startWithinM._1, 0, MostM)
       _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
       _       <- within("moves_in_flight", movesInFlight, 1, 16)
-      _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, 10)
-      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("plant: " + _)
+      _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
+      _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
+      vehicle <- VehicleChoice.parse(plantOf, atM).left.map("plant: " + _)
       delays  <- delaysOf(link).left.map("link: " + _)
       loopSettings = LoopSettings
         .every(Span.ofMillis(periodMs))
@@ -75,15 +148,10 @@ final case class EnvironmentSettings(
         .toRight(
           s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
         )
-      paper = Duel.paperAt(altitudeM, episodeS + SpareS)
-      model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
-      against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
-      (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
-        if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
-      _ <- Option(
-        SteppedDuels.refusal(evader)
-      ).orElse(Option(SteppedDuels.refusal(pursuer))).map("opponent: " + _).toLeft(())
-    yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
+    yield (timing, delays, vehicle)
+
+  // Teams fly low, where the model of three parameters does not hold.
+  private def plantOf = if plant.nonEmpty then plant else if isDuel then "reduced" else "drag"
 
   private def delaysOf(link: String): Either[String, Delays] =
     LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)
@@ -121,9 +189,11 @@ object EnvironmentSettings:
   )
 
   /** Within this long after its end somebody is due again, unless nothing is heard of the vehicles any more. */
-  private val SpareS = 3.0
+  private[environment] val SpareS = 3.0
 
   private val MostM = 1000.0
+
+  private val MostRateRadPerS = 50.0
 
   /** @return or what was expected and came */
   private[environment] def read(texts: java.util.Map[String, String]): Either[String, EnvironmentSettings] =
@@ -138,6 +208,9 @@ object EnvironmentSettings:
             case "loop"             => Right(settings.copy(loop = text))
             case "link"             => Right(settings.copy(link = text))
             case "plant"            => Right(settings.copy(plant = text))
+            case "scenario"         => Right(settings.copy(scenario = text))
+            case "objective"        => Right(settings.copy(objective = text))
+            case s"set.$key"        => Right(settings.copy(set = settings.set + (key -> text)))
             case "period_ms"        => number(value => settings.copy(periodMs = value))
             case "altitude_m"       => number(value => settings.copy(altitudeM = value))
             case "episode_s"        => number(value => settings.copy(episodeS = value))
@@ -146,8 +219,9 @@ object EnvironmentSettings:
               number(value => settings.copy(startWithinM = (value, settings.startWithinM._2)))
             case "start_most_m" =>
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
-            case "moves_in_flight" => number(value => settings.copy(movesInFlight = value.toInt))
-            case _                 => Left(s"no setting '$name'")
+            case "moves_in_flight"       => number(value => settings.copy(movesInFlight = value.toInt))
+            case "evader_rate_rad_per_s" => number(value => settings.copy(evaderRateRadPerS = value))
+            case _                       => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
     Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")

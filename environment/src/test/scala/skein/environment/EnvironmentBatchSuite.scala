@@ -5,9 +5,11 @@ import skein.forward.{Delays, Duel, Outcome, Reduced, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.lanes.SteppedDuels.FIELDS
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.Scenarios
 import skein.signal.SplitMix64
 
 class EnvironmentBatchSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
 
   /** A batch, and what a learner reads and writes. */
   private final class Learner(

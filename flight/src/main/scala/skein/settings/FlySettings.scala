@@ -8,7 +8,7 @@ import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
-import skein.policy.{Agent, Fleet, LearnedPolicy, Policy}
+import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
@@ -279,8 +279,8 @@ object FlySettings:
       Option.when(settings.deadline.exists(_ <= Span.Zero))(
         s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
-      settings.policies.find(file => !settings.fleet.agents.exists(isReplacedBy(file))).map(file =>
-        s"policies: expected with a scenario in which a ${PolicyFile.name(file.role)} plays against one opponent, came with '${settings.scenario.name}'"
+      settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
+        s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and vehicles of another role, came with '${settings.scenario.name}'"
       )
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
@@ -291,8 +291,9 @@ object FlySettings:
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
-  private def isReplacedBy(file: PolicyFile)(agent: Agent) =
-    agent.role == file.role && agent.policy.isInstanceOf[Policy]
+  /** Its opponent is the nearest of another role. */
+  private def isFlownIn(fleet: Fleet, file: PolicyFile) =
+    fleet.agents.map(_.role).distinct.sizeIs > 1 && fleet.agents.exists(_.role == file.role)
 
   private def predictorMistake(settings: FlySettings): Option[String] =
     settings.multirotors

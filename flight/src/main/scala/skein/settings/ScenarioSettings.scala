@@ -27,6 +27,18 @@ object ScenarioSettings:
       )
     yield scenario
 
+  /** A scenario of these settings, by their keys.
+    *
+    * @return
+    *   or every mistake
+    */
+  def ofKeys(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
+    val names = kind.settings.map(name => ConfigKeys.ofField(name) -> name).toMap
+    kind
+      .read(settings.map((key, value) => names.getOrElse(key, key) -> value))
+      .left
+      .map(_.map(ConfigKeys.ofMistake).mkString("; "))
+
   /** Of which kind it is. */
   def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
     val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)

@@ -97,14 +97,17 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(read("").map(_.duration), Right(Span.ofSeconds(60)))
     assertEquals(read("skein.fly.duration = 5 s").map(_.duration), Right(Span.ofSeconds(5)))
 
-  test("a policy file needs a scenario in which its role plays against one opponent"):
+  test("a policy file needs a scenario with its role and another"):
     val file = temporaryFolder().resolve("policy.conf")
     Files.writeString(
       file,
       PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse("lead-pursuit").toOption.get).hocon("")
     )
     assert(read(s"skein.fly.policies = [\"$file\"]").isRight)
-    val said = read(s"skein.fly { scenario = surround, policies = [\"$file\"] }").left.getOrElse("")
+    assert(read(s"skein.fly { scenario = surround, policies = [\"$file\"] }").isRight)
+    val said = read(s"skein.fly { scenario = formation, policies = [\"$file\"] }").left.getOrElse("")
     assert(
-      clue(said).contains("policies: expected with a scenario in which a pursuer plays against one opponent")
+      clue(said).contains(
+        "policies: expected with a scenario of a pursuer and vehicles of another role, came with 'formation'"
+      )
     )

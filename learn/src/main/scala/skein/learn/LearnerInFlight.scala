@@ -4,7 +4,7 @@ import skein.loop.learning.{FlownLearner, Transition}
 import skein.policy.{LearnedPolicy, Role}
 import skein.signal.SplitMix64
 
-/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[DuelTask]]: a small distance
+/** Learns on from what one flight meets, by a learner that remembers. Rewards are those of [[SideTask]]: a small distance
   * is the pursuer's, a great one the evader's. Equal transitions in equal lessons give equal weights.
   *
   * @param bounds
@@ -41,29 +41,29 @@ final class LearnerInFlight private (
           learner.replay.draw(learner.batch, random)
           learner.update()
           due -= 1
-    Option.when(learned / transitionsPerVersion > versions)(DuelTask.parameters(learner.actor) ++ bounds)
+    Option.when(learned / transitionsPerVersion > versions)(SideTask.parameters(learner.actor) ++ bounds)
 
   private def row(numbers: Vector[Double]) =
     numbers.lazyZip(scales).map((number, scale) => number.toFloat / scale).toArray
 
   private def reached(transition: Transition): Task =
-    val loss = (transition.distanceM * DuelTask.RewardPerM).toFloat
+    val loss = (transition.distanceM * SideTask.RewardPerM).toFloat
     LearnerInFlight.OneStep(row(transition.reached), if role == Role.Pursuer then -loss else loss)
 
 object LearnerInFlight:
 
   /** What came of one decision, as a task's step. A flight is one episode, which its end does not terminate. */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
-    def count: Int                     = 1
-    def actions: Int                   = 1
-    def observations: Int              = reached.length
-    def seen: Array[Float]             = reached
-    val rewards: Array[Float]          = Array(reward)
-    val terminated: Array[Boolean]     = Array(false)
-    def ended: Array[Boolean]          = terminated
-    def begin(round: Long): Unit       = none
-    def step(acts: Array[Float]): Unit = none
-    private def none                   = throw UnsupportedOperationException("one step of a flight")
+    def count: Int                               = 1
+    def actions: Int                             = 1
+    def observations: Int                        = reached.length
+    def seen: Array[Float]                       = reached
+    val rewards: Array[Float]                    = Array(reward)
+    val terminated: Array[Boolean]               = Array(false)
+    def ended: Array[Boolean]                    = terminated
+    def begin(round: Long, actor: Network): Unit = none
+    def step(acts: Array[Float]): Unit           = none
+    private def none                             = throw UnsupportedOperationException("one step of a flight")
 
   /** A learner as it was kept.
     *
@@ -85,7 +85,7 @@ object LearnerInFlight:
       case learner: OffPolicy =>
         load(learner).map: _ =>
           (
-            DuelTask.parameters(learner.actor) ++ bounds,
+            SideTask.parameters(learner.actor) ++ bounds,
             LearnerInFlight(learner, role, bounds, updates, transitionsPerVersion, seed)
           )
       case _ =>

@@ -12,8 +12,12 @@ trait Task:
   /** Numbers that it takes, from −1 to 1. */
   def actions: Int
 
-  /** All episodes begin anew; equal rounds begin equally. */
-  def begin(round: Long): Unit
+  /** All episodes begin anew; equal rounds begin equally.
+    *
+    * @param actor
+    *   the policy so far, for those who share it
+    */
+  def begin(round: Long, actor: Network): Unit
 
   /** What is seen now. */
   def seen: Array[Float]

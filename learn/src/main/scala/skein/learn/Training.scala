@@ -19,7 +19,7 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
     */
   def round(number: Long, isStopped: () => Boolean = () => false): Either[String, Option[Double]] =
     learner.begin(number)
-    task.begin(number)
+    task.begin(number, learner.actor)
     var sum  = 0.0
     var step = 0
     while step < stepsPerRound && !isStopped() do

@@ -10,7 +10,7 @@ private[learn] abstract class SmallTask(val count: Int, val observations: Int, s
   val terminated, ended: Array[Boolean] = Array.ofDim(count)
   protected var random: SplitMix64      = SplitMix64(seed)
 
-  def begin(round: Long): Unit =
+  def begin(round: Long, actor: Network): Unit =
     random = SplitMix64(SplitMix64.seedOf(seed, round))
     for row <- 0 until count do start(row)
 

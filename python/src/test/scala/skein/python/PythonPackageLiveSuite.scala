@@ -1,30 +1,75 @@
 package skein.python
 
+import java.io.{File, IOException}
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
+import scala.jdk.CollectionConverters.*
 import scala.sys.process.{Process, ProcessLogger}
+import scala.util.Using
+import skein.testing.TemporaryFolders
 
-/** Runs the package's own tests, where a Python has what they need and the commands are built. */
-class PythonPackageLiveSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
+/** The wheel as a user has it: installed into a fresh environment, it trains and passes the package's own tests. Skipped
+  * where there is no Python, or where its packages cannot be fetched.
+  */
+class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders:
+  override val munitTimeout: Duration = 10.minutes
 
-  test("the Python package passes its tests"):
-    val root = Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
-      Files.exists(at.resolve("sbtw"))
-    ).get
-    val needed = ran(root, "python3", "-c", "import duckdb, gymnasium, jpype, pandas, pettingzoo, pytest")
-    assume(
-      needed.isRight,
-      s"python3 lacks a package: ${needed.swap.getOrElse("").linesIterator.toSeq.lastOption.getOrElse("")}"
+  private val root = Iterator
+    .iterate(Path.of("").toAbsolutePath)(_.getParent)
+    .find(at => Files.exists(at.resolve("sbtw")))
+    .get
+  private val target = root.resolve("python/target")
+
+  /** Or why there is none. */
+  private def wheel: Either[String, Path] =
+    val why = target.resolve("no-wheel.txt")
+    if Files.exists(why) then Left(Files.readString(why))
+    else
+      Option
+        .when(Files.exists(target.resolve("dist"))):
+          Using.resource(
+            Files.list(target.resolve("dist"))
+          )(_.iterator.asScala.find(_.toString.endsWith(".whl")))
+        .flatten
+        .toRight("./sbtw python/wheel was not run before")
+
+  private lazy val home = temporaryFolder().resolve("environment")
+
+  private def python(words: String*): Either[String, String] =
+    ran(home.resolve("bin/python").toString +: words*)
+
+  test("one line installs the wheel into a fresh environment"):
+    assume(wheel.isRight, wheel.left.getOrElse(""))
+    val made = ran("python3", "-m", "venv", home.toString)
+    assume(made.isRight, made.left.getOrElse(""))
+    val installed = python(
+      Seq("-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile") :+
+        s"skein-uav[test] @ ${wheel.toOption.get.toUri}"*
     )
-    assume(
-      Files.exists(root.resolve("cli/target/universal/stage/bin/skein")),
-      "./sbtw cli/stage was not run before"
-    )
-    assertEquals(ran(root, "python3", "-m", "pytest", "-q", "python"), Right(()))
+    assert(installed.isRight, installed.left.getOrElse(""))
 
-  private def ran(in: Path, command: String*): Either[String, Unit] =
+  test("there, the ten lines of the example train a pursuer"):
+    assume(Files.exists(home), "nothing was installed")
+    val trained   = python(root.resolve("examples/learn-in-python/learn.py").toString)
+    val distances = """mean distance ([0-9.]+) m""".r
+      .findAllMatchIn(trained.fold(fail(_), identity))
+      .map(_.group(1).toDouble)
+      .toVector
+    assert(distances.last < distances.head - 2, distances.mkString(", "))
+
+  test("there, the package passes its own tests"):
+    assume(Files.exists(home), "nothing was installed")
+    val passed = python("-m", "pytest", "-q", "-o", "pythonpath=", "tests")
+    assert(passed.isRight, passed.left.getOrElse(""))
+
+  private def ran(command: String*): Either[String, String] =
     val output = StringBuilder()
-    val log    = ProcessLogger(line => output.append(line).append('\n'): Unit)
-    try Either.cond(Process(command, in.toFile).!(log) == 0, (), output.toString)
-    catch case missing: java.io.IOException => Left(missing.getMessage)
+    try
+      val status = Process(command, Some(root.resolve("python").toFile): Option[File])
+        .!(ProcessLogger(line => output.append(line).append('\n'): Unit))
+      Either.cond(
+        status == 0,
+        output.toString,
+        s"${command.mkString(" ")}: ${output.toString.takeRight(4000)}"
+      )
+    catch case missing: IOException => Left(missing.getMessage)

@@ -2,17 +2,25 @@ package skein.learn
 
 import java.nio.ByteBuffer
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
-import skein.policy.LearnedPolicy
+import skein.policy.{LearnedPolicy, Role}
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
-/** One side of the duel, under the loop's timing. What is seen is scaled as [[LearnedPolicy]] scales it, and rewards so
-  * that what a policy earns in all, discounted, is of about 1.
+/** A side of the duel or of another scenario, under the loop's timing. What is seen is scaled as [[LearnedPolicy]] scales
+  * it, and rewards so that what a policy earns in all, discounted, is of about 1. Of several vehicles of the side, one of
+  * each environment learns; the others fly what was learned before the round.
   *
   * @param seed
   *   of where episodes begin and what befalls their messages
   */
-final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffers, seed: Long) extends Task:
+final class SideTask private (
+    batch: EnvironmentBatch,
+    buffers: EnvironmentBuffers,
+    bounds: (Double, Double),
+    seed: Long
+) extends Task,
+      AutoCloseable:
   private val scales = LearnedPolicy.scales.map(_.toFloat).toArray
 
   val count: Int        = batch.count
@@ -23,7 +31,9 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
   val rewards: Array[Float]             = Array.ofDim(count)
   val terminated, ended: Array[Boolean] = Array.ofDim(count)
 
-  def begin(round: Long): Unit =
+  def begin(round: Long, actor: Network): Unit =
+    val hidden = actor.widths.tail.init
+    batch.fly(LearnedPolicy(LearnedPolicy.shape(hidden), SideTask.parameters(actor), bounds._1, bounds._2))
     val ofRound = SplitMix64.seedOf(seed, round)
     batch.reset(Array.tabulate(count)(number => SplitMix64.seedOf(ofRound, number) & Long.MaxValue))
     copy(buffers.observations, seen)
@@ -34,10 +44,12 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
     copy(buffers.observations, seen)
     System.arraycopy(seen, 0, reached, 0, seen.length)
     for number <- 0 until count do
-      rewards(number) = buffers.rewards.get(number) * DuelTask.RewardScale
+      rewards(number) = buffers.rewards.get(number) * SideTask.RewardScale
       terminated(number) = buffers.terminations.get(number) != 0
       ended(number) = terminated(number) || buffers.truncations.get(number) != 0
       if ended(number) then copyRow(buffers.finals, reached, number)
+
+  def close(): Unit = batch.close()
 
   private def copy(from: java.nio.FloatBuffer, into: Array[Float]): Unit =
     for number <- 0 until count do copyRow(from, into, number)
@@ -48,7 +60,7 @@ final class DuelTask private (batch: EnvironmentBatch, buffers: EnvironmentBuffe
       into(number * observations + field) = from.get(field * count + number) / scales(field)
       field += 1
 
-object DuelTask:
+object SideTask:
   private val RewardScale = 0.1f
 
   /** Of a distance, as environments reward it once a period. */
@@ -64,7 +76,7 @@ object DuelTask:
       opponent: Option[PolicyFile],
       count: Int,
       seed: Long
-  ): Either[String, DuelTask] =
+  )(using Scenarios): Either[String, SideTask] =
     if settings.learners == "both" then Left("learners: expected pursuer or evader, came 'both'")
     else if count < 1 || count > EnvironmentBatch.Most then
       Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, came $count")
@@ -72,7 +84,10 @@ object DuelTask:
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
       EnvironmentBatch
         .of(settings, count, Autoreset.SameStep, block, opponent)
-        .map(batch => DuelTask(batch, EnvironmentBuffers(block, 1, count), seed))
+        .map(batch => SideTask(batch, EnvironmentBuffers(block, 1, count), bounds(settings), seed))
+
+  private def bounds(settings: EnvironmentSettings) =
+    settings.mostTurn(if settings.learners == "pursuer" then Role.Pursuer else Role.Evader)
 
   /** A learner's actor, whose first output says how to turn, as the parameters of a [[LearnedPolicy]]: neuron by neuron.
     */

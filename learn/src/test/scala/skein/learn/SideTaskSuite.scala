@@ -4,17 +4,19 @@ import skein.environment.EnvironmentSettings
 import skein.forward.{DelayTable, Delays, Duel, LinkDelays, LoopTiming, Reduced, Rollout}
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.*
+import skein.scenario.Scenarios
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.Span
 
-class DuelTaskSuite extends munit.FunSuite:
+class SideTaskSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios.ours
   private val none = LinkDelays.of(LatencyProfile.Steady("none", LatencyDistribution.Constant(Span.Zero)))
 
   private def drawn(hidden: Int*) = Network(LearnedPolicy.Inputs +: hidden.toVector :+ 2).draw(SplitMix64(3))
 
   test("a policy made of an actor decides as the actor"):
     val actor  = drawn(16, 8)
-    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 8)), DuelTask.parameters(actor), 1, 0)
+    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 8)), SideTask.parameters(actor), 1, 0)
     val seen   = PlanarObservation(3, 9, -4, 2, 0.7, -2, 0.1, 0.15, 0.2)
     val pass   = Pass(actor.widths, 1)
     for (number, at) <- seen.fromOwnHeading.zip(LearnedPolicy.scales).map(_ / _).zipWithIndex do
@@ -27,12 +29,12 @@ class DuelTaskSuite extends munit.FunSuite:
     test(s"the $side's episode is that of its policy in forward simulation"):
       val actor      = drawn(8)
       val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
-      val policy     = LearnedPolicy(LearnedPolicy.shape(Vector(8)), DuelTask.parameters(actor), rate, at)
+      val policy     = LearnedPolicy(LearnedPolicy.shape(Vector(8)), SideTask.parameters(actor), rate, at)
       // Without a network, delays are no matter of chance.
       val settings = EnvironmentSettings(learners = side, link = "none", episodeS = 20)
-      val task     = DuelTask.of(settings, None, 1, 1).fold(fail(_), identity)
+      val task     = SideTask.of(settings, None, 1, 1).fold(fail(_), identity)
       val pass     = Pass(actor.widths, 1)
-      task.begin(0)
+      task.begin(0, actor)
       var reward = 0.0
       var isOver = false
       while !isOver do
@@ -50,7 +52,7 @@ class DuelTaskSuite extends munit.FunSuite:
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
   test("a learned policy flies by lanes as by the scalar reference"):
-    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), DuelTask.parameters(drawn(16, 16)), 1, 0)
+    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
     val duel   = Duel.paperAt(20, 20)
     val worlds = new DuelWorlds:
       def size                        = 4

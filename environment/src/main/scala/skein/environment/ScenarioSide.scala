@@ -1,0 +1,128 @@
+package skein.environment
+
+import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
+import skein.optimise.TeamObjective
+import skein.policy.{Agent, AgentPolicy, Fleet, Policy, Role, TeamPolicy}
+import skein.scenario.{Positions, Reduction, Scenario, Scenarios}
+import skein.settings.ScenarioSettings
+import skein.signal.SplitMix64
+import skein.vehicle.VehicleKind
+
+/** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the role fly
+  * what is flown beside it, everybody else their own policies.
+  *
+  * @param members
+  *   of the role, by their places in the scenario
+  * @param objective
+  *   what is rewarded; without one, a small or a great distance to the nearest opponent
+  */
+private[environment] final case class ScenarioSide(
+    settings: EnvironmentSettings,
+    scenario: Scenario,
+    role: Role,
+    members: Vector[Int],
+    objective: Option[TeamObjective],
+    timing: LoopTiming,
+    link: Delays,
+    response: VelocityResponse
+):
+  private val agents = scenario.agents
+  private val rivals = agents.indices.filter(agents(_).role != role).toArray
+  private val downM  = IArray.from(agents.map(_.startPositionNed.z))
+
+  def count: Int = agents.size
+
+  /** What flies in an episode.
+    *
+    * @param learner
+    *   its place
+    * @param beside
+    *   of the others of its role; without one, their own
+    * @param seed
+    *   of where the vehicles begin
+    */
+  def engagement(learner: Int, policy: Policy, beside: Option[Policy], seed: Long): Engagement =
+    val random = SplitMix64(seed)
+    val flown  = agents.zipWithIndex.map: (agent, place) =>
+      val (least, most)    = settings.startWithinM
+      val (moved, bearing) = (least + random.nextDouble() * (most - least), 2 * math.Pi * random.nextDouble())
+      val chosen: AgentPolicy =
+        if place == learner then policy
+        else if agent.role == role then beside.getOrElse(agent.policy)
+        else agent.policy
+      agent.copy(
+        policy = chosen,
+        startPositionNed = agent.startPositionNed.copy(
+          x = agent.startPositionNed.x + moved * StrictMath.cos(bearing),
+          y = agent.startPositionNed.y + moved * StrictMath.sin(bearing)
+        )
+      )
+    Engagement.of(Fleet(flown), settings.episodeS + EnvironmentSettings.SpareS)
+
+  /** To the learner's nearest opponent, m. */
+  def distanceM(learner: Int, northM: Array[Double], eastM: Array[Double]): Double =
+    var least = Double.PositiveInfinity
+    for rival <- rivals do
+      least = least.min(StrictMath.hypot(northM(rival) - northM(learner), eastM(rival) - eastM(learner)))
+    least
+
+  /** What the learner pays at a score. */
+  def loss(distanceM: Double, northM: Array[Double], eastM: Array[Double]): Double = objective match
+    case None     => if role == Role.Pursuer then distanceM else -distanceM
+    case Some(by) =>
+      val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
+      var sum    = 0.0
+      for (weight, measure) <- by.terms; reduced <- measure.reduced do
+        sum += weight * reduced.quantity.of(places)
+      by.direction.sign * sum
+
+private[environment] object ScenarioSide:
+
+  /** What forward simulation flies of it, and what is rewarded.
+    *
+    * @return
+    *   or what was expected and came
+    */
+  def of(settings: EnvironmentSettings, role: Role)(using
+      scenarios: Scenarios
+  ): Either[String, (Scenario, Vector[Int], Option[TeamObjective])] =
+    for
+      kind     <- scenarios.kind(settings.scenario).left.map("scenario: " + _)
+      scenario <- ScenarioSettings.ofKeys(kind, settings.set).left.map("set: " + _)
+      agents = scenario.agents
+      _ <- refusal(scenario).map(why =>
+        s"scenario: expected one of multirotors that are told of one another, came ${scenario.name}, $why"
+      ).toLeft(())
+      members = agents.indices.filter(agents(_).role == role).toVector
+      _ <- Either.cond(
+        members.nonEmpty && members.size < agents.size,
+        (),
+        s"scenario: expected one with a ${role.name.toLowerCase(java.util.Locale.ROOT)} and vehicles of another role, came ${scenario.name} of ${roles(agents)}"
+      )
+      objective <-
+        if settings.objective.isEmpty then Right(None)
+        else
+          TeamObjective.parse(
+            settings.objective,
+            scenario,
+            TeamObjective.naturally(role)
+          ).left.map("objective: " + _).map(Some(_))
+      _ <- objective.toVector.flatMap(_.measures).find(measure =>
+        !isSummed(measure.reduced.get.reduction)
+      ).map: measure =>
+        s"objective: expected means over time, which can be rewarded as they come, came ${TeamObjective.keyOf(measure)}"
+      .toLeft(())
+    yield (scenario, members, objective)
+
+  private def isSummed(reduction: Reduction) = reduction == Reduction.Mean || reduction == Reduction.Rms
+
+  private def roles(agents: Vector[Agent]) =
+    agents.map(_.role.name.toLowerCase(java.util.Locale.ROOT)).distinct.mkString(" and ")
+
+  private def refusal(scenario: Scenario): Option[String] =
+    if scenario.agents.exists(_.kind != VehicleKind.Multirotor) then Some("which has cars")
+    else if scenario.eyes.nonEmpty || scenario.equipment.nonEmpty then Some("which sees by cameras or lidars")
+    else
+      scenario.agents.find(agent => !agent.policy.isInstanceOf[Policy | TeamPolicy]).map(agent =>
+        s"whose vehicle ${agent.name} decides in three dimensions"
+      )

@@ -1,0 +1,112 @@
+package skein.environment
+
+import skein.forward.{LoopObserver, Rollout}
+import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
+import skein.signal.SplitMix64
+import skein.simd.WorldRandom
+
+/** Episodes of a scenario, one after the other, that stop whenever one vehicle is to decide, for which somebody outside
+  * does. They are flown by [[Rollout]], whose policy waits for the answer: so whatever scenario, loop and link forward
+  * simulation knows can be learned in. Mutable.
+  *
+  * @param learner
+  *   the vehicle, by its place in the scenario
+  */
+private final class SteppedRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
+  import SteppedRollout.*
+
+  private val flying                 = Resumed(fly)
+  private var next                   = Option.empty[(Long, Option[Policy])]
+  private var ask: () => Unit        = () => ()
+  private var isBegun                = false
+  private val (rateRadPerS, turnRad) = side.settings.mostTurn(side.role)
+
+  /** What the vehicle sees now, as [[PlanarObservation.fromOwnHeading]] has it. */
+  val seen: Array[Float] = Array.ofDim(skein.lanes.SteppedDuels.FIELDS)
+
+  /** How it is to turn now, −1 to 1. */
+  var share: Double = 0
+
+  /** What it has paid since it went on. */
+  var loss: Double = 0
+
+  /** To its nearest opponent: at the last score, and at the nearest since it went on, m. */
+  var distanceM, leastM: Double = 0
+
+  /** When distances were scored last, since the episode's beginning, s. */
+  var scoredAtS: Double = 0
+  var isOver: Boolean   = true
+
+  /** With the next [[goOn]] an episode begins, whatever flies now.
+    *
+    * @param beside
+    *   the policy of the others of its role, if not their own
+    */
+  def begin(seed: Long, beside: Option[Policy]): Unit = next = Some((seed, beside))
+
+  /** Lets it fly. Nothing may be read until [[await]] has returned. */
+  def goOn(): Unit = flying.goOn()
+
+  /** Blocks until the vehicle is to decide. */
+  def await(): Unit = flying.await()
+
+  def close(): Unit = flying.close()
+
+  private def fly(suspend: () => Unit): Unit =
+    ask = suspend
+    while true do
+      val (seed, beside) = next.get
+      next = None
+      isOver = false
+      scoredAtS = 0
+      try
+        val engagement = side.engagement(learner, outside, beside, seed)
+        begun(engagement.agents.map(_.startX).toArray, engagement.agents.map(_.startY).toArray)
+        Rollout(engagement, side.timing, side.link, side.response)
+          .fly(
+            WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt),
+            observer = scores
+          ): Unit
+        // Nobody was to decide after the end.
+        isOver = true
+        suspend()
+      catch case Anew => ()
+
+  private def begun(northM: Array[Double], eastM: Array[Double]): Unit =
+    distanceM = side.distanceM(learner, northM, eastM)
+    leastM = Double.PositiveInfinity
+    loss = 0
+    isBegun = false
+
+  private object outside extends ObservingPolicy[Unit]:
+    def initial: Unit = ()
+
+    def decide(now: PlanarObservation, memory: Unit): Decided[Unit] =
+      for (number, field) <- now.fromOwnHeading.iterator.zipWithIndex do seen(field) = number.toFloat
+      isOver = scoredAtS + EnvironmentGroup.Tolerance >= side.settings.episodeS
+      ask()
+      if next.isDefined then throw Anew
+      // What was scored before the first decision counts for the first step.
+      if isBegun then
+        loss = 0
+        leastM = Double.PositiveInfinity
+      isBegun = true
+      Decided(now.ownHeadingRad + share * (rateRadPerS * now.elapsedS + turnRad), ())
+
+  private object scores extends LoopObserver:
+    private val northM, eastM = Array.ofDim[Double](side.count)
+
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+      northM(vehicle) = x
+      eastM(vehicle) = y
+      if vehicle == side.count - 1 && timeS <= side.settings.episodeS + EnvironmentGroup.Tolerance then
+        scoredAtS = timeS
+        distanceM = side.distanceM(learner, northM, eastM)
+        leastM = leastM.min(distanceM)
+        loss += side.loss(distanceM, northM, eastM)
+
+private object SteppedRollout:
+  private object Anew extends RuntimeException(null, null, false, false)
+
+  /** Over the link, of which each episode meets one. */
+  private val Flights = 1 << 24
