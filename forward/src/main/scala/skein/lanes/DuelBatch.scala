@@ -1,13 +1,21 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, QuadrotorResponse, VelocityResponse}
+import skein.forward.{
+  DelayTable,
+  Delays,
+  Duel,
+  LoopTiming,
+  QuadrotorResponse,
+  SteppedResponse,
+  VelocityResponse
+}
 import skein.policy.Policy
 import skein.simd.LaneMath
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by [[TimetableKernel]],
-  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[QuadrotorBatch]]). All
+  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[SteppedBatch]]). All
   * else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the table. Which engine flies a world depends on
   * the world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
   * order. One call at a time.
@@ -38,15 +46,18 @@ final class DuelBatch(
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  = model match
-      case _ if plant.isLeft            => scalar
-      case quadrotor: QuadrotorResponse => QuadrotorBatch(duel, timing, quadrotor)
-      case _                            => LoopFlyer(duel, timing, model, scalar)
+      case stepped: SteppedResponse if isStepped => SteppedBatch.of(duel, timing, stepped)
+      case _ if plant.isLeft                     => scalar
+      case quadrotor: QuadrotorResponse          => SteppedBatch.of(duel, timing, quadrotor)
+      case _                                     => LoopFlyer(duel, timing, model, scalar)
     val together: DuelFlyer = lanes match
       case Right(kind) => TimetableFlyer(duel, timing, kind, timetables, alone)
       case _           => alone
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
+
+  private def isStepped = model.isInstanceOf[SteppedResponse] && DuelBatch.sees(duel).isEmpty
 
   /** A world that waits meets no delays: all worlds share their episode. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
@@ -60,8 +71,9 @@ final class DuelBatch(
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(reason) => s"scalar: $reason"
-      case Right(lanes) =>
+      case Left(_) if isStepped => "vehicles side by side; their loops by the scalar engine"
+      case Left(reason)         => s"scalar: $reason"
+      case Right(lanes)         =>
         val refused = refusals(shares(shareEpisodes), links)
         if refused.isEmpty then s"SIMD, $lanes"
         else if refused.size == links.size then s"scalar: ${refused.head}"
