@@ -29,7 +29,11 @@ private[mujoco] object Allocation:
 
   /** Or what these actuators cannot do. */
   def of(effects: Array[Array[Double]]): Either[String, Allocation] =
-    axes.zip(effects).collectFirst { case (axis, row) if row.forall(math.abs(_) < Least) => axis } match
+    val most      = effects.map(row => row.map(math.abs).max)
+    // A fast roll turns it about other axes a little, too.
+    val turnsMost = most.drop(1).max
+    val isThere   = (most(0) > 0) +: most.drop(1).map(_ > Least * turnsMost)
+    axes.zip(isThere).collectFirst { case (axis, false) => axis } match
       case Some(axis) => Left(s"expected actuators that lift, roll, pitch and yaw it, none $axis it")
       case None       =>
         try Right(Allocation(effects))
@@ -37,8 +41,8 @@ private[mujoco] object Allocation:
           case _: ArithmeticException =>
             Left("expected actuators that lift, roll, pitch and yaw it each by itself")
 
-  /** m/s² and rad/s² */
-  private val Least = 1e-6
+  /** Of the greatest effect on any axis. */
+  private val Least = 1e-3
 
   /** By elimination.
     *
