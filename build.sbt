@@ -51,7 +51,7 @@ lazy val root =
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
     .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
-    .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, docs)
+    .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, mujoco, docs)
     .settings(publish / skip := true, publishCheck := Publishing.check.value)
 
 /** What a part is published as: `skein-core` and so on. */
@@ -69,6 +69,12 @@ lazy val core = project
 lazy val forward = project
   .settings(artifact("forward", "Forward simulation, search, identification, planning"))
   .dependsOn(core).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
+
+/** Bodies whose physics is MuJoCo's, by its C library, which is found where it is installed. No Pekko. */
+lazy val mujoco = project
+  .settings(artifact("mujoco", "Multirotors whose bodies are MuJoCo's"))
+  .dependsOn(forward, testing % Test)
+  .settings(libraryDependencies ++= munit)
 
 /** Rewrites clock readings as classes load. Java alone; the JVM is started with its jar as `-javaagent`. */
 lazy val vtimeAgent = project
@@ -189,7 +195,7 @@ lazy val view = project
 /** The loops; flights put together, live and in virtual time, and through faults. */
 lazy val flight = project
   .settings(artifact("flight", "Control loops, and flights put together"))
-  .dependsOn(forward, flow, simulator, offboard, record % "compile->compile;test->test", vtime)
+  .dependsOn(forward, flow, simulator, offboard, mujoco % "compile->compile;test->test", record % "compile->compile;test->test", vtime)
   .settings(underAgent)
   .settings(libraryDependencies ++= pekkoLog ++ Seq(upickle, pureconfig, progressbar, protobuf, streamTestkit) ++ munit)
 

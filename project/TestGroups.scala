@@ -33,16 +33,18 @@ object TestGroups extends AutoPlugin {
     "skein.cli.ViewLiveSuite",
     "skein.link.LinkFidelityLiveSuite",
     "skein.link.PreciseSchedulerLiveSuite",
-    "skein.flight.TwinLiveSuite"
+    "skein.flight.TwinLiveSuite",
+    "skein.simulator.BetaflightLiveSuite"
   )
 
   private val waiting = Set(
     "skein.flight.MavlinkFlightLiveSuite",
     "skein.flight.RunningSimulatorLiveSuite",
     "skein.mcap.OfficialPythonLibraryLiveSuite",
+    "skein.mujoco.MujocoOracleLiveSuite",
+    "skein.mujoco.MujocoRotorcraftLiveSuite",
     "skein.simulator.HilServerLiveSuite",
     "skein.simulator.MavsdkLiveSuite",
-    "skein.simulator.MujocoOracleLiveSuite",
     "skein.simulator.OfficialPythonClientLiveSuite"
   )
 

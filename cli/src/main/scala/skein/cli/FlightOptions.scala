@@ -49,6 +49,10 @@ final case class FlightOptions(
     @arg(doc = "the scenario's setting altitude-m: at which all fly, above where they start, in metres")
     altitude: Option[Double],
     @arg(doc =
+      "what flies in the built-in simulator: airsim, its quadrotors, or mujoco:FILE, a model of MuJoCo's"
+    )
+    plant: Option[String],
+    @arg(doc =
       "what `predictive` predicts by: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],
@@ -118,6 +122,7 @@ final case class FlightOptions(
       "scenario"        -> scenario,
       "scene"           -> scene,
       "policies"        -> strings(policy),
+      "plant"           -> plant,
       "predictor"       -> predictor,
       "moves-in-flight" -> movesInFlight,
       "deadline"        -> deadline,
@@ -157,6 +162,7 @@ object FlightOptions:
       "links"           -> "link",
       "period"          -> "period",
       "seed"            -> "seed",
+      "plant"           -> "plant",
       "predictor"       -> "predictor",
       "moves-in-flight" -> "moves-in-flight",
       "fallback"        -> "fallback"

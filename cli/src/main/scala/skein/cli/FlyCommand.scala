@@ -59,6 +59,11 @@ final class FlyCommand(using Scenarios)
         (),
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
       )
+      _ <- Either.cond(
+        simulator.isEmpty || settings.plant.isAirSim,
+        (),
+        "--plant is of the built-in simulator; what flies in --simulator is its own affair"
+      )
       _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)

@@ -17,7 +17,7 @@ final case class ForwardOptions(
     @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
     loop: Option[String],
     @arg(doc =
-      "what flies: reduced, drag, quadrotor, ideal, car, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"
+      "what flies: reduced, drag, quadrotor, ideal, car, mujoco:FILE for a model of MuJoCo's, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"
     )
     plant: Option[String],
     @arg(doc =

@@ -7,7 +7,7 @@ import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotKind
 import skein.link.{TcpTransport, TransportError}
-import skein.settings.{NamedScene, TextFile}
+import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
 import skein.units.Clock
@@ -27,6 +27,10 @@ final case class ServeOptions(
     speed: Double = 1.0,
     @arg(doc = "what stands in the world: empty, forest, pursuit, street, or a file")
     scene: String = "empty",
+    @arg(doc =
+      "what flies: airsim, its quadrotors, or mujoco:FILE, a model of MuJoCo's; cars drive as ever"
+    )
+    plant: String = "airsim",
     @arg(doc =
       "speaks MAVLink, too, as PX4's simulation does: UDP to 14550 for a ground station and to 14540, 14541, … for " +
         "programs, a vehicle each; all vehicles also at UDP 18570"
@@ -61,6 +65,8 @@ object ServeCommand
       )
       world     <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
+      plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
+      kind      <- plant.kind
       autopilot <-
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
       _ <- Either.cond(
@@ -68,6 +74,7 @@ object ServeCommand
         (),
         "--hil: not together with --mavlink, which is an autopilot itself"
       )
+      _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       flies = if autopilot.isDefined then "--hil" else "--mavlink"
       _ <- Either.cond(
         autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar),
@@ -86,7 +93,8 @@ object ServeCommand
             options.speed,
             scene = scene.scene,
             mavlink = mavlink,
-            hil = hil
+            hil = hil,
+            kind = kind
           ),
           Option.when(options.view.view.value)(shows)
         )

@@ -10,7 +10,7 @@ final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, 
 object Effort:
   /** Episodes that one core flies in about half a second. */
   def blockEpisodes(byLanes: Boolean, vehicle: VehicleChoice): Int =
-    (byLanes, vehicle.name == "quadrotor") match
+    (byLanes, vehicle.fliesInSteps) match
       case (true, false)  => 32768
       case (true, true)   => 2048
       case (false, false) => 512
@@ -28,7 +28,7 @@ object Effort:
     *   whether worlds with delays of their own do
     */
   def of(together: Boolean, alone: Boolean, vehicle: VehicleChoice): Effort =
-    def level(byLanes: Boolean) = (byLanes, vehicle.name == "quadrotor") match
+    def level(byLanes: Boolean) = (byLanes, vehicle.fliesInSteps) match
       case (true, false)                 => Cheap
       case (true, true) | (false, false) => Dear
       case (false, true)                 => Dearer

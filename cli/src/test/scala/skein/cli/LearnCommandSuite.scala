@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import skein.scenario.Scenarios
+import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.testing.TemporaryFolders
 import skein.training.*

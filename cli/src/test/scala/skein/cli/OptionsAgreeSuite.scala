@@ -26,7 +26,6 @@ class OptionsAgreeSuite extends munit.FunSuite:
       assert(option.summary.startsWith("what flies"), command.name)
     for (command, option) <- having("--predictor") do
       assert(option.summary.contains("predicts by"), command.name)
-    assertEquals(having("--plant").map(_._1).intersect(having("--predictor").map(_._1)), Seq.empty)
 
   test("scenario, settings, seed and loops are asked for in the same words wherever they are"):
     for flag <- Seq("--set", "--seed") do

@@ -16,7 +16,7 @@ final class Quadrotor(
     val gains: ControllerGains = ControllerGains(),
     val stepS: Double = Quadrotor.AirSimStepS,
     val cascade: Option[CascadeGains] = None
-):
+) extends Rotorcraft:
   import airframe.*
 
   private val controller =
@@ -74,6 +74,11 @@ final class Quadrotor(
     val state = atRest(positionNed, yawRad)
     state.grounded = true
     state
+
+  def land(state: QuadrotorState, yawRad: Double): Unit = state.copyFrom(landed(Vector3.Zero, yawRad))
+
+  def hover(state: QuadrotorState, goalNed: Vector3, yawRad: Double, environment: Environment): Unit =
+    state.copyFrom(hovering(goalNed, yawRad, environment))
 
   /** How far below the held altitude a hovering vehicle settles, m: the altitude integrator's discount leaves it
     * there. 2.0 mm for AirSim's vehicle.
@@ -185,7 +190,11 @@ final class Quadrotor(
     * near level, stays; any other bounces. The contact is taken at the centre of mass, so it turns nothing; in AirSim it is
     * where the engine's shapes meet.
     */
-  private def touchGround(state: QuadrotorState, before: QuadrotorState, environment: Environment): Unit =
+  private[skein] def touchGround(
+      state: QuadrotorState,
+      before: QuadrotorState,
+      environment: Environment
+  ): Unit =
     import before.{qx, qy}
     val upright = 1 - 2 * (qx * qx + qy * qy)
     val vx      = before.vx + before.ax * stepS

@@ -76,7 +76,8 @@ final class FlightAssembler(
       settings.period,
       settings.duration,
       clockKind,
-      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else ""),
+      simulator.fold("built-in")(_.toString) + (if settings.wire == Wire.Mavlink then ", MAVLink" else "") +
+        (if settings.plant.isAirSim then "" else s", ${settings.plant.text}"),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightAssembler.version,
@@ -250,6 +251,7 @@ final class FlightAssembler(
     if simulator.isDefined then Future.successful(None)
     else
       val vehicles = fleet.agents.map(Vehicles.settings)
+      val kind     = settings.plant.kind.fold(reason => throw CannotFly(reason), identity)
       SimulatorServer
         .start(
           SimulatorSettings(
@@ -259,7 +261,8 @@ final class FlightAssembler(
             mavlink =
               Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
                 Some(FlightAssembler.anyPort)
-              ))
+              )),
+            kind = kind
           ),
           transport,
           clock

@@ -38,6 +38,8 @@ import skein.vehicle.{CarModel, ReducedModel, VehicleKind, VehicleModel}
   *   period where none is set
   * @param images
   *   whose images and clouds are recorded
+  * @param plant
+  *   what the built-in simulator's multirotors are
   */
 final case class FlySettings(
     loops: List[LoopKind],
@@ -55,7 +57,8 @@ final case class FlySettings(
     scene: Option[NamedScene] = None,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
-    images: List[ImageSource] = Nil
+    images: List[ImageSource] = Nil,
+    plant: SimulatedBody = SimulatedBody.AirSim
 ):
 
   /** The cameras and lidars whose images and clouds the flight has. */
@@ -316,6 +319,8 @@ object FlySettings:
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
+
+  private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
 
   private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse)
   private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)

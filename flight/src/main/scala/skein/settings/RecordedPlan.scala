@@ -29,6 +29,7 @@ object RecordedPlan:
   private val MovesInFlight = "movesInFlight"
   private val DeadlineNs    = "deadlineNs"
   private val Images        = "images"
+  private val Plant         = "plant"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -54,7 +55,10 @@ object RecordedPlan:
       Parameter(Planning, settings.planning.text),
       Parameter(Predictor, PredictionModel.text(settings.predictor)),
       Parameter(MovesInFlight, settings.movesInFlight.toString)
-    ) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
+    ) ++ Option.when(!settings.plant.isAirSim)(Parameter(
+      Plant,
+      settings.plant.text
+    )) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
       Option.when(settings.images.nonEmpty)(
         Parameter(Images, settings.images.map(_.text).mkString(" "))
       ) ++
@@ -97,6 +101,7 @@ object RecordedPlan:
       within   <- optional(DeadlineNs, "nanoseconds")(_.toLongOption.filter(_ > 0))
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
       solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
+      plant    <- optional(Plant, SimulatedBody.forms)(SimulatedBody.recorded(_).toOption)
       images   <- optional(Images, "sources of images, with a space between two"): text =>
         val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
         Option.when(wrong.isEmpty)(sources)
@@ -126,7 +131,8 @@ object RecordedPlan:
         deadline = within.map(Span.ofNanos),
         fallback = fallback.getOrElse(settings.fallback),
         scene = Some(scene),
-        images = images.getOrElse(Nil)
+        images = images.getOrElse(Nil),
+        plant = plant.getOrElse(settings.plant)
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
     )

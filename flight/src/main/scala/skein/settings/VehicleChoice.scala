@@ -1,8 +1,17 @@
 package skein.settings
 
 import java.nio.file.{Files, Path}
-import skein.forward.{PlantResponse, Reduced, ReducedResponse, VelocityResponse, VelocityResponses}
+import skein.forward.{
+  PlantResponse,
+  QuadrotorResponse,
+  Reduced,
+  ReducedResponse,
+  SteppedResponse,
+  VelocityResponse,
+  VelocityResponses
+}
 import skein.identify.Structure
+import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.vehicle.{DrivenCar, ReducedModel}
 
@@ -12,7 +21,11 @@ import skein.vehicle.{DrivenCar, ReducedModel}
   * @param description
   *   one line that says what flies
   */
-final case class VehicleChoice(name: String, description: String, response: VelocityResponse)
+final case class VehicleChoice(name: String, description: String, response: VelocityResponse):
+  /** Whether an episode costs as much as physics in steps of milliseconds. */
+  def fliesInSteps: Boolean = response match
+    case _: (SteppedResponse | QuadrotorResponse) => true
+    case _                                        => false
 
 object VehicleChoice:
 
@@ -56,7 +69,7 @@ object VehicleChoice:
   private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal, car)
 
   val forms: String =
-    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, a FILE of ./skein identify, or reduced:FILE"
+    s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
 
   /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the file's model of
     * three parameters, which flies by lanes.
@@ -75,6 +88,10 @@ object VehicleChoice:
       )
     case None =>
       text match
+        case s"mujoco:$path" =>
+          MujocoModel.read(Path.of(path)).map(model =>
+            VehicleChoice(text, s"MuJoCo's $path in steps of ${model.stepS} s", MujocoResponse(model))
+          )
         case s"reduced:$path" =>
           for
             file <- read(path, altitudeM)

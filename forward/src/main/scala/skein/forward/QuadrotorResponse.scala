@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint}
+import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
 /** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as the built-in simulator flies it
   * (`skein.simulator.SimulatedVehicle`): physics keeps a grid of whole steps, from when the vehicle was put to
@@ -16,7 +16,7 @@ private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hover
   /** AirSim's: `skein.simulator.SimulatorSettings.Handover`. */
   override def handoverS: Double = 0.0003
 
-private[skein] final class QuadrotorVehicle(quadrotor: Quadrotor, hoveredNs: Long) extends Vehicle:
+private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends Vehicle:
   private val stepNs             = Nanos.of(quadrotor.stepS)
   private val state              = QuadrotorState()
   private var setpoint: Setpoint = Setpoint.Disarmed
@@ -29,7 +29,7 @@ private[skein] final class QuadrotorVehicle(quadrotor: Quadrotor, hoveredNs: Lon
   def start(x: Double, y: Double, z: Double): Unit =
     originX = x; originY = y; down = z
     val hold = Vector3(0, 0, z - quadrotor.hoverSagM(z))
-    state.copyFrom(quadrotor.hovering(hold))
+    quadrotor.hover(state, hold, 0, Environment.Calm)
     state.place(Vector3(0, 0, z), Quaternion.Identity)
     setpoint = Setpoint.hold(hold)
     now = 0; steppedTo = 0

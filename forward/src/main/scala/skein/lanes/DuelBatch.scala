@@ -1,13 +1,21 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, QuadrotorResponse, VelocityResponse}
+import skein.forward.{
+  DelayTable,
+  Delays,
+  Duel,
+  LoopTiming,
+  QuadrotorResponse,
+  SteppedResponse,
+  VelocityResponse
+}
 import skein.policy.Policy
 import skein.simd.LaneMath
 
 /** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches and maps.
   *
   * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by [[TimetableKernel]],
-  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[QuadrotorBatch]]). All
+  * others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by lanes under the scalar loops ([[SteppedBatch]]). All
   * else flies by the scalar reference ([[Rollout]]). ARCHITECTURE.md has the table. Which engine flies a world depends on
   * the world and on `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their
   * order. One call at a time.
@@ -47,7 +55,8 @@ final class DuelBatch(
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  = (model, plant) match
       case _ if sees                                => scalar
-      case (quadrotor: QuadrotorResponse, Right(_)) => QuadrotorBatch(duel, timing, quadrotor)
+      case (stepped: SteppedResponse, _)            => SteppedBatch.of(duel, timing, stepped)
+      case (quadrotor: QuadrotorResponse, Right(_)) => SteppedBatch.of(duel, timing, quadrotor)
       case (_, Right(kind))                         => LoopFlyer(duel, timing, kind, scalar)
       case (_, Left(_))                             => scalar
     val together: DuelFlyer = (lanes, eyes) match
@@ -56,6 +65,8 @@ final class DuelBatch(
 
   private val timetables = Timetables(MostBytes)
   private val workers    = Vector.fill(threads)(Worker())
+
+  private def isStepped = model.isInstanceOf[SteppedResponse] && !sees
 
   /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees
@@ -69,8 +80,9 @@ final class DuelBatch(
     */
   def engine(pursuer: Policy, evader: Policy, shareEpisodes: Boolean, links: Seq[Delays]): String =
     lanesOf(pursuer, evader, shares(shareEpisodes)) match
-      case Left(reason) => s"scalar: $reason"
-      case Right(lanes) =>
+      case Left(_) if isStepped => "vehicles side by side; their loops by the scalar engine"
+      case Left(reason)         => s"scalar: $reason"
+      case Right(lanes)         =>
         val refused = refusals(shares(shareEpisodes), links)
         if refused.isEmpty then s"SIMD, $lanes"
         else if refused.size == links.size then s"scalar: ${refused.head}"

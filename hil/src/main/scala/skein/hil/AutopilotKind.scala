@@ -19,8 +19,10 @@ enum AutopilotKind(val label: String):
     *   its number, from 1
     * @param from
     *   when it begins
+    * @param speed
+    *   of the simulator's clock against the real one
     */
-  def interface(system: Int, sensors: Sensors, from: Span): AutopilotInterface = this match
+  def interface(system: Int, sensors: Sensors, from: Span, speed: Double = 1): AutopilotInterface = this match
     case Px4        => Px4Interface(system, sensors, from)
     case ArduPilot  => ArduPilotInterface(sensors, from)
-    case Betaflight => BetaflightInterface(sensors, from)
+    case Betaflight => BetaflightInterface(sensors, from, speed)

@@ -5,13 +5,16 @@ import skein.units.*
 import skein.vehicle.Setpoint
 
 /** The interface of Betaflight's SITL (its `fdm_packet` and `servo_packet`, 4.6): a datagram with the vehicle's state every
-  * 2 ms, one with four rotors' controls back. Nobody waits for the other: Betaflight takes the rate of its clock from the
-  * states' times and when they come, so what is late is left out, not made up for.
+  * 2 ms, one with four rotors' controls back. Nobody waits for the other, so what is late is left out, not made up for.
+  *
+  * Betaflight takes the rate of its clock from the difference of two states' times over that of when they come, which for
+  * two that come close together is a hundredfold. Where its time does not pass, it keeps the real clock. So at the real
+  * clock's speed all states are told of one time.
   *
   * Gyroscope, accelerometer and barometer have their errors; the attitude is the truth, which Betaflight takes from the
   * simulator.
   */
-final class BetaflightInterface(sensors: Sensors, from: Span) extends AutopilotInterface:
+final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1) extends AutopilotInterface:
   import AutopilotInterface.Step
   import BetaflightInterface.*
 
@@ -41,7 +44,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span) extends AutopilotI
     val turn     = truth.kinematics.orientation
     val velocity = truth.kinematics.velocityNed
     val packet   = ByteBuffer.allocate(StateLength).order(ByteOrder.LITTLE_ENDIAN)
-    packet.putDouble(truth.up.toSeconds)
+    packet.putDouble(if speed == 1 then 0 else truth.up.toSeconds)
     put(packet, rates.x, rates.y, rates.z)
     // What it measures, with x to the front, y to the left and z up, and then the sign turned.
     put(packet, -force.x, force.y, force.z)

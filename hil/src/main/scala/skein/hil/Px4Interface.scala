@@ -95,7 +95,8 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span) extends Auto
       pressureAltitudeM(pressure).toFloat,
       temperatureC.toFloat,
       Updated.Inertial | (if isMagnetic then Updated.Magnetic else 0L) |
-        (if isPressure then Updated.Pressure else 0L)
+        (if isPressure then Updated.Pressure else 0L) |
+        (if truth.jumped then Updated.Reset else 0L)
     )
 
   private def satellites(truth: SensorTruth): Option[Message] =
@@ -190,6 +191,8 @@ object Px4Interface:
     val Magnetic = 0x1c0L
     // Pressure, altitude by pressure, temperature.
     val Pressure = 0x1a00L
+    // The vehicle was put elsewhere: estimators begin anew.
+    val Reset = 0x80000000L
 
   private def micros(up: Span): Long = up.toNanos / 1000
 

@@ -20,6 +20,8 @@ import skein.vehicle.Airframe
   *   of the air, Pa
   * @param temperatureK
   *   of the air, K
+  * @param jumped
+  *   whether it was put elsewhere, or back to its start, since its sensors were read last
   */
 final case class SensorTruth(
     at: Instant,
@@ -28,7 +30,8 @@ final case class SensorTruth(
     accelerationNed: Vector3,
     place: GeoLocation,
     pressurePa: Double,
-    temperatureK: Double
+    temperatureK: Double,
+    jumped: Boolean = false
 ):
   /** What an accelerometer measures, FRD, m/s²: (0, 0, −9.81) at rest. */
   def specificForceFrd: Vector3 =

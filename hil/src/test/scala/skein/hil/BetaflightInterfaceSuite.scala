@@ -36,7 +36,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     )
     val packet = ByteBuffer.wrap(interface.sense(truth).head).order(ByteOrder.LITTLE_ENDIAN)
     val told   = Vector.fill(18)(packet.getDouble)
-    assertEquals(told.take(4), Vector(0.005, 0.1, 0.2, 0.3))
+    assertEquals(told.take(4), Vector(0.0, 0.1, 0.2, 0.3))
     assertEquals(told.slice(4, 7).map(_.abs), Vector(0.0, 0.0, 0.0), "nothing pulls at what falls")
     assertEquals(told.slice(7, 11), Vector(0.5, 0.5, 0.5, -0.5))
     assertEquals(told.slice(11, 14), Vector(5.0, 4.0, 6.0), "east, north, up")
@@ -45,6 +45,16 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     val resting =
       ByteBuffer.wrap(interface.sense(atRest(Span.ofMillis(5))).head).order(ByteOrder.LITTLE_ENDIAN)
     assertEquals(resting.getDouble(6 * 8), -9.80665)
+
+  test(
+    "at the real clock's speed Betaflight's time stands still, so that it keeps the real clock; else it passes"
+  ):
+    def times(speed: Double) =
+      val one = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, speed)
+      Vector(5, 9).map(ms =>
+        ByteBuffer.wrap(one.sense(atRest(Span.ofMillis(ms))).head).order(ByteOrder.LITTLE_ENDIAN).getDouble
+      )
+    assertEquals((times(1), times(2)), (Vector(0.0, 0.0), Vector(0.005, 0.009)))
 
   test("controls are taken as they come, between 0 and 1; of any other length they are counted"):
     val one = interface

@@ -42,6 +42,8 @@ final case class OffboardSettings(
   *   actions without an answer, the oldest first
   * @param readers
   *   who waits for the next sample
+  * @param firmware
+  *   whose modes it has, as its heartbeat tells
   * @param lastSync
   *   the newest TIMESYNC's time; each has a later one
   */
@@ -61,6 +63,7 @@ final case class Control(
     orders: Vector[Control.Order] = Vector.empty,
     lastSync: Instant = Instant.Epoch,
     heardAt: Option[Instant] = None,
+    firmware: Either[String, Firmware] = Left("no heartbeat has come"),
     mode: Long = 0,
     isArmed: Boolean = false,
     isOnGround: Boolean = true,
@@ -82,10 +85,11 @@ final case class Control(
       )
     else Step(copy(readers = readers :+ ((token, now + settings.timeout))))
 
-  def act(token: Long, action: Action, lasts: Span, now: Instant): Step =
+  def act(token: Long, action: Action, lasts: Span, now: Instant): Step = known(token): own =>
     if isOut then refused(token, s"$name is outside of the geofence: it holds its position")
     else if !isArmed then refused(token, s"$name is disarmed")
-    else if !Flyable(mode) then refused(token, s"$name is in another mode: somebody else has taken it over")
+    else if !own.flyable(mode) then
+      refused(token, s"$name is in ${own.modeName(mode)}: somebody else has taken it over")
     else
       action match
         case Action.Hover => hover(token, now)
@@ -98,12 +102,37 @@ final case class Control(
             until = now + lasts
           ).replacing(now)
           val entering =
-            if mode == Offboard || orders.exists(_.isOffboard) then Step(next)
-            else next.order(Silent, Command.SetMode, now, modeNumbers(FlightMode.Offboard))
+            if mode == own.offboard || orders.exists(isOffboard) then Step(next)
+            else next.enter(Silent, own, own.offboard, now)
           entering.andThen(_.send(now))
 
   def hover(token: Long, now: Instant): Step =
-    givenUp(order(token, Command.SetMode, now, modeNumbers(FlightMode.Hold)))
+    known(token)(own => givenUp(enter(token, own, own.holding, now)))
+
+  /** Starts the motors. ArduPilot does so in Guided for who wants to take off from there. */
+  def arm(token: Long, now: Instant): Step =
+    known(token)(own =>
+      guided(own, now).andThen(_.order(token, Command.Arm, now, Vector(1f, 0, 0, 0, 0, 0, 0)))
+    )
+
+  /** Takes off, to the autopilot's own height where it has one. */
+  def takeoff(token: Long, now: Instant): Step = known(token): own =>
+    val numbers = if own.takeoffM.isNaN then Vector.fill(7)(Float.NaN) else Vector.fill(6)(0f) :+ own.takeoffM
+    guided(own, now).andThen(_.order(token, Command.Takeoff, now, numbers))
+
+  /** Where it takes off in the mode in which it follows setpoints. */
+  private def guided(own: Firmware, now: Instant): Step =
+    if own != Firmware.Copter || mode == own.offboard then Step(this)
+    else enter(Silent, own, own.offboard, now)
+
+  private def known(token: Long)(step: Firmware => Step): Step =
+    firmware.fold(why => refused(token, s"$name: $why"), step)
+
+  private def enter(token: Long, own: Firmware, wanted: Long, now: Instant): Step =
+    order(token, Command.SetMode, now, own.modeNumbers(wanted), Some(wanted))
+
+  private def isOffboard(one: Order): Boolean =
+    one.mode.exists(wanted => firmware.exists(_.offboard == wanted))
 
   /** Does nothing more by itself; actions under way end as replaced. */
   private def givenUp(step: Step): Step =
@@ -114,8 +143,14 @@ final case class Control(
     )
 
   /** Sends a command until it is answered: [[MostTries]] times, the timeout over all. */
-  def order(token: Long, command: Int, now: Instant, numbers: Vector[Float]): Step =
-    val one = Order(token, command, numbers, 0, now + settings.timeout, now, None)
+  def order(
+      token: Long,
+      command: Int,
+      now: Instant,
+      numbers: Vector[Float],
+      mode: Option[Long] = None
+  ): Step =
+    val one = Order(token, command, numbers, 0, now + settings.timeout, now, None, mode)
     // A newer command of the kind takes an older one's place.
     val (older, others) = orders.partition(_.command == command)
     Step(copy(orders = others), answers = older.map(_.token -> Right(false)))
@@ -182,8 +217,9 @@ final case class Control(
     Step(next, setpoint.toVector :+ Timesync(0, at.toNanos, system, 1))
 
   private def taken(message: Message, now: Instant): Step = message match
-    case Heartbeat(_, autopilot, base, custom, _, _) if autopilot != NoAutopilot =>
-      Step(copy(mode = custom, isArmed = (base & ModeFlag.Armed) != 0))
+    case Heartbeat(kind, autopilot, base, custom, _, _) if autopilot != NoAutopilot =>
+      val own = Firmware.of(autopilot, kind)
+      Step(copy(mode = custom, isArmed = (base & ModeFlag.Armed) != 0, firmware = own))
     case ExtendedSysState(_, landed)       => Step(copy(isOnGround = landed == 1))
     case GpsGlobalOrigin(lat, lon, alt, _) =>
       Step(copy(origin = Some(GeoLocation(lat * 1e-7, lon * 1e-7, Metres(alt / 1000.0)))))
@@ -223,13 +259,13 @@ final case class Control(
     val why = s"$name has left the geofence: ${awayM.fixed(0)} m away, ${upM.fixed(0)} m up"
     val out = copy(isOut = true, flown = None, asked = Vector.empty)
     Step(out, answers = asked.map(_.token -> Left(VehicleError.Refused(why))))
-      .andThen(_.order(Silent, Command.SetMode, now, modeNumbers(FlightMode.Hold)))
+      .andThen(one => one.firmware.fold(_ => Step(one), own => one.enter(Silent, own, own.holding, now)))
 
   private def acknowledged(command: Int, result: Int, now: Instant): Step =
     orders.find(_.command == command) match
       case None                     => Step(this)
       case Some(one) if result == 0 =>
-        val entered = if command == Command.SetMode then modeOf(one.numbers) else mode
+        val entered = one.mode.getOrElse(mode)
         val armed   = if command == Command.Arm then one.numbers(0) == 1 else isArmed
         Step(
           copy(orders = orders.filter(_ ne one), mode = entered, isArmed = armed),
@@ -237,8 +273,8 @@ final case class Control(
         )
       case Some(_) if result == Result.InProgress => Step(this)
       // Setpoints may not have come yet.
-      case Some(one) if one.isOffboard && one.tries < MostTries => Step(this)
-      case Some(one)                                            =>
+      case Some(one) if isOffboard(one) && one.tries < MostTries => Step(this)
+      case Some(one)                                             =>
         Step(copy(orders =
           orders.map(other => if other eq one then one.copy(refusal = Some((result, now))) else other)
         ))
@@ -251,7 +287,7 @@ final case class Control(
 
   private def failed(one: Order, why: String): Step =
     val error = VehicleError.Refused(s"$name: $why")
-    if !one.isOffboard then Step(this, answers = Vector(one.token -> Left(error)))
+    if !isOffboard(one) then Step(this, answers = Vector(one.token -> Left(error)))
     else Step(copy(flown = None, asked = Vector.empty), answers = asked.map(_.token -> Left(error)))
 
   /** Commands that are to be sent, again or at last not any more. */
@@ -265,7 +301,8 @@ final case class Control(
           ).failed(one, s"refused (result $result)"))
         case None if now >= one.until =>
           val without = next.copy(orders = next.orders.filter(_ ne one))
-          if one.isOffboard then before.andThen(_ => without.failed(one, "offboard was not entered in time"))
+          if isOffboard(one) then
+            before.andThen(_ => without.failed(one, "offboard was not entered in time"))
           else
             before.andThen(_ =>
               Step(
@@ -301,6 +338,9 @@ object Control:
     */
   final case class Asked(token: Long, sentAt: Instant, until: Instant, replacedAt: Option[Instant])
 
+  /** @param mode
+    *   that it sets
+    */
   final case class Order(
       token: Long,
       command: Int,
@@ -308,10 +348,9 @@ object Control:
       tries: Int,
       until: Instant,
       sendAt: Instant,
-      refusal: Option[(Int, Instant)]
+      refusal: Option[(Int, Instant)],
+      mode: Option[Long]
   ):
-    private[offboard] def isOffboard: Boolean = command == Command.SetMode && modeOf(numbers) == Offboard
-
     private[offboard] def message(system: Int): Message = CommandLong(
       system,
       1,
@@ -342,18 +381,5 @@ object Control:
 
   /** What a vehicle does whose action's time is over. */
   private val Stay = Action.Velocity(Vector3.Zero)
-
-  private val Offboard = FlightMode.Offboard.customMode
-
-  /** Modes out of which it is taken into offboard: that itself, and PX4's automatic takeoff and hold. Whoever puts it into
-    * another one, a pilot or a failsafe, has it.
-    */
-  private val Flyable = Set(Offboard, FlightMode.Takeoff.customMode, FlightMode.Hold.customMode)
-
-  private def modeNumbers(mode: FlightMode): Vector[Float] =
-    Vector(ModeFlag.Custom.toFloat, mode.main.toFloat, mode.sub.toFloat, 0f, 0f, 0f, 0f)
-
-  private def modeOf(numbers: Vector[Float]): Long =
-    FlightMode.customMode(numbers(1).toInt, numbers(2).toInt)
 
   private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

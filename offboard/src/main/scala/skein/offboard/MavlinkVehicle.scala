@@ -9,7 +9,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode. Not for real aircraft.
+/** A vehicle that speaks MAVLink as a loop sees it: flown in PX4's offboard mode, or in Guided of ArduPilot's copter. Not for real aircraft.
   *
   * A reading is the next sample that the vehicle sends. An action ends as replaced when the vehicle has received its
   * successor.
@@ -30,14 +30,14 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def hover(): Future[Either[VehicleError, Boolean]] =
     done((control, token, now) => control.hover(token, now))
 
-  def arm(): Future[Either[VehicleError, Boolean]] = order(Command.Arm, 1)
+  def arm(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.arm(token, now))
 
   /** Stops the motors at once, wherever it is. */
   def kill(): Future[Either[VehicleError, Boolean]] = order(Command.Arm, 0, CommonDialect.Force.toFloat)
 
-  /** To the autopilot's own height; answers when it begins. */
+  /** To the autopilot's own height, or 2.5 m; answers when it begins. */
   def takeoff(): Future[Either[VehicleError, Boolean]] =
-    order(Command.Takeoff, Vector.fill(7)(Float.NaN)*)
+    done((control, token, now) => control.takeoff(token, now))
 
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround

@@ -8,14 +8,14 @@ import skein.units.*
 
 /** One vehicle's control, one event at a time. The vehicle's clock is 1000 s behind the controller's. */
 class ControlSuite extends munit.FunSuite:
-  private def at(ms: Double): Instant               = Instant.ofNanos(1_000_000_000_000L) + Span.ofMillis(ms)
-  private def theirs(ms: Double): Instant           = Instant.ofNanos(0) + Span.ofMillis(ms)
-  private val forward                               = Action.VelocityAt(5, 0, Metres(-20))
-  private val aside                                 = Action.VelocityAt(0, 5, Metres(-20))
-  private val offboard                              = 6L << 16
-  private val hold                                  = 4L << 16 | 3L << 24
-  private def heartbeat(mode: Long, armed: Boolean) =
-    Heartbeat(2, 12, if armed then 209 else 81, mode, 4, 3)
+  private def at(ms: Double): Instant     = Instant.ofNanos(1_000_000_000_000L) + Span.ofMillis(ms)
+  private def theirs(ms: Double): Instant = Instant.ofNanos(0) + Span.ofMillis(ms)
+  private val forward                     = Action.VelocityAt(5, 0, Metres(-20))
+  private val aside                       = Action.VelocityAt(0, 5, Metres(-20))
+  private val offboard                    = 6L << 16
+  private val hold                        = 4L << 16 | 3L << 24
+  private def heartbeat(mode: Long, armed: Boolean, autopilot: Int = 12, kind: Int = 2) =
+    Heartbeat(kind, autopilot, if armed then 209 else 81, mode, 4, 3)
   private def sample(ms: Double, north: Double = 0, down: Double = -20) = Odometry(
     (ms * 1000).toLong,
     1,
@@ -117,6 +117,41 @@ class ControlSuite extends munit.FunSuite:
     for control <- Seq(known(armed = false), known(4L << 16 | 5L << 24), known(1L << 16)) do
       val step = control.act(1, forward, Span.ofSeconds(1), at(100))
       assert(step.messages.isEmpty && step.answers.exists(_._2.left.exists(_.isCertain)), step.toString)
+
+  test("ArduPilot's copter is flown in Guided, held in Brake, and takes off in Guided, by its own numbers"):
+    def at100(mode: Long, armed: Boolean = true) =
+      known().heard(heartbeat(mode, armed, autopilot = 3), at(50)).next
+    def modes(step: Control.Step) =
+      step.messages.collect {
+        case one: CommandLong if one.command == 176 => (one.param1, one.param2, one.param3)
+      }
+    assertEquals(modes(at100(17).act(1, forward, Span.ofSeconds(1), at(100))), Vector((1f, 4f, 0f)))
+    assertEquals(modes(at100(4).act(1, forward, Span.ofSeconds(1), at(100))), Vector.empty)
+    assertEquals(modes(at100(4).hover(1, at(100))), Vector((1f, 17f, 0f)))
+    val takenOff = at100(0).takeoff(2, at(100))
+    assertEquals(
+      takenOff.messages.collect { case one: CommandLong => (one.command, one.param2, one.param7) },
+      Vector((176, 4f, 0f), (22, 0f, 2.5f))
+    )
+    assertEquals(takenOff.next.heard(CommandAck(176, 0), at(120)).next.mode, 4L)
+    val taken = at100(6).act(1, forward, Span.ofSeconds(1), at(100))
+    assertEquals(
+      taken.answers,
+      Vector(1L -> Left(VehicleError.Refused("system 1 is in RTL: somebody else has taken it over")))
+    )
+
+  test("an autopilot whose modes are not known is neither armed nor flown, and the refusal names it"):
+    for (autopilot, kind, named) <- Seq((0, 2, "autopilot 0"), (3, 1, "type 1")) do
+      val stranger = known().heard(heartbeat(offboard, armed = true, autopilot, kind), at(50)).next
+      for step <- Seq(
+          stranger.act(1, forward, Span.ofSeconds(1), at(100)),
+          stranger.hover(1, at(100)),
+          stranger.arm(1, at(100)),
+          stranger.takeoff(1, at(100))
+        )
+      do
+        assertEquals(step.messages, Vector.empty)
+        assert(step.answers.exists(_._2.left.exists(_.message.contains(named))), step.answers.toString)
 
   test("a command without an answer is sent eight times, then given up"):
     val begun          = known().order(3, CommonDialect.Command.Arm, at(100), Vector.fill(7)(1f))

@@ -27,7 +27,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit =
     for system <- systems.headOption; case vehicle: SimulatedMultirotor <- world.vehicles.lift(system - 1) do
       val sensors   = Sensors(SplitMix64.seedOf(settings.seed, system), settings.noise)
-      val interface = settings.autopilot.interface(system, sensors, up)
+      val interface = settings.autopilot.interface(system, sensors, up, simulation.speed)
       flown(channel) = Flown(vehicle, interface)
       vehicle.flyBy(Some(interface.rotors))
 
@@ -58,7 +58,7 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
 
   def reached(): Unit =
     for (channel, one) <- flown if startedAt + one.interface.stop(up) <= world.now do
-      out += ((channel = channel, datagrams = one.interface.sense(truthOf(one.vehicle))))
+      out += ((channel = channel, datagrams = one.interface.sense(truthOf(one))))
 
   def goal: Option[Instant] =
     if flown.isEmpty || interfaces.exists(_.isByClock) then None
@@ -80,10 +80,11 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
 
   private def up: Span = world.now.since(startedAt)
 
-  private def truthOf(vehicle: SimulatedMultirotor): SensorTruth =
-    val now   = world.now
-    val place = vehicle.locationAt(now)
-    val state = vehicle.state
+  private def truthOf(one: Flown): SensorTruth =
+    val now     = world.now
+    val vehicle = one.vehicle
+    val place   = vehicle.locationAt(now)
+    val state   = vehicle.state
     SensorTruth(
       now,
       up,
@@ -97,11 +98,19 @@ private[simulator] final class HilVehicles(simulation: Simulation, settings: Hil
       if state.grounded then Vector3.Zero else state.accelerationNed,
       place,
       Globe.pressurePa(place.altitude.value),
-      Globe.temperatureK(place.altitude.value)
+      Globe.temperatureK(place.altitude.value),
+      one.jumped()
     )
 
 private[simulator] object HilVehicles:
-  private final case class Flown(vehicle: SimulatedMultirotor, interface: AutopilotInterface)
+  private final class Flown(val vehicle: SimulatedMultirotor, val interface: AutopilotInterface):
+    private var jumps = vehicle.jumps
+
+    /** Whether it has jumped since this was asked before. */
+    def jumped(): Boolean =
+      val before = jumps
+      jumps = vehicle.jumps
+      jumps != before
 
   /** An autopilot that has not answered for so long is not waited for: as PX4's plugin for Gazebo does it. */
   private val Patience = Span.ofSeconds(1)

@@ -9,12 +9,12 @@ import skein.vehicle.*
 /** One multirotor: its physics and what AirSim's SimpleFlight firmware keeps beside them (`OffboardApi`). */
 final private[simulator] class SimulatedMultirotor(
     settings: VehicleSettings,
-    quadrotor: Quadrotor,
+    craft: Rotorcraft,
     worldOrigin: GeoLocation
 ) extends SimulatedVehicle(settings, worldOrigin):
-  val state: QuadrotorState = quadrotor.landed(Vector3.Zero, settings.yaw.value)
+  val state: QuadrotorState = QuadrotorState()
 
-  private var tuned       = quadrotor
+  private var tuned       = craft
   private var environment =
     Environment(groundDownM = math.max(0, -settings.startNed.z), originAltitudeM = home.altitude.value)
   private var goal        = Setpoint.Disarmed
@@ -24,6 +24,7 @@ final private[simulator] class SimulatedMultirotor(
   private var remote      = RcData.Absent
   private var flown       = false
   private var outside     = Option.empty[Setpoint]
+  private var jumped      = 0L
 
   /** The remote control's sticks as last heard of. */
   def sticks: RcData = remote
@@ -31,13 +32,17 @@ final private[simulator] class SimulatedMultirotor(
   /** AirSim's landed state. */
   def flying: Boolean = flown
 
-  def airframe: Airframe = quadrotor.airframe
+  /** How often it was put somewhere else than where it flew. */
+  def jumps: Long = jumped
+
+  def airframe: Airframe = craft.airframe
 
   reset(Instant.Epoch)
 
   /** Back to the start, without api control; armed if the settings say so. */
   def reset(at: Instant): Unit =
-    state.copyFrom(quadrotor.landed(Vector3.Zero, settings.yaw.value))
+    craft.land(state, settings.yaw.value)
+    jumped += 1
     state.grounded = environment.groundDownM == 0
     sampledAt = at
     armed = settings.armed
@@ -132,17 +137,19 @@ final private[simulator] class SimulatedMultirotor(
     val sinceSample = positionAt(at) - state.positionNed
     state.place(positionNed - sinceSample, orientation.normalized)
     state.grounded = false
+    jumped += 1
 
   /** Lets it hover at this place, level and at rest, as if it had long done so. It must be above the ground and under api
     * control.
     */
   def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
-    val hold = positionNed - Vector3(0, 0, quadrotor.hoverSagM(positionNed.z, environment))
-    state.copyFrom(quadrotor.hovering(hold, yawRad, environment))
+    val hold = positionNed - Vector3(0, 0, craft.hoverSagM(positionNed.z, environment))
+    craft.hover(state, hold, yawRad, environment)
     // Exactly there, whatever the sum of hold and sag was rounded to.
     state.place(positionNed, state.orientation)
     flown = true
+    jumped += 1
     command(Setpoint.hold(hold), at)
     // This goal is already what an expired one becomes.
     goalExpired = true
@@ -155,7 +162,7 @@ final private[simulator] class SimulatedMultirotor(
 
   /** Sets them; all controllers start anew. */
   def tune(gains: CascadeGains): Unit =
-    tuned = quadrotor.tuned(gains)
+    tuned = craft.tuned(gains)
     state.restartController()
 
   /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on nothing. */
@@ -168,6 +175,7 @@ final private[simulator] class SimulatedMultirotor(
     val velocity = kinematics.linear_velocity.toVector - acceleration * s
     val position = kinematics.position.toVector - velocity * s - acceleration * (s * s / 2)
     state.place(position, kinematics.orientation.toQuaternion.normalized)
+    jumped += 1
     state.vx = velocity.x; state.vy = velocity.y; state.vz = velocity.z
     state.ax = acceleration.x; state.ay = acceleration.y; state.az = acceleration.z
     state.wx = angularVelocity.x; state.wy = angularVelocity.y; state.wz = angularVelocity.z
@@ -209,7 +217,7 @@ final private[simulator] class SimulatedMultirotor(
     if !armed then Setpoint.Disarmed
     else
       val sticks   = if remote.is_valid then remote else RcData.Absent
-      val tilt     = quadrotor.gains.maxTilt
+      val tilt     = craft.gains.maxTilt
       val roll     = sticks.roll * tilt
       val pitch    = -sticks.pitch * tilt
       val throttle = math.max(sticks.throttle.toDouble, Setpoint.Armed.third)

@@ -40,17 +40,19 @@ final class Simulation(
   private[simulator] val equipment = settings.equipment
 
   val world: World =
-    World(settings.world, startedAt, settings.quadrotor, scene = settings.scene, equipment = equipment)
+    World(settings.world, startedAt, settings.multirotors, scene = settings.scene, equipment = equipment)
 
   private[simulator] val objects    = SceneObjects(world)
   private[simulator] val cameras    = Cameras(equipment)
   private[simulator] val appearance = Appearance()
   private[simulator] var recording  = false
 
+  /** Of its clock, against that whose times it is told. */
+  private[simulator] val speed: Double = settings.speed * settings.world.clockSpeed
+
   private val workers    = settings.newWorkers[SimulatorCall, Waiting]()
   private val answers    = ArrayBuffer.empty[SimulatorAnswer]
   private val continuing = ArrayBuffer.empty[Long]
-  private val speed      = settings.speed * settings.world.clockSpeed
   private var until      = startedAt
   private var paused     = false
   private var lag        = Span.Zero

@@ -6,7 +6,7 @@ import skein.link.Address
 import skein.rpc.{FrameLimits, ServerLimits}
 import skein.scene.Scene
 import skein.units.*
-import skein.vehicle.Quadrotor
+import skein.vehicle.RotorcraftKind
 
 /** How AirSim's server deals with moves that come faster than they end; see [[Workers]]. */
 enum Overload:
@@ -34,6 +34,8 @@ enum Overload:
   *   where its vehicles are reached by MAVLink, too
   * @param hil
   *   which autopilots outside fly its vehicles; then they are not reached by MAVLink
+  * @param kind
+  *   what its multirotors are; without one, AirSim's quadrotors
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -44,7 +46,8 @@ final case class SimulatorSettings(
     losesCancel: () => Boolean = () => false,
     scene: Scene = Scene.Empty,
     mavlink: Option[MavlinkSettings] = None,
-    hil: Option[HilSettings] = None
+    hil: Option[HilSettings] = None,
+    kind: Option[RotorcraftKind] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
@@ -53,8 +56,8 @@ final case class SimulatorSettings(
   private[simulator] def equipment: Equipment = Equipment.read(world.text).getOrElse(Equipment.None)
 
   /** Autopilots outside want their sensors at whole milliseconds. */
-  private[simulator] def quadrotor: Quadrotor =
-    if hil.isEmpty then Quadrotor.AirSim else Quadrotor(stepS = AutopilotInterface.Step.toSeconds)
+  private[simulator] def multirotors: RotorcraftKind =
+    kind.getOrElse(if hil.isEmpty then RotorcraftKind.AirSim else RotorcraftKind.at(AutopilotInterface.Step))
 
   private[simulator] def newWorkers[Job, Flight](): Workers[Job, Flight] =
     val vehicles = world.vehicles.size

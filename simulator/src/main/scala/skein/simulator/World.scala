@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.scene.{Lidar, Placement, Scene, SceneObject}
 import skein.units.*
-import skein.vehicle.{PathFollowing, Quadrotor}
+import skein.vehicle.{PathFollowing, RotorcraftKind}
 
 /** All vehicles, their moves, and the simulator's clock. It knows no wall clock: [[advanceTo]] says what time it is.
   *
@@ -18,7 +18,7 @@ import skein.vehicle.{PathFollowing, Quadrotor}
 final class World(
     settings: WorldSettings,
     start: Instant,
-    quadrotor: Quadrotor = Quadrotor.AirSim,
+    kind: RotorcraftKind = RotorcraftKind.AirSim,
     private[simulator] var scene: Scene = Scene.Empty,
     equipment: Equipment = Equipment.None
 ):
@@ -27,7 +27,7 @@ final class World(
   private var present    = settings.vehicles.map(made)
   private val moves      = ArrayBuffer.fill(present.size)(Option.empty[Running])
   private val ended      = ArrayBuffer.empty[Ended]
-  private val stepLength = Span.ofSeconds(quadrotor.stepS)
+  private val stepLength = Span.ofSeconds(kind.stepS)
   private var clock      = start
   private var nextStep   = start + stepLength
 
@@ -62,7 +62,7 @@ final class World(
 
   private def made(vehicle: VehicleSettings): SimulatedVehicle =
     if vehicle.isCar then SimulatedCar(vehicle, settings.origin)
-    else SimulatedMultirotor(vehicle, quadrotor, settings.origin)
+    else SimulatedMultirotor(vehicle, kind.make(), settings.origin)
 
   /** One more vehicle, at rest at its start. */
   private[simulator] def add(vehicle: VehicleSettings): Unit =

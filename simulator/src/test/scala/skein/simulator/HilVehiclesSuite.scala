@@ -4,6 +4,7 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.Address
+import skein.mavlink.{FrameReader, HilSensor}
 import skein.units.*
 
 /** Autopilots outside, without sockets and without a clock. */
@@ -98,6 +99,26 @@ class HilVehiclesSuite extends munit.FunSuite:
           (flown.now + Span.ofMillis(late), autopilot.hear(bytes))
         )
       assertEqualsDouble((flown.up - before).toSeconds, seconds, 0.03, s"$late ms")
+
+  test("sensors say once that the vehicle was put elsewhere, or back to its start"):
+    val flown     = Flown()
+    val autopilot = SmallAutopilot()
+    val reader    = FrameReader()
+    flown.hil.join(0, Vector(1), isDatagrams = false)
+    def resets(): Int =
+      var count = 0
+      flown.run(Span.ofMillis(100)): (channel, bytes) =>
+        count += reader.read(bytes).map(_.message).count:
+          case sensor: HilSensor => (sensor.fieldsUpdated & 0x80000000L) != 0
+          case _                 => false
+        flying(autopilot)(channel, bytes)
+      count
+    assertEquals(resets(), 0)
+    val vehicle = flown.simulation.world.multirotor(0)
+    vehicle.place(Vector3(0, 0, -10), Quaternion.Identity, flown.simulation.world.now)
+    assertEquals(resets(), 1)
+    flown.simulation.world.reset()
+    assertEquals((resets(), resets()), (1, 0))
 
   test("paused it sends nothing, and a step that is asked for goes on sensor by sensor"):
     val flown     = Flown()

@@ -8,6 +8,7 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.mavlink.*
+import skein.testing.PythonEnvironment
 import skein.units.*
 
 /** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies three at once.
@@ -23,9 +24,13 @@ class MavsdkLiveSuite extends munit.FunSuite:
 
   private val vehicles = Vector.tabulate(3)(index => VehicleSettings(s"v$index", Vector3(0, 10 * index, 0)))
 
-  private def serving[A](mavlink: MavlinkSettings)(use: SimulatorServer => A): A =
-    val settings =
-      SimulatorSettings(WorldSettings(vehicles), Address("127.0.0.1", 0), mavlink = Some(mavlink))
+  private def serving[A](mavlink: MavlinkSettings, speed: Double = 1)(use: SimulatorServer => A): A =
+    val settings = SimulatorSettings(
+      WorldSettings(vehicles),
+      Address("127.0.0.1", 0),
+      speed = speed,
+      mavlink = Some(mavlink)
+    )
     val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
     try use(server)
     finally
@@ -49,6 +54,19 @@ class MavsdkLiveSuite extends munit.FunSuite:
       println(output)
       assertEquals(status, 0, output)
       assert(output.linesIterator.exists(_.matches("PASSED [0-9]{2,} checks in .* s")), output)
+
+  test("pymavlink decodes every message of the vehicles, of every kind that they have"):
+    val python = Pymavlink.install()
+    assume(python.isRight, s"pymavlink cannot be installed here: ${python.swap.getOrElse("")}")
+    val port = freePorts(1).head
+    serving(
+      MavlinkSettings(udp = Vector(MavlinkPort(Address("127.0.0.1", port), systems = Vector(1)))),
+      speed = 4
+    ): _ =>
+      val (status, output) = Pymavlink.run(python.toOption.get, "decode_mavlink.py", port.toString)
+      println(output)
+      assertEquals(status, 0, output)
+      assert(output.linesIterator.exists(_.matches("PASSED [0-9]{3,} messages of 24 kinds")), output)
 
   test("a thousand damaged datagrams of each kind leave the vehicles answering, and other peers unharmed"):
     val port = freePorts(1).head
@@ -92,4 +110,7 @@ class MavsdkLiveSuite extends munit.FunSuite:
 
     def close(): Unit = socket.close()
 
-private val Mavsdk = PythonEnvironment("mavsdk", "/mavlink/fly_mavsdk.py", Seq("mavsdk==4.1.0"))
+private val Mavsdk = PythonEnvironment("mavsdk", Some("/mavlink/fly_mavsdk.py"), Seq("mavsdk==4.1.0"))
+
+private val Pymavlink =
+  PythonEnvironment("pymavlink", Some("/mavlink/decode_mavlink.py"), Seq("pymavlink==2.4.50"))

@@ -7,6 +7,7 @@ import scala.concurrent.duration.*
 import scala.io.Source
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
+import skein.testing.PythonEnvironment
 import skein.units.*
 
 /** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim` package of
@@ -74,7 +75,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite:
 
 private[simulator] val OfficialPythonClient = PythonEnvironment(
   imports = "airsim",
-  scripts = "/airsim-python/fly_square.py",
+  scripts = Some("/airsim-python/fly_square.py"),
   Seq("setuptools", "wheel", "msgpack", "numpy"),
   Seq("--no-deps", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
   // Its set-up imports the client itself, so it needs the other packages in sight.

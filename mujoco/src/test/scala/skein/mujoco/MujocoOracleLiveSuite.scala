@@ -1,6 +1,6 @@
-package skein.simulator
+package skein.mujoco
 
-import java.lang.foreign.Arena
+import java.nio.file.Files
 import scala.concurrent.duration.*
 import scala.util.Random
 import skein.units.{Quaternion, Vector3}
@@ -14,19 +14,14 @@ import skein.vehicle.*
   * So accelerations act half a step late, and its error is of the first order: it falls to a half with half the step. Where
   * both lead, for steps that become ever smaller, is where MuJoCo is.
   */
-class MujocoOracleLiveSuite extends munit.FunSuite:
+class MujocoOracleLiveSuite extends munit.FunSuite, MujocoHere:
   import MujocoOracleLiveSuite.*
   override val munitTimeout: Duration = 5.minutes
 
-  private lazy val arena  = Arena.ofShared()
-  private lazy val mujoco = Mujoco.library().map(Mujoco(_, arena))
-
-  override def afterAll(): Unit = arena.close()
-
   private def beside(name: String, fall: Fall, stepS: Double = 0.003): Unit = test(name):
-    assume(mujoco.isRight, s"MuJoCo is not here: ${mujoco.swap.getOrElse("")}")
-    val coarse  = flown(mujoco.toOption.get, fall, stepS)
-    val fine    = flown(mujoco.toOption.get, fall, stepS / 2)
+    assumeMujoco()
+    val coarse  = flown(fall, stepS)
+    val fine    = flown(fall, stepS / 2)
     val without = coarse.zip(fine).map((c, f) => f * 2 - c)
     val told    = s"$name, at ${stepS * 1000} ms: ${shown(coarse)}; at half of it: ${shown(fine)}; " +
       s"without the error of the first order: ${shown(without)}"
@@ -70,16 +65,41 @@ private object MujocoOracleLiveSuite:
   def shown(apart: Seq[Apart]): String =
     s"${(positionM(apart) * 1e6).round} µm, ${(attitudeDeg(apart) * 1e6).round / 1e6}°"
 
+  /** `mjSTATE_XFRC_APPLIED` */
+  private val ForcesFromOutside = 1 << 8
+
+  /** One simulation of a model, whose state is read and written by its parts. */
+  final class World(xml: String):
+    private val batch =
+      val file = Files.createTempFile("model", ".xml")
+      try
+        Files.writeString(file, xml)
+        MujocoBatch(MujocoModel.load(file).fold(sys.error, identity), 1)
+      finally Files.delete(file)
+
+    def advance(): Unit =
+      batch.mark(0)
+      batch.step()
+
+    def read(part: Int): Vector[Double] =
+      val at = batch.part(part)
+      Vector.tabulate(at.size)(index => batch(0, at.at + index))
+
+    def write(part: Int, values: Seq[Double]): Unit =
+      val at = batch.part(part)
+      require(values.size == at.size, s"expected ${at.size} numbers, came ${values.size}")
+      values.zipWithIndex.foreach((value, index) => batch(0, at.at + index) = value)
+
   private val airframe     = Airframe()
   private val altitudeM    = 500.0
   private val environment  = Environment.Calm
   private val HoverControl = Quadrotor.AirSim.hoverControl(-altitudeM)
 
   /** Every 0.3 s. */
-  def flown(mujoco: Mujoco, fall: Fall, stepS: Double): Vector[Apart] =
+  def flown(fall: Fall, stepS: Double): Vector[Apart] =
     val quadrotor = Quadrotor(stepS = stepS)
     val state     = QuadrotorState()
-    val world     = mujoco.World(model(stepS))
+    val world     = World(model(stepS))
     val spinning  = fall.ratesFrd
     state.z = -altitudeM
     state.vx = fall.velocityNed.x; state.vy = fall.velocityNed.y; state.vz = fall.velocityNed.z
@@ -99,8 +119,8 @@ private object MujocoOracleLiveSuite:
         -spinning.z * spinning.x * (airframe.inertiaFront - airframe.inertiaDown) / airframe.inertiaRight
       state.wzDot =
         -spinning.x * spinning.y * (airframe.inertiaRight - airframe.inertiaFront) / airframe.inertiaDown
-    world.write(Mujoco.Positions, turned(Vector3(0, 0, -altitudeM)) ++ Seq(1.0, 0.0, 0.0, 0.0))
-    world.write(Mujoco.Velocities, turned(fall.velocityNed) ++ turned(spinning))
+    world.write(MujocoBatch.Positions, turned(Vector3(0, 0, -altitudeM)) ++ Seq(1.0, 0.0, 0.0, 0.0))
+    world.write(MujocoBatch.Velocities, turned(fall.velocityNed) ++ turned(spinning))
 
     var before       = thrusts(state)
     var velocity     = fall.velocityNed
@@ -112,13 +132,13 @@ private object MujocoOracleLiveSuite:
       val (place, turn) = poseOf(world)
       val density       = Atmosphere.densityRatio(environment.originAltitudeM - place.z)
       val now           = thrusts(state)
-      world.write(Mujoco.Controls, now.zip(before).map((a, b) => (a + b) / 2 * density))
+      world.write(MujocoBatch.Controls, now.zip(before).map((a, b) => (a + b) / 2 * density))
       before = now
       // In the middle of the step, as Verlet's method has it.
       val drag = dragNed(velocity + acceleration * (stepS / 2), turn, -place.z)
-      world.write(Mujoco.ForcesFromOutside, Seq.fill(6)(0.0) ++ turned(drag) ++ Seq.fill(3)(0.0))
+      world.write(ForcesFromOutside, Seq.fill(6)(0.0) ++ turned(drag) ++ Seq.fill(3)(0.0))
       world.advance()
-      val next = untold(world.read(Mujoco.Velocities).take(3))
+      val next = untold(world.read(MujocoBatch.Velocities).take(3))
       acceleration = (next - velocity) * (1 / stepS)
       velocity = next
       quadrotor.step(state, Setpoint.rotors(controls(0), controls(1), controls(2), controls(3)), environment)
@@ -135,8 +155,8 @@ private object MujocoOracleLiveSuite:
 
   private def untold(v: Seq[Double]): Vector3 = Vector3(v(0), -v(1), -v(2))
 
-  private def poseOf(world: Mujoco#World): (Vector3, Quaternion) =
-    val q = world.read(Mujoco.Positions)
+  private def poseOf(world: World): (Vector3, Quaternion) =
+    val q = world.read(MujocoBatch.Positions)
     (untold(q), Quaternion(q(3), q(4), -q(5), -q(6)))
 
   /** AirSim's drag on three pairs of faces, N. */

@@ -1,4 +1,4 @@
-package skein.simulator
+package skein.testing
 
 import java.io.File
 import java.nio.file.{FileSystems, Files, Path}
@@ -10,12 +10,12 @@ import scala.util.Using
   * @param imports
   *   the module that is there when all is
   * @param scripts
-  *   a resource beside which scripts lie
+  *   a resource beside which scripts lie, if there are any
   * @param installs
   *   what `pip install` is called with, one call after the other
   */
-private[simulator] final class PythonEnvironment(imports: String, scripts: String, installs: Seq[String]*):
-  private val resources = PythonEnvironment.folderOf(scripts)
+final class PythonEnvironment(imports: String, scripts: Option[String], installs: Seq[String]*):
+  private lazy val resources = scripts.map(PythonEnvironment.folderOf)
 
   /** The environment's Python, or why there is none. */
   def install(): Either[String, Path] =
@@ -32,9 +32,14 @@ private[simulator] final class PythonEnvironment(imports: String, scripts: Strin
         _ <- Either.cond(isThere(bin), (), "it is installed but cannot be imported")
       yield bin
 
+  /** Runs one of the scripts.
+    *
+    * @return
+    *   its exit status, and what it wrote
+    */
   def run(python: Path, script: String, arguments: String*): (Int, String) =
     val output  = StringBuilder()
-    val command = Seq(python.toString, "-u", resources.resolve(script).toString) ++ arguments
+    val command = Seq(python.toString, "-u", resources.get.resolve(script).toString) ++ arguments
     val status  = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
     (status, output.toString)
 
@@ -52,9 +57,9 @@ private[simulator] final class PythonEnvironment(imports: String, scripts: Strin
     catch case e: java.io.IOException => Left(e.getMessage)
 
   private def process(command: Seq[String]) =
-    Process(command, Option.empty[File], "PYTHONPATH" -> resources.toString)
+    Process(command, Option.empty[File], resources.map("PYTHONPATH" -> _.toString).toSeq*)
 
-private object PythonEnvironment:
+object PythonEnvironment:
 
   /** Where a resource's folder lies: what is in a jar is unpacked, for as long as this process runs. */
   private def folderOf(resource: String): Path =

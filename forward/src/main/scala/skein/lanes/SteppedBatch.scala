@@ -1,24 +1,33 @@
 package skein.lanes
 
-import skein.forward.{Delays, Duel, LoopTiming, Nanos, QuadrotorResponse, Rollout, Vehicle, VelocityResponse}
+import skein.forward.*
 import skein.policy.Policy
 import skein.signal.Kinematics
 import skein.units.Vector3
-import skein.vehicle.{Environment, Quadrotor}
 
-/** Many worlds' quadrotors fly side by side ([[QuadrotorKernel]]), each world by its own [[Rollout]] and in its own time:
-  * before each step of physics every rollout handles the events that fall between the step before and this one. That is
-  * how the scalar quadrotor ([[QuadrotorResponse]]) meets them too, so that only the flight itself is in floats; loops,
-  * delays and policies, of any kind, are the scalar reference's. Mutable.
+/** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own [[Rollout]] and in its
+  * own time: before each step of physics every rollout handles the events that fall between the step before and this one.
+  * That is how one such vehicle meets them too, so that only the flight itself is another's; loops, delays and policies, of
+  * any kind, are the scalar reference's. Mutable.
+  *
+  * @param batch
+  *   worlds flown together
+  * @param vehicles
+  *   two for each
   */
-private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: QuadrotorResponse)
-    extends DuelFlyer:
-  import QuadrotorBatch.*
-  val batch: Int = QuadrotorBatch.Worlds
+private final class SteppedBatch(
+    duel: Duel,
+    timing: LoopTiming,
+    model: VelocityResponse,
+    stepS: Double,
+    hoveredS: Double,
+    val batch: Int,
+    vehicles: SteppedVehicles
+) extends DuelFlyer:
+  import SteppedBatch.*
 
-  private val kernel    = QuadrotorKernel()
-  private val stepNs    = Nanos.of(model.quadrotor.stepS)
-  private val hoveredNs = Nanos.of(model.hoveredS)
+  private val stepNs    = Nanos.of(stepS)
+  private val hoveredNs = Nanos.of(hoveredS)
   private val rollouts  = Array.ofDim[Rollout](batch)
   private val flownBy   = Array.fill[(Policy, Policy, Delays)](batch)((null, null, null))
   private val nextNs    = Array.ofDim[Long](batch)
@@ -32,7 +41,7 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
       for lane <- some.indices do
         rolloutOf(lane, worlds, some(lane)).start(worlds.key(some(lane)), captureRadiusM)
         nextNs(lane) = 0
-      kernel.use(some.length * Vehicles)
+      vehicles.use(some.length * Vehicles)
       flyAll(some.length)
       for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
 
@@ -46,7 +55,7 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
         if nextNs(lane) < until then nextNs(lane) = rollouts(lane).flyUntil(until)
         if nextNs(lane) != Rollout.Never then flying += 1
         lane += 1
-      kernel.fly(1)
+      vehicles.step()
       steppedTo = until
 
   private def rolloutOf(lane: Int, worlds: DuelWorlds, world: Int): Rollout =
@@ -58,7 +67,7 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
       rollouts(lane) = Rollout(own, timing, link, Places(lane))
     rollouts(lane)
 
-  /** Where the vehicles of one world are in the kernel. */
+  /** Where the vehicles of one world are. */
   private final class Places(lane: Int) extends VelocityResponse:
     private var next                                      = lane * Vehicles
     override def handoverS: Double                        = model.handoverS
@@ -67,7 +76,7 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
       next += 1
       Flying(next - 1)
 
-  /** A vehicle of the kernel, as the loops know it. */
+  /** One of the vehicles, as the loops know it. */
   private final class Flying(place: Int) extends Vehicle:
     private var originX, originY = 0.0
     private var down             = 0f
@@ -77,16 +86,16 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
       originX = x
       originY = y
       down = z.toFloat
-      kernel.hover(place, Vector3(0, 0, z - Quadrotor.AirSim.hoverSagM(z, Environment.Calm)))
+      vehicles.hover(place, z)
 
-    def command(vx: Double, vy: Double): Unit = kernel.command(place, vx.toFloat, vy.toFloat, down)
+    def command(vx: Double, vy: Double): Unit = vehicles.command(place, vx.toFloat, vy.toFloat, down)
 
     def advance(timeS: Double): Unit = sinceStep = (Nanos.of(timeS) - steppedTo) * 1e-9
 
     def x: Double  = originX + ownX
     def y: Double  = originY + ownY
-    def vx: Double = kernel.vx(place) + kernel.ax(place) * sinceStep
-    def vy: Double = kernel.vy(place) + kernel.ay(place) * sinceStep
+    def vx: Double = vehicles.vx(place) + vehicles.ax(place) * sinceStep
+    def vy: Double = vehicles.vy(place) + vehicles.ay(place) * sinceStep
 
     override def seenX: Double  = ownX.toFloat + originX
     override def seenY: Double  = ownY.toFloat + originY
@@ -95,19 +104,35 @@ private final class QuadrotorBatch(duel: Duel, timing: LoopTiming, model: Quadro
 
     override def seen: Kinematics =
       Kinematics(
-        Vector3(seenX, seenY, along(kernel.z(place), kernel.vz(place), kernel.az(place)).toFloat),
-        Vector3(seenVx, seenVy, (kernel.vz(place) + kernel.az(place) * sinceStep).toFloat),
-        kernel.orientation(place),
-        kernel.angularVelocityFrd(place)
+        Vector3(seenX, seenY, along(vehicles.z(place), vehicles.vz(place), vehicles.az(place)).toFloat),
+        Vector3(seenVx, seenVy, (vehicles.vz(place) + vehicles.az(place) * sinceStep).toFloat),
+        vehicles.orientation(place),
+        vehicles.angularVelocityFrd(place)
       )
 
-    private def ownX: Double = along(kernel.x(place), kernel.vx(place), kernel.ax(place))
-    private def ownY: Double = along(kernel.y(place), kernel.vy(place), kernel.ay(place))
+    private def ownX: Double = along(vehicles.x(place), vehicles.vx(place), vehicles.ax(place))
+    private def ownY: Double = along(vehicles.y(place), vehicles.vy(place), vehicles.ay(place))
     private def along(from: Double, speed: Double, acceleration: Double): Double =
       from + speed * sinceStep + acceleration * (sinceStep * sinceStep / 2)
 
-private object QuadrotorBatch:
+private object SteppedBatch:
   private val Vehicles = 2
 
-  /** Worlds flown together. */
-  val Worlds: Int = QuadrotorKernel.VEHICLES / Vehicles
+  /** AirSim's quadrotors, by lanes. */
+  def of(duel: Duel, timing: LoopTiming, model: QuadrotorResponse): SteppedBatch =
+    SteppedBatch(
+      duel,
+      timing,
+      model,
+      model.quadrotor.stepS,
+      model.hoveredS,
+      QuadrotorKernel.VEHICLES / Vehicles,
+      KernelVehicles()
+    )
+
+  /** Of any kind. */
+  def of(duel: Duel, timing: LoopTiming, model: SteppedResponse): SteppedBatch =
+    SteppedBatch(duel, timing, model, model.stepS, model.hoveredS, Worlds, model.together(Worlds * Vehicles))
+
+  /** Whose state fits the nearest memory. */
+  private val Worlds = 32

@@ -1,0 +1,106 @@
+package skein.mujoco
+
+import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
+import java.lang.foreign.{Arena, MemorySegment}
+import java.lang.ref.Cleaner
+
+/** So many simulations of one model: MuJoCo's `mjBatch`, stepped by the thread that asks. A row of numbers is the state of
+  * one. Its memory is freed when nobody refers to it any more. Not thread-safe.
+  */
+private[mujoco] final class MujocoBatch(model: MemorySegment, count: Int, threads: Int = 1):
+  import MujocoBatch.*
+
+  private val arena                = Arena.ofAuto()
+  private val batch: MemorySegment =
+    val config = arena.allocate(8, 4)
+    config.set(JAVA_INT, 0, threads)
+    val error = arena.allocate(ErrorSize)
+    val made  = MujocoCalls.makeBatch(model, count, config, error, ErrorSize.toInt)
+    require(made.address != 0, error.getString(0))
+    made
+  cleaner.register(this, Freeing(batch))
+
+  /** Numbers of a row. */
+  val row: Int = MujocoCalls.rowSize(batch)
+
+  private val rows = MujocoCalls.state(batch).reinterpret(count.toLong * row * 8)
+  private val ids  = arena.allocate(JAVA_INT, count)
+  private var due  = 0
+
+  def apply(place: Int, index: Int): Double = rows.getAtIndex(JAVA_DOUBLE, place.toLong * row + index)
+
+  def update(place: Int, index: Int, value: Double): Unit =
+    rows.setAtIndex(JAVA_DOUBLE, place.toLong * row + index, value)
+
+  def rowOf(place: Int): Array[Double] = Array.tabulate(row)(apply(place, _))
+
+  def setRow(place: Int, values: Array[Double]): Unit =
+    MemorySegment.copy(values, 0, rows, JAVA_DOUBLE, place.toLong * row * 8, row)
+
+  /** Where a part of the state is in a row, and how long it is. */
+  def part(component: Int): Part =
+    val size  = arena.allocate(JAVA_INT)
+    val start = MujocoCalls.component(batch, component, size)
+    Part(((start.address - rows.address) / 8).toInt, size.get(JAVA_INT, 0))
+
+  /** A field of the model, of doubles. */
+  def doubles(field: String): Array[Double] =
+    fieldOf(field, 8)((at, index) => at.getAtIndex(JAVA_DOUBLE, index))
+
+  /** Likewise, of integers. */
+  def ints(field: String): Array[Int] = fieldOf(field, 4)((at, index) => at.getAtIndex(JAVA_INT, index))
+
+  /** Likewise, of truth values. */
+  def flags(field: String): Array[Boolean] =
+    fieldOf(field, 1)((at, index) => at.get(JAVA_BYTE, index) != 0)
+
+  private def fieldOf[A: scala.reflect.ClassTag](name: String, bytes: Int)(read: (MemorySegment, Long) => A) =
+    val size    = arena.allocate(JAVA_INT)
+    val element = arena.allocate(JAVA_INT)
+    val at      = MujocoCalls.expand(batch, arena.allocateFrom(name), size, element)
+    require(at.address != 0, s"MuJoCo has no field $name")
+    require(element.get(JAVA_INT, 0) == bytes, s"$name: expected $bytes bytes each")
+    val length = size.get(JAVA_INT, 0)
+    val whole  = at.reinterpret(length.toLong * bytes)
+    Array.tabulate(length)(index => read(whole, index.toLong))
+
+  def reset(): Unit = check(MujocoCalls.reset(batch))
+
+  /** This one is stepped by the next [[step]]. */
+  def mark(place: Int): Unit =
+    ids.setAtIndex(JAVA_INT, due.toLong, place)
+    due += 1
+
+  /** Steps those that were marked since the last time. */
+  def step(): Unit =
+    if due > 0 then check(MujocoCalls.step(batch, ids, due, 1))
+    due = 0
+
+  /** Steps all of them as often, each with its own control (`mjSTATE_CTRL`, count × steps × their number) in each step. */
+  def rollout(steps: Int, controls: MemorySegment): Unit =
+    check(MujocoCalls.rollout(batch, steps, controls, MujocoBatch.Controls))
+
+  private def check(failed: Int): Unit =
+    if failed > 0 then
+      val reasons = (0 until count).map(place =>
+        MujocoCalls.error(batch, place).reinterpret(ErrorSize).getString(0)
+      )
+      throw IllegalStateException(s"MuJoCo: ${reasons.find(_.nonEmpty).getOrElse("failed")}")
+
+private[mujoco] object MujocoBatch:
+  /** Parts of the state (`mjtState`). */
+  val Time        = 1 << 0
+  val Positions   = 1 << 1
+  val Velocities  = 1 << 2
+  val Activations = 1 << 3
+  val Controls    = 1 << 6
+
+  final case class Part(at: Int, size: Int)
+
+  private val ErrorSize = 1000L
+
+  private val cleaner = Cleaner.create()
+
+  // Refers to nothing but what it frees.
+  private final class Freeing(batch: MemorySegment) extends Runnable:
+    def run(): Unit = MujocoCalls.deleteBatch(batch)

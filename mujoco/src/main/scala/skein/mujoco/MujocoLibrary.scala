@@ -1,0 +1,72 @@
+package skein.mujoco
+
+import java.nio.file.{Files, Path}
+import java.util.concurrent.TimeUnit
+import scala.jdk.CollectionConverters.*
+import scala.util.{Try, Using}
+
+/** Where MuJoCo's C library lies: the one that the system property `skein.mujoco` or the environment variable
+  * `SKEIN_MUJOCO` names, or that of PyPI's package `mujoco`, where `python3` finds it. Nothing of it is part of Skein.
+  */
+object MujocoLibrary:
+  /** The first with bodies in batches. */
+  private[mujoco] val LeastVersion = 4000000
+
+  private val Named    = "SKEIN_MUJOCO"
+  private val Property = "skein.mujoco"
+
+  private lazy val found: Either[String, Path] = sys.props.get(Property).orElse(sys.env.get(Named)) match
+    case Some(named) =>
+      val path = Path.of(named)
+      Either.cond(
+        Files.isRegularFile(path),
+        path,
+        s"$Named: expected MuJoCo's library, there is no file $named"
+      )
+    case None =>
+      fromPython.flatMap(inside).toRight(
+        s"MuJoCo's library was not found: expected python3 to know the package mujoco (pip install mujoco), or the library's path in $Named"
+      )
+
+  /** The library, or why there is none of the version that is needed. Looked for once. */
+  lazy val find: Either[String, Path] = found.flatMap: path =>
+    loadable(path).flatMap: _ =>
+      val version = MujocoCalls.version()
+      Either.cond(
+        version >= LeastVersion,
+        path,
+        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, came ${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
+      )
+
+  /** For [[MujocoCalls]]. */
+  private[mujoco] def path: Path = found.fold(reason => throw IllegalStateException(reason), identity)
+
+  private def loadable(path: Path) =
+    try Right(Class.forName("skein.mujoco.MujocoCalls", true, getClass.getClassLoader))
+    catch
+      case error: LinkageError =>
+        val reason = Option(error.getCause).getOrElse(error)
+        Left(s"$path: expected MuJoCo's library of version 4 or newer: ${reason.getMessage}")
+
+  /** The folder of the package. */
+  private def fromPython: Option[Path] = Try {
+    val asked = ProcessBuilder(
+      "python3",
+      "-c",
+      "import importlib.util; print(importlib.util.find_spec('mujoco').submodule_search_locations[0])"
+    ).redirectError(ProcessBuilder.Redirect.DISCARD).start()
+    val told = String(asked.getInputStream.readAllBytes()).trim
+    Option.when(asked.waitFor(PatienceS, TimeUnit.SECONDS) && asked.exitValue == 0)(Path.of(told))
+  }.toOption.flatten
+
+  /** The library in that folder. */
+  private[mujoco] def inside(folder: Path): Option[Path] =
+    Using(Files.list(folder))(
+      _.iterator.asScala
+        .filter(file => LibraryName.matches(file.getFileName.toString))
+        .maxByOption(_.toString)
+    ).toOption.flatten
+
+  private val LibraryName = raw"libmujoco\.(so(\.\d+)*|\d.*dylib|dylib)|mujoco\.dll".r
+
+  private val PatienceS = 20L

@@ -1,0 +1,149 @@
+package skein.mujoco
+
+import java.nio.file.{Files, Path}
+import skein.units.Vector3
+import skein.vehicle.*
+
+/** Models of MuJoCo's as bodies, flown by AirSim's flight controller. */
+class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere:
+  import MujocoRotorcraftLiveSuite.*
+
+  private def flying(name: String)(body: => Unit): Unit = test(name):
+    assumeMujoco()
+    body
+
+  flying("AirSim's quadrotor as a model hovers, and turns as the built-in one does, within 0.8 m over 100 m"):
+    val craft          = MujocoRotorcraft(example("quadrotor"))
+    val (theirs, ours) = (QuadrotorState(), QuadrotorState())
+    val quadrotor      = Quadrotor.AirSim
+    for (one, state) <- Seq(craft -> theirs, quadrotor -> ours) do
+      one.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+    var apart = 0.0
+    for turn <- 0 until 10; _ <- 0 until (2 / craft.stepS).round.toInt do
+      val goal = Setpoint.velocityZ(5 * math.cos(turn), 5 * math.sin(turn), -20)
+      craft.step(theirs, goal, Environment.Calm)
+      quadrotor.step(ours, goal, Environment.Calm)
+      apart = apart.max((theirs.positionNed - ours.positionNed).norm)
+    // The air of both drags, each by its own formula.
+    assert(apart < 0.8, s"$apart m apart")
+
+  flying("a vehicle that has long held its place stays there"):
+    for (name, steps) <- Seq("quadrotor" -> 10000, "slung-load" -> 15000) do
+      val craft = MujocoRotorcraft(example(name))
+      val state = QuadrotorState()
+      craft.hover(state, Vector3(3, -4, -20), 0.5, Environment.Calm)
+      for _ <- 1 to steps do craft.step(state, Setpoint.hold(Vector3(3, -4, -20)), Environment.Calm)
+      val off = (state.positionNed - Vector3(3, -4, -20 + craft.hoverSagM(-20))).norm
+      assert(off < 0.002, s"$name: $off m off")
+
+  flying("a load below a vehicle that brakes swings, and the vehicle with it"):
+    val craft = MujocoRotorcraft(example("slung-load"))
+    val state = QuadrotorState()
+    craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+    def fly(seconds: Double, goal: Setpoint): Vector[Double] =
+      Vector.fill((seconds / craft.stepS).round.toInt):
+        craft.step(state, goal, Environment.Calm)
+        state.ax
+    fly(6, Setpoint.velocity(5, 0, 0))
+    val braking = fly(6, Setpoint.velocity(0, 0, 0)).drop((3 / craft.stepS).toInt)
+    // Once the controller alone would have it at rest, the load still pulls to both sides.
+    assert(braking.max > 0.05 && braking.min < -0.05, s"${braking.min} to ${braking.max} m/s²")
+
+  flying("it stands on the ground, takes off, lands and stands again, and an object's place is not MuJoCo's"):
+    val craft       = MujocoRotorcraft(example("quadrotor"))
+    val state       = QuadrotorState()
+    val environment = Environment(groundDownM = 2)
+    craft.land(state, 0)
+    state.place(Vector3(0, 0, 2), state.orientation)
+    def fly(seconds: Double, goal: Setpoint): Unit =
+      for _ <- 0 until (seconds / craft.stepS).toInt do craft.step(state, goal, environment)
+    fly(1, Setpoint.Armed)
+    assertEquals(state.positionNed, Vector3(0, 0, 2))
+    fly(8, Setpoint.velocityZ(1, 0, -5))
+    assertEqualsDouble(state.z, -5, 0.1)
+    assert(state.x > 3, state.x)
+    fly(20, Setpoint.velocity(0, 0, 0.5))
+    assert(state.grounded && state.contacts > 0, s"$state, ${state.positionNed}")
+    assertEquals(state.z, 2.0)
+
+  flying("wind blows it by the density that the model states"):
+    def drift(model: MujocoModel) =
+      val craft = MujocoRotorcraft(model)
+      val state = QuadrotorState()
+      craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+      val level = Setpoint.anglesZ(0, 0, 0, -20)
+      for _ <- 1 to 1000 do craft.step(state, level, Environment(windNed = Vector3(8, 0, 0)))
+      state.x
+    val (blown, still) = (drift(example("quadrotor")), drift(changed("density=\"1.2\"", "density=\"0\"")))
+    assert(blown > 0.5, blown)
+    assertEqualsDouble(still, 0, 1e-6)
+
+  flying("many side by side fly as one alone does, to the bit"):
+    val response = MujocoResponse(example("quadrotor"))
+    val together = response.together(6)
+    val alone    = Vector.tabulate(6)(_ => response.create())
+    for place <- 0 until 6 do
+      together.hover(place, -20)
+      alone(place).start(0, 0, -20)
+    for step <- 0 until 3000 do
+      if step % 100 == 0 then
+        for place <- 0 until 6 do
+          val (north, east) = ((place + step % 7).toFloat, (3 - place).toFloat)
+          together.command(place, north, east, -20)
+          alone(place).command(north, east)
+      together.step()
+      for place <- 0 until 6 do alone(place).advance((step + 1) * response.stepS)
+    for place <- 0 until 6 do
+      assertEquals((together.x(place), together.y(place)), (alone(place).x, alone(place).y))
+      assert(together.x(place).abs > 1, together.x(place))
+
+  flying("a rotor's own control is a share of its actuator's range"):
+    val craft = MujocoRotorcraft(example("slung-load"))
+    val state = QuadrotorState()
+    craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+    // Those at the right push up: it rolls to the left.
+    for _ <- 1 to 20 do craft.step(state, Setpoint.rotors(0.6, 0.4, 0.4, 0.6), Environment.Calm)
+    assert(state.wx < -0.3, state.angularVelocityFrd)
+    assertEqualsDouble(state.wy, 0, 0.05)
+
+  flying("what cannot be flown is refused with its reason"):
+    assert(MujocoModel.read(Path.of("nowhere.xml")).left.exists(_.contains("there is no nowhere.xml")))
+    val last = "<general site=\"rear right\" gear=\"0 0 4.179 0 0 0.0556\"/>"
+    for (from, to, reason) <- Seq(
+        ("<mujoco model", "<mjcf model", "XML parse error"),
+        (
+          "<freejoint/>",
+          "<joint type=\"hinge\"/>",
+          "expected the vehicle's free joint to be the first joint"
+        ),
+        (last, "", "expected at least 4 actuators, came 3"),
+        ("mass=\"1\"", "mass=\"2\"", "by which it hovers, came 0.0 to 1.0"),
+        ("0.0556", "0", "none yaws it"),
+        ("site=\"rear right\"", "site=\"front left\"", "each by itself"),
+        ("ctrlrange=\"0 1\"", "ctrlrange=\"-1 0\"", "expected a control range above 0.0"),
+        ("dyntype=\"filterexact\"", "dyntype=\"muscle\" gaintype=\"muscle\"", "")
+      )
+    do
+      val refused = MujocoModel.read(write(text("quadrotor").replace(from, to)))
+      assert(refused.left.exists(_.contains(reason)), s"$from as $to: $refused")
+
+private object MujocoRotorcraftLiveSuite:
+  private val root =
+    Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
+      Files.exists(at.resolve("ARCHITECTURE.md"))
+    ).get
+
+  def path(name: String): Path = root.resolve(s"examples/mujoco/$name.xml")
+
+  def text(name: String): String = Files.readString(path(name))
+
+  def example(name: String): MujocoModel = read(path(name))
+
+  def changed(from: String, to: String): MujocoModel = read(write(text("quadrotor").replace(from, to)))
+
+  def write(xml: String): Path =
+    val file = Files.createTempFile("model", ".xml")
+    file.toFile.deleteOnExit()
+    Files.writeString(file, xml)
+
+  private def read(file: Path) = MujocoModel.read(file).fold(sys.error, identity)

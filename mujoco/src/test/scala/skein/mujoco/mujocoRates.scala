@@ -1,0 +1,53 @@
+package skein.mujoco
+
+import java.lang.foreign.ValueLayout.JAVA_DOUBLE
+import java.lang.foreign.Arena
+import java.nio.file.Path
+import skein.units.Decimals.fixed
+
+/** Steps a second on one thread: vehicles of a model with their flight controllers, told a velocity every 100 ms, beside
+  * MuJoCo's own batch, which gets the same number of steps at once, with controls as its rotors would have. The two take
+  * turns; of each the best of some rounds counts.
+  *
+  * @param file
+  *   a model
+  * @param vehicles
+  *   side by side
+  */
+@main def mujocoRates(file: String, vehicles: Int, steps: Int, rounds: Int): Unit =
+  val model = MujocoModel.read(Path.of(file)).fold(sys.error, identity)
+  val ours  = MujocoVehicles(model, vehicles)
+  val batch = MujocoBatch(model.compiled, vehicles)
+  val hover = model.hoveringRow
+  val arena = Arena.ofConfined()
+  val told  = arena.allocate(JAVA_DOUBLE, vehicles.toLong * steps * model.actuators)
+  for index <- 0L until vehicles.toLong * steps * model.actuators do
+    val wobble = 1 + 0.05 * math.sin(index * 0.37)
+    told.setAtIndex(JAVA_DOUBLE, index, hover(model.controlAt + (index % model.actuators).toInt) * wobble)
+  val turnEvery = (0.1 / model.stepS).round.toInt.max(1)
+
+  def rate(work: => Unit): Double =
+    val from = System.nanoTime
+    work
+    vehicles.toDouble * steps / (System.nanoTime - from) * 1e9
+
+  def flown(): Unit =
+    for place <- 0 until vehicles do ours.hover(place, -20)
+    for step <- 0 until steps do
+      if step % turnEvery == 0 then
+        for place <- 0 until vehicles do
+          val angle = 0.3 * (step / turnEvery) + place
+          ours.command(place, (5 * math.cos(angle)).toFloat, (5 * math.sin(angle)).toFloat, -20)
+      ours.step()
+
+  def rolledOut(): Unit =
+    for place <- 0 until vehicles do batch.setRow(place, hover)
+    batch.rollout(steps, told)
+
+  val rates = Vector.fill(rounds)((rate(flown()), rate(rolledOut())))
+  val best  = (rates.map(_._1).max, rates.map(_._2).max)
+  println(
+    s"$file, $vehicles vehicles, $steps steps, best of $rounds: bodies with controllers ${best._1.round} /s, " +
+      s"mjb_rollout ${best._2.round} /s, ${(100 * best._1 / best._2).fixed(1)} %; " +
+      s"witness ${ours.x(0)}, ${batch(0, model.positionAt + 2)}"
+  )
