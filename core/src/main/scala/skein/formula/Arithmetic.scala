@@ -65,8 +65,8 @@ private[formula] final class Arithmetic(trace: Trace, refuse: String => Nothing)
           )
 
   def asNumber(condition: Node): Node        = trace.where(condition, trace.const(1), trace.const(0))
-  private def holds(truth: Node): Node        = trace.not(trace.equal(truth, trace.const(0)))
-  private def isTruth(nodes: Node*): Boolean  = nodes.forall: node =>
+  private def holds(truth: Node): Node       = trace.not(trace.equal(truth, trace.const(0)))
+  private def isTruth(nodes: Node*): Boolean = nodes.forall: node =>
     node.is(0) || node.is(1) || node.op == Op.Where && isTruth(node.args.drop(1)*)
 
   def converted(value: Value, opcode: Opcode): Value = opcode match

@@ -78,7 +78,10 @@ private[formula] final class ClassFiles(loader: ClassLoader):
   private val classes = mutable.HashMap.empty[String, Option[ClassModel]]
   private val methods = mutable.HashMap.empty[(String, String, String), Option[MethodCode]]
 
-  def load(name: String): Class[?] = Class.forName(name.replace('/', '.'), true, loader)
+  private val loaded = mutable.HashMap.empty[String, Class[?]]
+
+  def load(name: String): Class[?] =
+    loaded.getOrElseUpdate(name, Class.forName(name.replace('/', '.'), true, loader))
 
   def classModel(name: String): Option[ClassModel] = classes.getOrElseUpdate(
     name, {

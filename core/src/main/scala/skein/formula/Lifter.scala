@@ -130,8 +130,9 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       val args   = frame.pop(desc.parameterCount + (if kind == Opcode.INVOKESTATIC then 0 else 1))
       val answer = invocations.invoked(ClassFiles.internalName(invoke.owner.asSymbol), name, desc, kind, args)
       if desc.returnType.descriptorString != "V" then frame.push(answer)
-    case dynamic: InvokeDynamicInstruction => frame.push(invocations.closure(dynamic, frame.pop(dynamic.typeSymbol.parameterCount)))
-    case made: NewObjectInstruction        =>
+    case dynamic: InvokeDynamicInstruction =>
+      frame.push(invocations.closure(dynamic, frame.pop(dynamic.typeSymbol.parameterCount)))
+    case made: NewObjectInstruction =>
       frame.push(make(Record(made.className.asInternalName, Map.empty)))
     case made: NewPrimitiveArrayInstruction =>
       val zero = made.typeKind match
@@ -166,10 +167,10 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     case other                                                 => Known(other, None)
 
   private def operate(frame: Frame, opcode: Opcode): Unit = opcode match
-    case Opcode.ARRAYLENGTH                       => frame.push(Whole(trace.const(objects.lengthOf(frame.pop()))))
-    case Opcode.DNEG                              => frame.push(Number(trace.neg(number(frame.pop()))))
-    case Opcode.INEG                              => frame.push(Whole(negated(whole(frame.pop()))))
-    case Opcode.LNEG                              => frame.push(Long(-long(frame.pop())))
+    case Opcode.ARRAYLENGTH => frame.push(Whole(trace.const(objects.lengthOf(frame.pop()))))
+    case Opcode.DNEG        => frame.push(Number(trace.neg(number(frame.pop()))))
+    case Opcode.INEG        => frame.push(Whole(negated(whole(frame.pop()))))
+    case Opcode.LNEG        => frame.push(Long(-long(frame.pop())))
     case Opcode.LSHL | Opcode.LSHR | Opcode.LUSHR =>
       val by    = known(frame.pop(), "a shift")
       val value = long(frame.pop())

@@ -57,10 +57,13 @@ private[formula] final class Objects(
     /** Of what was there before the ways parted. */
     def things(): Unit =
       for id <- changed.drop(parted.changes).distinct; a <- yes.get(id); b <- no.get(id) if a != b do
-        change(id, (a, b) match
-          case (Record(name, of), Record(_, or))       => Record(name, fields(of, or))
-          case (Elements(of, frozen), Elements(or, _)) => Elements(of.zip(or).map(value), frozen)
-          case _                                       => a)
+        change(
+          id,
+          (a, b) match
+            case (Record(name, of), Record(_, or))       => Record(name, fields(of, or))
+            case (Elements(of, frozen), Elements(or, _)) => Elements(of.zip(or).map(value), frozen)
+            case _                                       => a
+        )
 
     private def fields(a: Map[String, Value], b: Map[String, Value]): Map[String, Value] =
       (a.keySet ++ b.keySet).iterator
@@ -80,9 +83,9 @@ private[formula] final class Objects(
     private def ofThings(a: Value, b: Value): Value = (thingOf(a, yes), thingOf(b, no)) match
       case (Some(one), Some(other)) =>
         alikeOf(one, other) match
-          case (Record(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
-          case (Thing.Either(of, x), Record(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
-          case (Record(of, x), Thing.Either(or, y)) if of == or => make(Thing.Either(of, fields(x, y)))
+          case (Record(of, x), Record(or, y)) if of == or             => make(Thing.Either(of, fields(x, y)))
+          case (Thing.Either(of, x), Record(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
+          case (Record(of, x), Thing.Either(or, y)) if of == or       => make(Thing.Either(of, fields(x, y)))
           case (Thing.Either(of, x), Thing.Either(or, y)) if of == or =>
             make(Thing.Either(of, fields(x, y)))
           case (Elements(x, _), Elements(y, _)) if x.size == y.size =>
@@ -92,7 +95,7 @@ private[formula] final class Objects(
 
     /** What was made; or, of a case class of doubles that was there before, the same. */
     private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
-      case Made(id)                                    => Some(in(id))
+      case Made(id)                                        => Some(in(id))
       case Known(what, path) if isOfDoubles(what.getClass) =>
         val fields = doublesOf(what.getClass).map: field =>
           val way = path.map(before => Path(Some(before), Step.Of(field)))
@@ -138,7 +141,9 @@ private[formula] final class Objects(
         case _                       => refuse(s"it reads $name of an array or a closure")
     case Known(what, path) =>
       val field = found(what.getClass, name)
-      if !java.lang.reflect.Modifier.isFinal(field.getModifiers) && !ClassFiles.isLibrary(ClassFiles.nameOf(what.getClass))
+      if !java.lang.reflect.Modifier.isFinal(field.getModifiers) && !ClassFiles.isLibrary(
+          ClassFiles.nameOf(what.getClass)
+        )
       then
         refuse(s"it reads the variable $name; a formula's object has values alone")
       val value = open(field).get(what)
@@ -153,13 +158,17 @@ private[formula] final class Objects(
     case text if text.length == 1 => Whole(trace.const(0))
     case _                        => Null
 
-  private def found(in: Class[?], name: String): java.lang.reflect.Field =
+  private val fields = mutable.HashMap.empty[(Class[?], String), java.lang.reflect.Field]
+
+  private def found(in: Class[?], name: String): java.lang.reflect.Field = fields.getOrElseUpdate(
+    (in, name),
     Iterator
       .iterate[Class[?]](in)(_.getSuperclass)
       .takeWhile(_ != null)
       .flatMap(each => each.getDeclaredFields.find(_.getName == name))
       .nextOption()
       .getOrElse(refuse(s"${in.getName} has no field $name"))
+  )
 
   private def open(field: java.lang.reflect.Field): java.lang.reflect.Field =
     if field.trySetAccessible() then field

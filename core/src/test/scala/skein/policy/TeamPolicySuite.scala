@@ -180,7 +180,10 @@ class TeamPolicySuite extends munit.FunSuite:
         assert(worst(found) <= best + 1e-3, s"turn $turn: ${worst(found)}, the grid has $best")
         if turn % 4 == 0 then edged += 1
         least += 1
-    assert(allowed > 20 && least > 20 && edged > 10, s"$allowed allowed, $least least broken, $edged side by side")
+    assert(
+      allowed > 20 && least > 20 && edged > 10,
+      s"$allowed allowed, $least least broken, $edged side by side"
+    )
 
   test("of twenty and more neighbours, all are kept clear of that can be"):
     import Avoidance.Velocity
@@ -190,7 +193,12 @@ class TeamPolicySuite extends munit.FunSuite:
       val planes = HalfPlanes(31)
       for i <- 0 until 31 do
         val rad = random.nextDouble() * 2 * math.Pi
-        planes.put(i, math.cos(rad), math.sin(rad), random.nextGaussian() * 2 - (if turn % 2 == 0 then 5 else 1))
+        planes.put(
+          i,
+          math.cos(rad),
+          math.sin(rad),
+          random.nextGaussian() * 2 - (if turn % 2 == 0 then 5 else 1)
+        )
       val wanted  = Velocity(random.nextGaussian() * 5, random.nextGaussian() * 5)
       val nearest = planes.nearest(wanted, 10)
       val found   = if nearest.missing > 0 then planes.leastBroken(wanted, 10) else nearest.velocity

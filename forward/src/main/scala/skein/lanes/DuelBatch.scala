@@ -113,7 +113,7 @@ final class DuelBatch(
       val each    = LaneMath.LANES
       val refused = Seq(pursuer, evader).flatMap(PolicyLanes.of(_).left.toOption).headOption
       model match
-        case _ if sees && !shareEpisodes => Left(SeesAlone)
+        case _ if sees && !shareEpisodes                            => Left(SeesAlone)
         case _ if shareEpisodes && refused.isEmpty && lanes.isRight =>
           Right(s"$each candidates of an episode at a time")
         case _: QuadrotorResponse if !sees =>

@@ -150,7 +150,7 @@ private final class TimetableFlyer(
       eyes.pursuer.map(EyeLanes(_, duel.pursuer, duel.evader)).orNull,
       eyes.evader.map(EyeLanes(_, duel.evader, duel.pursuer)).orNull
     )
-    private var timetable: Timetable     = null
+    private var timetable: Timetable = null
 
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
       if lane == 0 then

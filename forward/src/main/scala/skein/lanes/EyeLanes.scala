@@ -16,18 +16,18 @@ private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponen
   private val update = forms.joined.call
   private val decide = forms.decidedUpon.call
 
-  private val pictures        = Array.fill(Sight.Ring)(Array.emptyFloatArray)
-  private val validS          = Array.ofDim[Float](Sight.Ring)
-  private var newest, before  = Array.ofDim[Float](Belief * WORLDS)
-  private var replayed        = Array.ofDim[Float](Belief * WORLDS)
-  private val axis            = Array.ofDim[Float](WORLDS)
-  private val ownDown         = everywhere(own.altitudeDownM)
-  private val opponentDown    = everywhere(opponent.altitudeDownM)
-  private val startX          = everywhere(opponent.startX)
-  private val startY          = everywhere(opponent.startY)
-  private val bearing, range  = Array.ofDim[Float](WORLDS)
-  private val nowS, aheadS    = Array.ofDim[Float](WORLDS)
-  private val exposedS        = Array.ofDim[Float](WORLDS)
+  private val pictures       = Array.fill(Sight.Ring)(Array.emptyFloatArray)
+  private val validS         = Array.ofDim[Float](Sight.Ring)
+  private var newest, before = Array.ofDim[Float](Belief * WORLDS)
+  private var replayed       = Array.ofDim[Float](Belief * WORLDS)
+  private val axis           = Array.ofDim[Float](WORLDS)
+  private val ownDown        = everywhere(own.altitudeDownM)
+  private val opponentDown   = everywhere(opponent.altitudeDownM)
+  private val startX         = everywhere(opponent.startX)
+  private val startY         = everywhere(opponent.startY)
+  private val bearing, range = Array.ofDim[Float](WORLDS)
+  private val nowS, aheadS   = Array.ofDim[Float](WORLDS)
+  private val exposedS       = Array.ofDim[Float](WORLDS)
 
   /** What is decided upon; velocities are the opponent's own. */
   val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
@@ -45,7 +45,8 @@ private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponen
   decide.input(Belief + 5, ownDown, 0)
   decide.input(Belief + 6, nowS, 0)
   decide.input(Belief + 7, aheadS, 0)
-  for (array, output) <- Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, axis).zipWithIndex
+  for (array, output) <-
+      Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, axis).zipWithIndex
   do decide.output(output, array, 0)
 
   def start(): Unit =
@@ -142,7 +143,7 @@ private[lanes] object EyeLanes:
     *   or why this sensor does not fly by lanes
     */
   def of(model: SensorModel): Either[String, Forms] =
-    val formulas                    = SensorFormulas(model)
+    val formulas                        = SensorFormulas(model)
     def form(name: String, inputs: Int) = Formula.of(formulas, name).map: formula =>
       require(formula.inputs.size == inputs, s"$name of ${formula.inputs.mkString(", ")}")
       FixedFormula(formula, formulas)

@@ -2,7 +2,6 @@ package skein.lanes
 
 import skein.forward.Duelist
 
-
 /** Vehicles that move by a [[skein.vehicle.Plant]], whose commands act at times of their own in each world. A piece is a step: of it the
   * state at its begin is kept, and the command, which is no direction until there was one; the vehicle rests then. The
   * scalar reference is `skein.forward.PlantVehicle`.
@@ -22,13 +21,13 @@ private[lanes] final class PlantFlights(duelist: Duelist, lanes: PlantLanes, per
   private val Along = PIECE_OWN * WORLDS
   private val State = Along + 2 * WORLDS
 
-  private val speed            = duelist.speed.toFloat
-  private val stepS            = lanes.plant.stepS.toFloat
-  private val step             = lanes.step.call
-  private val see              = lanes.read.call
-  private val flown            = Array.ofDim[Float](lanes.count * WORLDS)
+  private val speed             = duelist.speed.toFloat
+  private val stepS             = lanes.plant.stepS.toFloat
+  private val step              = lanes.step.call
+  private val see               = lanes.read.call
+  private val flown             = Array.ofDim[Float](lanes.count * WORLDS)
   private val north, east, forS = Array.ofDim[Float](WORLDS)
-  private val flies            = Array.ofDim[Boolean](WORLDS)
+  private val flies             = Array.ofDim[Boolean](WORLDS)
   step.input(lanes.count, north, 0)
   step.input(lanes.count + 1, east, 0)
   step.input(lanes.count + 2, forS, 0)

@@ -61,10 +61,11 @@ private[lanes] final class TimetablePlants(duelist: Duelist, lanes: PlantLanes)
   private val step = lanes.step.call
   private val read = lanes.read.call
 
-  private var begun, next          = Array.ofDim[Float](lanes.count * WORLDS) // when the present step began, and what comes of it
-  private val north, east, whole, rest      = Array.ofDim[Float](WORLDS)
-  private val speed                         = duelist.speed.toFloat
-  private var isCommanded                   = false
+  private var begun, next =
+    Array.ofDim[Float](lanes.count * WORLDS) // when the present step began, and what comes of it
+  private val north, east, whole, rest = Array.ofDim[Float](WORLDS)
+  private val speed                    = duelist.speed.toFloat
+  private var isCommanded              = false
   Arrays.fill(whole, lanes.plant.stepS.toFloat)
   step.input(lanes.count, north, 0)
   step.input(lanes.count + 1, east, 0)

@@ -245,8 +245,8 @@ private[skein] object Timetable:
           forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
     // By vehicle: when its pictures were taken, and which of them joined last and before that.
-    private val exposedNs         = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
-    private val newest, runnerUp  = Array.fill(vehicles)(-1)
+    private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
+    private val newest, runnerUp = Array.fill(vehicles)(-1)
 
     override def exposed(
         vehicle: Int,
@@ -379,9 +379,9 @@ private[skein] object Timetable:
           if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
           // Its effort is counted even where nobody uses it.
           headings(agent).usedAt(notes.number(event) + 1, at)
-        case ACT     => headings(agent).usedAt(notes.number(event), at)
+        case ACT            => headings(agent).usedAt(notes.number(event), at)
         case SCORE | EXPOSE => usedAt(notes.view(event), at)
-        case PREDICT =>
+        case PREDICT        =>
           readings(agent).usedAt(notes.from(event), at)
           decidedUpon(agent)(notes.from(event)) = true
           for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do

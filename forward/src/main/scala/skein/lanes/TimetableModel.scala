@@ -146,7 +146,7 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
         LagVehicles(duelist, model, stream.periodS, longestS, earliestS)
       case _ => LagFlights(duelist, model, timing.periodS, keptRows)
 
-  def clock(): VehicleClock                         = new VehicleClock:
+  def clock(): VehicleClock = new VehicleClock:
     private var actedS                                                      = 0.0
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val dt = atS - actedS
@@ -200,11 +200,11 @@ private final class QuadrotorTimetables(model: QuadrotorResponse) extends Timeta
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
 
-  override def fliesAlone: Boolean = false
+  override def fliesAlone: Boolean                                                              = false
   private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
-    throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by QuadrotorBatch")
+    throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 
-  def clock(): VehicleClock                         = new VehicleClock:
+  def clock(): VehicleClock = new VehicleClock:
     private var steps                                                       = hoveredNs / stepNs
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val now   = hoveredNs + Nanos.of(atS)

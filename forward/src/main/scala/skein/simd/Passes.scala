@@ -69,7 +69,7 @@ private object Passes:
     val numbers = needs.map(_.flatMap(numbersOf).distinct)
     val lastUse = mutable.LinkedHashMap.empty[Node, Int]
     for (each, pass) <- numbers.zipWithIndex; node <- each if !isLeaf(node) do lastUse(node) = pass
-    val places = placed(lastUse, passOf, number + 1)
+    val places                                 = placed(lastUse, passOf, number + 1)
     def conditionsOf(node: Node): Vector[Node] =
       if node.op.isCondition then node.args.flatMap(conditionsOf) :+ node else Vector.empty
     Vector.tabulate(number + 1): pass =>

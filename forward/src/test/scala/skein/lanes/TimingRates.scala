@@ -41,11 +41,13 @@ import skein.vehicle.ReducedModel
       LoopTiming.Predictive(predictor = model.predictor)
     )
     sees <- if shared && name == "lag" then Seq(false, true) else Seq(false)
-    row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${if sees then " by eye" else ""}"
+    row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
+        if sees then " by eye" else ""
+      }"
     if only.forall(row.contains)
   do
-    val duel = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
-    val batch                                     = DuelBatch(duel, timing, model, threads = 1)
+    val duel  = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
+    val batch = DuelBatch(duel, timing, model, threads = 1)
     def worlds(count: Int, from: Int): DuelWorlds = new DuelWorlds:
       def size: Int                       = count
       override def shareEpisodes: Boolean = shared
