@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import scala.concurrent.duration.*
 import skein.scenario.Scenarios
+import skein.search.Judge
 import skein.settings.PolicyFile
 import skein.testing.TemporaryFolders
 import skein.training.*
@@ -33,6 +34,18 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(PolicyFile.name(policy.role), side)
       assertEquals(policy.family.name, "learned:8")
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
+
+  test("pursuers of a team learn one policy, which flights and forward simulation fly in the place of all of theirs"):
+    val folder             = temporaryFolder().resolve("learned")
+    val words              = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
+    val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
+    assertEquals(status, 0, err)
+    val rows = ujson.read(out)("tables")(0)("rows").arr
+    assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
+    assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
+    // A policy of so few steps is off the ring by metres, the scenario's own by centimetres, here as in flight.
+    val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
+    assert(own < 1 && learned > 2 && flown > 2, rows.toString)
 
   test("what was learned learns on beside a flight, which is flown again to an equal digest"):
     val folder           = temporaryFolder()

@@ -220,6 +220,7 @@ object EnvironmentSettings:
             case "start_most_m" =>
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
             case "moves_in_flight"       => number(value => settings.copy(movesInFlight = value.toInt))
+            case "turn_rate_rad_per_s"   => number(value => settings.copy(turnRateRadPerS = value))
             case "evader_rate_rad_per_s" => number(value => settings.copy(evaderRateRadPerS = value))
             case _                       => Left(s"no setting '$name'")
 
