@@ -43,9 +43,9 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
-    // A policy of so few steps is off the ring by metres, the scenario's own by centimetres, here as in flight.
+    // A policy of so few steps flies off, here as in flight.
     val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
-    assert(own < 1 && learned > 2 && flown > 2, rows.toString)
+    assert(own < learned - 10 && math.abs(flown - learned) < 5, rows.toString)
 
   test("what was learned learns on beside a flight, which is flown again to an equal digest"):
     val folder           = temporaryFolder()
