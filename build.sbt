@@ -297,7 +297,7 @@ lazy val docs = project
 
 /** From Python: `skein_uav`. Its tests run by `pytest python`, and from here where its packages can be installed. */
 lazy val python = project
-  .dependsOn(cli)
+  .dependsOn(cli, testing % Test)
   .settings(
     publish / skip := true,
     Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / stage).value, target.value, streams.value.log),

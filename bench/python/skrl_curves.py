@@ -34,7 +34,7 @@ class Actor(GaussianMixin, Model):
 
     wide: bool = True
 
-    def __init__(self, spaces, wide):
+    def __init__(self, wide=True, **spaces):
         Model.__init__(self, **spaces)
         self.wide = wide
         GaussianMixin.__init__(self, clip_actions=wide, min_log_std=-5)
@@ -54,7 +54,9 @@ class Actor(GaussianMixin, Model):
 class Critic(DeterministicMixin, Model):
     """What an action is worth where something is seen, or what is seen alone."""
 
-    def __init__(self, spaces, of_actions):
+    of_actions: bool = False
+
+    def __init__(self, of_actions=False, **spaces):
         Model.__init__(self, **spaces)
         self.of_actions = of_actions
         DeterministicMixin.__init__(self)
@@ -71,10 +73,10 @@ class Critic(DeterministicMixin, Model):
 
 def agent_of(algorithm, environments, spaces):
     quiet = {"experiment": {"write_interval": 0, "checkpoint_interval": 0}}
-    models = {"policy": Actor(spaces, algorithm == "sac")}
+    models = {"policy": Actor(algorithm == "sac", **spaces)}
     if algorithm == "sac":
         for name in ("critic_1", "critic_2", "target_critic_1", "target_critic_2"):
-            models[name] = Critic(spaces, True)
+            models[name] = Critic(True, **spaces)
         memory = RandomMemory(memory_size=300_000 // environments, num_envs=environments, replacement=True)
         settings = {
             "gradient_steps": environments // 8,
@@ -86,7 +88,7 @@ def agent_of(algorithm, environments, spaces):
             "initial_entropy_value": 0.1,
         }
     else:
-        models["value"] = Critic(spaces, False)
+        models["value"] = Critic(False, **spaces)
         memory = RandomMemory(memory_size=100, num_envs=environments)
         settings = {
             "rollouts": 100,

@@ -1,3 +1,4 @@
+import contextlib
 import os
 
 import numpy as np
@@ -243,3 +244,31 @@ def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):
         env.step(np.zeros((3, 1)))
     with pytest.raises(skein.SkeinError, match="expected a server of environments at /nowhere"):
         make(3, backend="unix:/nowhere")
+
+
+def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
+    settings = {"scenario": "surround", "settings": {"vehicles": 4}, "objective": "off-ring", "episode_s": 3.0}
+    with contextlib.closing(gym.make_vec("skein_uav/Pursuit-v0", num_envs=3, link="vpn", **settings)) as env:
+        seen, _ = env.reset(seed=1)
+        assert len({tuple(row[:2]) for row in seen}) == 3
+        rewards = np.zeros(3)
+        for _ in range(20):
+            _, now, _, truncated, infos = env.step(np.zeros((3, 1), np.float32))
+            rewards += now
+        assert (rewards < -1).all() and (infos["distance_m"] > 5).all()
+    with pytest.raises(ValueError, match="scenario: expected one with a pursuer and vehicles of another role, came formation"):
+        gym.make_vec("skein_uav/Pursuit-v0", num_envs=1, scenario="formation")
+
+
+def test_both_sides_may_turn_by_a_rate():
+    def seen(name, action, **settings):
+        with contextlib.closing(gym.make(f"skein_uav/{name}-v0", link="none", **settings)) as env:
+            env.reset(seed=1)
+            return np.array([env.step(np.array([action], np.float32))[0] for _ in range(20)])
+
+    np.testing.assert_array_equal(seen("Pursuit", 0.5, turn_rate_rad_per_s=2.0), seen("Pursuit", 1.0))
+    straight = seen("Evasion", 0.0)
+    np.testing.assert_allclose(seen("Evasion", 1.0, turn_rate_rad_per_s=0.001), straight, atol=0.05)
+    assert np.abs(seen("Evasion", 1.0) - straight).max() > 1
+    with pytest.raises(ValueError, match="turn_rate_rad_per_s: expected"):
+        gym.make("skein_uav/Pursuit-v0", turn_rate_rad_per_s=100.0)

@@ -145,7 +145,7 @@ final class LearnCommand(program: String)(using Scenarios)
   ): Either[String, Unit] =
     import setup.question
     shown.say(
-      s"""${question.algorithm} teaches a ${question.role} ${setup.family.name} ${against(setup)}
+      s"""${question.algorithm} teaches the ${question.role} ${setup.family.name} ${against(setup)}
          |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}

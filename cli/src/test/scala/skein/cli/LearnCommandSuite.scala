@@ -35,6 +35,18 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(policy.family.name, "learned:8")
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
+  test("pursuers of a team learn one policy, which flights and forward simulation fly in the place of all of theirs"):
+    val folder             = temporaryFolder().resolve("learned")
+    val words              = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
+    val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
+    assertEquals(status, 0, err)
+    val rows = ujson.read(out)("tables")(0)("rows").arr
+    assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
+    assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
+    // A policy of so few steps flies off, here as in flight.
+    val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
+    assert(own < learned - 10 && math.abs(flown - learned) < 5, rows.toString)
+
   test("what was learned learns on beside a flight, which is flown again to an equal digest"):
     val folder           = temporaryFolder()
     val learned          = folder.resolve("learned").toString

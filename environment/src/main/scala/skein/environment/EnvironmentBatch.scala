@@ -113,7 +113,7 @@ object EnvironmentBatch:
       opponent: Option[PolicyFile] = None
   )(using Scenarios): Either[String, EnvironmentBatch] =
     for
-      config <- if settings.isDuel then settings.resolvedAgainst(opponent) else settings.side
+      config <- if settings.isDuel then settings.resolvedAgainst(opponent) else ScenarioSide.of(settings)
       _      <- Either.cond(count >= 1 && count <= Most, (), s"num_envs: expected 1 to $Most, came $count")
       made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made

@@ -1,9 +1,8 @@
 package skein.environment
 
 import scala.jdk.CollectionConverters.*
-import scala.util.Try
 import skein.flight.AirSimFleet
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, Rollout}
+import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, TimetableModel}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
@@ -94,39 +93,12 @@ final case class EnvironmentSettings(
       ).orElse(Option(SteppedDuels.refusal(pursuer))).map("opponent: " + _).toLeft(())
     yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
 
-  /** The side that learns of another scenario than the duel. */
-  private[environment] def side(using Scenarios): Either[String, ScenarioSide] =
-    for
-      roles <- roles
-      role  <- Either.cond(
-        roles.size == 1,
-        roles.head,
-        "learners: expected pursuer or evader, came 'both', which is the duel's"
-      )
-      _ <- Either.cond(
-        opponent.isEmpty,
-        (),
-        s"opponent: expected none with scenario ${scenario}, whose others fly their own policies, came '$opponent'"
-      )
-      found <- ScenarioSide.of(this, role)
-      (stated, members, by) = found
-      flown <- flown(-stated.agents(members.head).startPositionNed.z)
-      (timing, delays, vehicle) = flown
-      made = ScenarioSide(this, stated, role, members, by, timing, delays, vehicle.response)
-      _ <- Try(Rollout(
-        made.engagement(members.head, PaperPursuer(), None, 0),
-        timing,
-        delays,
-        vehicle.response
-      )).toEither.left.map("scenario: " + _.getMessage)
-    yield made
-
-  private def roles = Learners.get(learners).toRight(
+  private[environment] def roles: Either[String, Vector[Role]] = Learners.get(learners).toRight(
     s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
   )
 
   /** The loop's timing, the link, and what flies at an altitude. */
-  private def flown(atM: Double): Either[String, (LoopTiming, Delays, VehicleChoice)] =
+  private[environment] def flown(atM: Double): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
       _       <- within("period_ms", periodMs, 1, 10_000)
@@ -220,6 +192,7 @@ object EnvironmentSettings:
             case "start_most_m" =>
               number(value => settings.copy(startWithinM = (settings.startWithinM._1, value)))
             case "moves_in_flight"       => number(value => settings.copy(movesInFlight = value.toInt))
+            case "turn_rate_rad_per_s"   => number(value => settings.copy(turnRateRadPerS = value))
             case "evader_rate_rad_per_s" => number(value => settings.copy(evaderRateRadPerS = value))
             case _                       => Left(s"no setting '$name'")
 

@@ -1,8 +1,9 @@
 package skein.environment
 
-import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
+import scala.util.Try
+import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.optimise.TeamObjective
-import skein.policy.{Agent, AgentPolicy, Fleet, Policy, Role, TeamPolicy}
+import skein.policy.{Agent, AgentPolicy, Fleet, PaperPursuer, Policy, Role, TeamPolicy}
 import skein.scenario.{Positions, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
@@ -78,15 +79,20 @@ private[environment] final case class ScenarioSide(
 
 private[environment] object ScenarioSide:
 
-  /** What forward simulation flies of it, and what is rewarded.
-    *
-    * @return
-    *   or what was expected and came
-    */
-  def of(settings: EnvironmentSettings, role: Role)(using
-      scenarios: Scenarios
-  ): Either[String, (Scenario, Vector[Int], Option[TeamObjective])] =
+  /** @return the side that settings name, or what was expected and came */
+  def of(settings: EnvironmentSettings)(using scenarios: Scenarios): Either[String, ScenarioSide] =
     for
+      learners <- settings.roles
+      role     <- Either.cond(
+        learners.size == 1,
+        learners.head,
+        "learners: expected pursuer or evader, came 'both', which is the duel's"
+      )
+      _ <- Either.cond(
+        settings.opponent.isEmpty,
+        (),
+        s"opponent: expected none with scenario ${settings.scenario}, whose others fly their own policies, came '${settings.opponent}'"
+      )
       kind     <- scenarios.kind(settings.scenario).left.map("scenario: " + _)
       scenario <- ScenarioSettings.ofKeys(kind, settings.set).left.map("set: " + _)
       agents = scenario.agents
@@ -112,7 +118,16 @@ private[environment] object ScenarioSide:
       ).map: measure =>
         s"objective: expected means over time, which can be rewarded as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
-    yield (scenario, members, objective)
+      flown <- settings.flown(-agents(members.head).startPositionNed.z)
+      (timing, delays, vehicle) = flown
+      side = ScenarioSide(settings, scenario, role, members, objective, timing, delays, vehicle.response)
+      _ <- Try(Rollout(
+        side.engagement(members.head, PaperPursuer(), None, 0),
+        timing,
+        delays,
+        vehicle.response
+      )).toEither.left.map("scenario: " + _.getMessage)
+    yield side
 
   private def isSummed(reduction: Reduction) = reduction == Reduction.Mean || reduction == Reduction.Rms
 

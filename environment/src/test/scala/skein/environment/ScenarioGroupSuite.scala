@@ -46,7 +46,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
       s"stepped under $loop over $link it flies, and rewards, what the reference flies with the same policy"
     ):
       val settings = surround.copy(loop = loop, link = link, startWithinM = (0, 5))
-      val side     = settings.side.fold(fail(_), identity)
+      val side     = ScenarioSide.of(settings).fold(fail(_), identity)
       for number <- 0 until 3 do
         val learner = Learner(settings, 3)
         learner.batch.reset(Array(5L, 6L, 7L))
@@ -144,7 +144,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     learner.batch.close()
 
   test("what cannot be learned in is told with what was expected"):
-    def refused(settings: EnvironmentSettings) = settings.side.swap.getOrElse("accepted")
+    def refused(settings: EnvironmentSettings) = ScenarioSide.of(settings).swap.getOrElse("accepted")
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
     assert(clue(refused(surround.copy(objective = "nearest"))).contains("is told of recorded flights alone"))
