@@ -21,7 +21,7 @@ object Publishing {
         "connection to them"  -> pom \ "scm" \ "connection",
         "developer"           -> pom \ "developers" \ "developer" \ "name"
       ).collect { case (what, found) if found.text.trim.isEmpty => what }
-      told ++ (Set("sources", "javadoc") -- classifiers)
+      told ++ (if (isWanted) Set("sources", "javadoc") -- classifiers else Nil)
     }
   }
 
@@ -44,7 +44,8 @@ object Publishing {
           alone.contains(s"""part("${name.stripPrefix("skein-")}"""")
         }.map(name => s".ci/parts does not build with $name alone")
     if (mistakes.nonEmpty) sys.error(mistakes.mkString("\n", "\n", ""))
-    streams.value.log.info(s"${parts.size} parts have all that a release needs")
+    val archives = if (isWanted) "" else ", archives aside: those are made by an sbt that was started to publish"
+    streams.value.log.info(s"${parts.size} parts have all that a release needs$archives")
   }
 
   /** A part's description without what its tests need: some of it is published nowhere. */

@@ -25,7 +25,7 @@ class CommandsSimulation extends munit.FunSuite:
   folder.test("it flies, is reported and replayed from its recordings alone, and a model is fitted to them"):
     out =>
       val flown = run(
-        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --out".split(
+        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 30s --out".split(
           ' '
         ) :+
           out.toString*

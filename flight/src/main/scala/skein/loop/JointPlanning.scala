@@ -2,7 +2,7 @@ package skein.loop
 
 import skein.loop.planning.PlanStage
 import skein.planning.{Part, PlannerSettings}
-import skein.policy.Fleet
+import skein.policy.{Fleet, GoalPolicy}
 import skein.units.*
 
 /** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its replay uses too.
@@ -50,11 +50,15 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
 object JointPlanning:
 
-  /** Absent where nobody plans. */
+  /** Absent where nobody plans.
+    *
+    * @param seed
+    *   of the searches' random numbers
+    */
   def of(fleet: Fleet, settings: PlanSettings, seed: Long): Option[JointPlanning] =
-    val (vehicles, plannings) =
-      (for
-        vehicle  <- fleet.agents.indices.toVector
-        planning <- Planning.of(fleet, vehicle, settings, seed)
-      yield (vehicle, planning)).unzip
+    val vehicles  = fleet.agents.indices.toVector.filter(vehicle => Planning.plans(fleet.agents(vehicle)))
+    val plannings = vehicles.map: vehicle =>
+      fleet.agents(vehicle).policy match
+        case goal: GoalPolicy => TeamPlanning(fleet, vehicle, goal, settings, seed)
+        case _                => PursuitPlanning(fleet, vehicle, settings, seed)
     Option.when(vehicles.nonEmpty)(JointPlanning(vehicles, plannings))

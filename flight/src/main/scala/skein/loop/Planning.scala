@@ -93,18 +93,6 @@ final case class PlannedDecision(
 
 object Planning:
 
-  /** How a vehicle's decisions are planned; absent where its policy decides.
-    *
-    * @param seed
-    *   of the search's random numbers
-    */
-  private[loop] def of(fleet: Fleet, self: Int, settings: PlanSettings, seed: Long): Option[Planning] =
-    val agent = fleet.agents(self)
-    Option.when(plans(agent)):
-      agent.policy match
-        case goal: GoalPolicy => TeamPlanning(fleet, self, goal, settings, seed)
-        case _                => PursuitPlanning(fleet, self, settings, seed)
-
   /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn on the spot. */
   private[loop] def plans(agent: Agent): Boolean = agent.policy match
     case _ if agent.kind != VehicleKind.Multirotor => false
