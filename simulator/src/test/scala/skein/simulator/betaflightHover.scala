@@ -23,7 +23,8 @@ import skein.units.*
 @main def betaflightHover(): Unit =
   import Betaflight.*
   given system: ActorSystem = ActorSystem("betaflight", PreciseScheduler.config)
-  val built                 = firmware().fold(reason => sys.error(s"Betaflight's SITL cannot be built here: $reason"), identity)
+  val built                 =
+    firmware().fold(reason => sys.error(s"Betaflight's SITL cannot be built here: $reason"), identity)
   require(arePortsFree, "another program has Betaflight's ports")
   val folder   = Files.createTempDirectory("betaflight")
   val settings = SimulatorSettings(
