@@ -33,8 +33,7 @@ object TestGroups extends AutoPlugin {
     "skein.cli.ViewLiveSuite",
     "skein.link.LinkFidelityLiveSuite",
     "skein.link.PreciseSchedulerLiveSuite",
-    "skein.flight.TwinLiveSuite",
-    "skein.simulator.BetaflightLiveSuite"
+    "skein.flight.TwinLiveSuite"
   )
 
   private val waiting = Set(

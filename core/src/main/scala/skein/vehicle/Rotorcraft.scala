@@ -1,6 +1,6 @@
 package skein.vehicle
 
-import skein.units.{Span, Vector3}
+import skein.units.Vector3
 
 /** A multirotor with its flight controller, which flies in whole steps: AirSim's ([[Quadrotor]]), or one whose body is
   * another's physics. All that is read of it is in a [[QuadrotorState]].
@@ -31,21 +31,3 @@ trait Rotorcraft:
 
   /** How far below the held altitude a hovering vehicle settles, m. */
   def hoverSagM(downM: Double, environment: Environment = Environment.Calm): Double
-
-/** What a simulator's multirotors are.
-  *
-  * @param stepS
-  *   of every one of them, s
-  * @param make
-  *   makes one, for one vehicle
-  */
-final class RotorcraftKind(val stepS: Double, val make: () => Rotorcraft)
-
-object RotorcraftKind:
-  /** AirSim's quadrotor, which serves any number of vehicles. */
-  val AirSim: RotorcraftKind = of(Quadrotor.AirSim)
-
-  /** The same in steps of this length. */
-  def at(step: Span): RotorcraftKind = of(Quadrotor(stepS = step.toSeconds))
-
-  private def of(quadrotor: Quadrotor) = RotorcraftKind(quadrotor.stepS, () => quadrotor)

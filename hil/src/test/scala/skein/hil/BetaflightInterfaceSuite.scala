@@ -49,12 +49,12 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
   test(
     "at the real clock's speed Betaflight's time stands still, so that it keeps the real clock; else it passes"
   ):
-    def times(speed: Double) =
+    def milliseconds(speed: Double) =
       val one = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, speed)
-      Vector(5, 9).map(ms =>
-        ByteBuffer.wrap(one.sense(atRest(Span.ofMillis(ms))).head).order(ByteOrder.LITTLE_ENDIAN).getDouble
-      )
-    assertEquals((times(1), times(2)), (Vector(0.0, 0.0), Vector(0.005, 0.009)))
+      Vector(5, 9).map: up =>
+        val packet = ByteBuffer.wrap(one.sense(atRest(Span.ofMillis(up))).head)
+        (packet.order(ByteOrder.LITTLE_ENDIAN).getDouble * 1000).round
+    assertEquals((milliseconds(1), milliseconds(2)), (Vector(0L, 0L), Vector(5L, 9L)))
 
   test("controls are taken as they come, between 0 and 1; of any other length they are counted"):
     val one = interface

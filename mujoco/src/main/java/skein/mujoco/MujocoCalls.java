@@ -13,12 +13,12 @@ import java.lang.invoke.MethodHandle;
 
 /**
  * The functions of MuJoCo's C library that bodies need, as {@code mujoco.h} and {@code mjbatch.h} of
- * version 4 declare them. The library stays loaded until the process ends.
+ * version 4 declare them. The library is {@link LoadedLibrary}'s and stays loaded until the process ends.
  */
 @SuppressWarnings("restricted")
 final class MujocoCalls {
   private static final SymbolLookup LOOKUP =
-      SymbolLookup.libraryLookup(MujocoLibrary.path(), Arena.global());
+      SymbolLookup.libraryLookup(LoadedLibrary.path, Arena.global());
 
   private static final MethodHandle VERSION = function("mj_version", JAVA_INT);
   private static final MethodHandle LOAD =

@@ -29,7 +29,7 @@ private[mujoco] object Allocation:
 
   /** Or what these actuators cannot do. */
   def of(effects: Array[Array[Double]]): Either[String, Allocation] =
-    val most      = effects.map(row => row.map(math.abs).max)
+    val most = effects.map(row => row.map(math.abs).max)
     // A fast roll turns it about other axes a little, too.
     val turnsMost = most.drop(1).max
     val isThere   = (most(0) > 0) +: most.drop(1).map(_ > Least * turnsMost)

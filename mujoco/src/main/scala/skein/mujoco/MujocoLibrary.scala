@@ -38,10 +38,8 @@ object MujocoLibrary:
         s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, came ${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
       )
 
-  /** For [[MujocoCalls]]. */
-  private[mujoco] def path: Path = found.fold(reason => throw IllegalStateException(reason), identity)
-
   private def loadable(path: Path) =
+    LoadedLibrary.path = path
     try Right(Class.forName("skein.mujoco.MujocoCalls", true, getClass.getClassLoader))
     catch
       case error: LinkageError =>
