@@ -29,8 +29,8 @@ import skein.scenario.Scenarios
     .of(EnvironmentSettings(), count, Autoreset.SameStep, block)(using Scenarios.ours)
     .fold(sys.error(_), identity)
   batch.reset(Array.tabulate(count)(_.toLong))
-  val from                = System.nanoTime()
-  var (ends, distance)    = (0L, 0.0)
+  val from             = System.nanoTime()
+  var (ends, distance) = (0L, 0.0)
   for _ <- 0L until steps / count do
     batch.step()
     if block.get(4 * (2 + 2 * 9 + 2) * count + count) != 0 then
@@ -38,7 +38,8 @@ import skein.scenario.Scenarios
       distance += block.getFloat(4 * (2 + 2 * 9) * count)
   val seconds   = (System.nanoTime() - from) * 1e-9
   val processor = ProcessHandle.current.info.totalCpuDuration.get.toMillis * 1e-3
-  val most      = Files.readString(Path.of("/proc/self/status")).linesIterator.find(_.startsWith("VmHWM")).getOrElse("")
+  val most      =
+    Files.readString(Path.of("/proc/self/status")).linesIterator.find(_.startsWith("VmHWM")).getOrElse("")
   println(
     f"${steps / count * count}%,d steps in $seconds%.1f s, $processor%.1f s of processor time with start and compilation; " +
       f"most memory ${most.split("\\s+")(1).toLong / 1024} MB; the first environment ended $ends times, at ${distance / ends.max(1)}%.3f m"

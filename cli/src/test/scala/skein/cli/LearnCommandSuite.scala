@@ -35,9 +35,11 @@ class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(policy.family.name, "learned:8")
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
-  test("pursuers of a team learn one policy, which flights and forward simulation fly in the place of all of theirs"):
-    val folder             = temporaryFolder().resolve("learned")
-    val words              = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
+  test(
+    "pursuers of a team learn one policy, which flights and forward simulation fly in the place of all of theirs"
+  ):
+    val folder = temporaryFolder().resolve("learned")
+    val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
     val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
     assertEquals(status, 0, err)
     val rows = ujson.read(out)("tables")(0)("rows").arr
