@@ -111,17 +111,5 @@ object Avoidance:
   /** Within which two vehicles that are too near to one another are to be apart again. */
   private[policy] val PartingS = 0.5
 
-  /** A horizontal velocity, m/s. */
-  private[policy] final case class Velocity(north: Double, east: Double):
-    def +(other: Velocity): Velocity       = Velocity(north + other.north, east + other.east)
-    def -(other: Velocity): Velocity       = Velocity(north - other.north, east - other.east)
-    def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
-    infix def dot(other: Velocity): Double = north * other.north + east * other.east
-
-    /** No faster than allowed. */
-    def limited(mostMps: Double): Velocity =
-      val speed = math.sqrt(this dot this)
-      if speed > mostMps then this * (mostMps / speed) else this
-
   /** Velocities v with (v − at)·normal ≥ 0. */
   private[policy] final case class Bound(at: Velocity, normal: Velocity)

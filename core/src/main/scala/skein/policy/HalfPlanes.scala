@@ -1,6 +1,5 @@
 package skein.policy
 
-import skein.policy.Avoidance.Velocity
 import skein.policy.HalfPlanes.*
 
 /** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. Filled in by [[put]].
@@ -143,3 +142,15 @@ private[policy] object HalfPlanes:
 
   /** In a sum with it nothing but 0 changes. */
   private val Tiny = 1e-30
+
+/** A horizontal velocity, m/s. */
+private[policy] final case class Velocity(north: Double, east: Double):
+  def +(other: Velocity): Velocity       = Velocity(north + other.north, east + other.east)
+  def -(other: Velocity): Velocity       = Velocity(north - other.north, east - other.east)
+  def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
+  infix def dot(other: Velocity): Double = north * other.north + east * other.east
+
+  /** No faster than allowed. */
+  def limited(mostMps: Double): Velocity =
+    val speed = math.sqrt(this dot this)
+    if speed > mostMps then this * (mostMps / speed) else this

@@ -186,7 +186,6 @@ class TeamPolicySuite extends munit.FunSuite:
     )
 
   test("of twenty and more neighbours, all are kept clear of that can be"):
-    import Avoidance.Velocity
     val random                = scala.util.Random(4)
     var allowed, least, short = 0
     for turn <- 0 until 4000 do

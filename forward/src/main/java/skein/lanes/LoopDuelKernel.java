@@ -21,7 +21,7 @@ import skein.forward.Steering;
  */
 final class LoopDuelKernel extends DuelKernel {
   /** Times stay within what integers of grains can hold. */
-  static final double MOST_S = 3.5;
+  private static final double MOST_S = 3.5;
 
   private final int steps;
   private final double periodS;
@@ -113,8 +113,8 @@ final class LoopDuelKernel extends DuelKernel {
       offers = new SequentialOffers(sequential);
     else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
     int keptRows = keptRows(timing, maxDelayS);
-    LaneVehicles evaders = model.flights(duel.evader(), timing, keptRows),
-        pursuers = model.flights(duel.pursuer(), timing, keptRows);
+    LaneVehicles evaders = model.flights(duel.evader(), timing, keptRows, 2 * MOST_S),
+        pursuers = model.flights(duel.pursuer(), timing, keptRows, 2 * MOST_S);
     double deadTimeS = model.deadTimeS();
     Steering steering = LoopTiming.steeringOf(timing);
     evader =

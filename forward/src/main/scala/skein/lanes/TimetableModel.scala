@@ -40,8 +40,15 @@ private[skein] trait TimetableModel:
     *
     * @param keptRows
     *   see [[LaneFlights]]
+    * @param longestS
+    *   a command is under way at most
     */
-  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles
+  private[lanes] def flights(
+      duelist: Duelist,
+      timing: LoopTiming,
+      keptRows: Int,
+      longestS: Double
+  ): LaneVehicles
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
@@ -136,8 +143,12 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
 
-  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
-    val longestS = 2 * LoopDuelKernel.MOST_S
+  private[lanes] def flights(
+      duelist: Duelist,
+      timing: LoopTiming,
+      keptRows: Int,
+      longestS: Double
+  ): LaneVehicles =
     timing match
       // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
       case stream: LoopTiming.Stream
@@ -166,7 +177,12 @@ private final class DragTimetables(model: ReducedModel) extends TimetableModel:
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
   def clock(): VehicleClock                         = PieceClock(ReducedModel.PieceS)
 
-  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+  private[lanes] def flights(
+      duelist: Duelist,
+      timing: LoopTiming,
+      keptRows: Int,
+      longestS: Double
+  ): LaneVehicles =
     DragFlights(duelist, model, timing.periodS, keptRows)
 
 /** By [[TimetablePlants]]. */
@@ -176,7 +192,12 @@ private final class PlantTimetables(lanes: PlantLanes) extends TimetableModel:
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
   def clock(): VehicleClock                         = PieceClock(lanes.plant.stepS)
 
-  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+  private[lanes] def flights(
+      duelist: Duelist,
+      timing: LoopTiming,
+      keptRows: Int,
+      longestS: Double
+  ): LaneVehicles =
     PlantFlights(duelist, lanes, timing.periodS, keptRows)
 
 /** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
@@ -200,8 +221,13 @@ private final class QuadrotorTimetables(model: QuadrotorResponse) extends Timeta
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
 
-  override def fliesAlone: Boolean                                                              = false
-  private[lanes] def flights(duelist: Duelist, timing: LoopTiming, keptRows: Int): LaneVehicles =
+  override def fliesAlone: Boolean = false
+  private[lanes] def flights(
+      duelist: Duelist,
+      timing: LoopTiming,
+      keptRows: Int,
+      longestS: Double
+  ): LaneVehicles =
     throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 
   def clock(): VehicleClock = new VehicleClock:
