@@ -11,6 +11,7 @@ import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 import skein.link.{Address, TcpTransport}
+import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.Clock
 
@@ -203,11 +204,16 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
         case "searches/…/scenario.conf"                                 => scenario.toString
         // What one command of a guide writes, a later one reads.
         case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
-        case word                                                             => word
+        case model if model.startsWith("mujoco:examples/") => model.replace("examples/", "../examples/")
+        case word                                          => word
       // The usual port may be taken here.
       val words          = asked ++ (if asked.contains("--view") then Seq("--view-port", "0") else Nil)
       val (status, told) = words.head match
-        case "--help"  => run(words)
+        case "--help"                                                                => run(words)
+        case _ if words.exists(_.startsWith("mujoco:")) && MujocoLibrary.find.isLeft =>
+          // MuJoCo is installed by whoever wants it: that is told in a line.
+          val (status, told) = run(words)
+          (if told.contains("MuJoCo's library was not found") then 0 else status, told)
         case "cluster" => run(words.updated(2, folder.resolve("certificates").toString))
         case "worker"  =>
           // Nobody is there to be joined: that is told in a line.
