@@ -106,7 +106,7 @@ final class DecideCommand(using scenarios: Scenarios)
         Right(() => close())
 
   private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
-    given system: ActorSystem = LiveSystem("skein-decide")
+    given system: ActorSystem = ActorSystem("skein-decide")
     try
       val warm = ConcurrentHashMap[String, Boolean]()
       val desk = SolverDesk(

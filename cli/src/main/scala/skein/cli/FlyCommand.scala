@@ -127,7 +127,7 @@ final class FlyCommand(using Scenarios)
   private def warmUp(settings: FlySettings): Either[String, Unit] =
     if settings.loops.forall(FlyCommand.warm) then Right(())
     else
-      given system: ActorSystem = LiveSystem("skein-warm-up")
+      given system: ActorSystem = ActorSystem("skein-warm-up")
       try
         for
           flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)

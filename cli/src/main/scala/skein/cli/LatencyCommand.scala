@@ -68,7 +68,7 @@ object LatencyCommand
       period: Span,
       samples: Int
   ): Either[String, Seq[Try[Span]]] =
-    given system: ActorSystem = LiveSystem("skein")
+    given system: ActorSystem = ActorSystem("skein")
     import system.dispatcher
     val transport           = TcpTransport()
     def client(at: Address) = AirSimClient(RpcClient(transport, at, Clock.system))

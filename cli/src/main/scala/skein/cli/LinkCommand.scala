@@ -77,7 +77,7 @@ object LinkCommand
       Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, came '$text'").map(Some(_))
 
   private def serve(listenAt: Address, to: Address, profile: LinkProfile, seed: Long): Either[String, Unit] =
-    given system: ActorSystem   = LiveSystem("skein")
+    given system: ActorSystem   = ActorSystem("skein")
     def warn(reason: Throwable) = Console.err.println(s"skein link: ${reason.getMessage}")
     try
       val link  = EmulatedLink(profile, seed, Clock.system)

@@ -35,7 +35,7 @@ private[cli] final class LiveCommand(
 
   /** Blocks until all have landed. */
   def fly(plans: Vector[FlightPlan]): Either[String, Flown] =
-    given system: ActorSystem = LiveSystem("skein")
+    given system: ActorSystem = ActorSystem("skein")
     val assembler             = FlightAssembler(
       TcpTransport(),
       Clock.system,

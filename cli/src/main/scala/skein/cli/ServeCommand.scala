@@ -123,7 +123,7 @@ object ServeCommand
     yield supported
 
   private def serve(settings: SimulatorSettings, shows: Option[Shows]): Either[String, Unit] =
-    given system: ActorSystem = LiveSystem("skein")
+    given system: ActorSystem = ActorSystem("skein")
     try
       val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
       val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
