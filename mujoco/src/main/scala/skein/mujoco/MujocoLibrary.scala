@@ -53,8 +53,10 @@ object MujocoLibrary:
       "-c",
       "import importlib.util; print(importlib.util.find_spec('mujoco').submodule_search_locations[0])"
     ).redirectError(ProcessBuilder.Redirect.DISCARD).start()
-    val told = String(asked.getInputStream.readAllBytes()).trim
-    Option.when(asked.waitFor(PatienceS, TimeUnit.SECONDS) && asked.exitValue == 0)(Path.of(told))
+    try
+      Option.when(asked.waitFor(PatienceS, TimeUnit.SECONDS) && asked.exitValue == 0):
+        Path.of(String(asked.getInputStream.readAllBytes()).trim)
+    finally asked.destroy()
   }.toOption.flatten
 
   /** The library in that folder. */
