@@ -13,7 +13,7 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.{BuildId, Endpoint}
 import skein.flight.WarmUp
 import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
-import skein.link.{Address, TcpTransport, TransportError}
+import skein.link.{Address, ControlThreads, TcpTransport, TransportError}
 import skein.loop.planning.BackgroundThread
 import skein.policy.Fleet
 import skein.scenario.Scenarios
@@ -162,6 +162,7 @@ final class DecideCommand(using scenarios: Scenarios)
       case Right(flights) =>
         say(s"warmed up by $flights virtual flights")
         BackgroundThread.compilersGiveWay(): Unit
+        ControlThreads.lead(): Unit
 
   private def say(line: String): Unit =
     Console.out.println(s"${LocalTime.now().truncatedTo(ChronoUnit.SECONDS)} $line")

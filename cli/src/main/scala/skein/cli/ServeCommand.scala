@@ -6,7 +6,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{ExecutionContext, Promise}
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotKind
-import skein.link.{TcpTransport, TransportError}
+import skein.link.{ControlThreads, TcpTransport, TransportError}
 import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
@@ -142,16 +142,21 @@ object ServeCommand
         system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
           system.dispatcher
         )
+      // What it runs is compiled by then.
+      val leading =
+        system.scheduler.scheduleOnce(LeadsAfter)(ControlThreads.lead(): Unit)(using system.dispatcher)
       val shown   = shows.map(TruthOnShow.start(settings, server, _, Clock.system))
       val outcome = Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
       telling.cancel()
+      leading.cancel()
       shown.foreach(_.cancel())
       Edge.await(server.close())
       outcome
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
 
-  private val NewsEvery = 10.seconds
+  private val NewsEvery  = 10.seconds
+  private val LeadsAfter = 10.seconds
 
   /** Says what clients were refused whenever there is more of it. */
   private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:

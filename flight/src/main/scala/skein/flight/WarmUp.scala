@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.annotation.tailrec
 import scala.concurrent.Future
-import skein.link.Transport
+import skein.link.{ControlThreads, Transport}
 import skein.loop.Outcome
 import skein.loop.planning.BackgroundThread
 import skein.record.MemoryRecorder
@@ -64,7 +64,7 @@ object WarmUp:
 
   /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a link, against
     * built-in simulators, with more vehicles and more often: what virtual time replaces, sockets and threads, is warm
-    * then too. Afterwards the compiler gives way to what is flown.
+    * then too. Afterwards the compiler gives way to what is flown, and [[skein.link.ControlThreads]] go first.
     *
     * @return
     *   how many decisions were made, or why a loop could not be started
@@ -98,5 +98,6 @@ object WarmUp:
             // However it ends: a busy machine may fall silent here, before anything counts.
             case Right(assembly) => assembly.landed.map(_ => Right(recorder.recording.decisions.size))
       .map: flown =>
-        val _ = BackgroundThread.compilersGiveWay()
+        BackgroundThread.compilersGiveWay(): Unit
+        ControlThreads.lead(): Unit
         flown.collectFirst { case Left(reason) => reason }.toLeft(flown.flatMap(_.toOption).sum)

@@ -133,6 +133,7 @@ private enum Beside(val name: String):
   try
     for round <- 0 to rounds do
       println(if round == 0 then "to warm up:" else s"round $round:")
+      if round == 1 then println(s"${ControlThreads.lead()} threads go first")
       for beside <- Seq(Beside.Nothing, Beside.OwnLane) do fly("loopback", None, beside, 30)
       for beside <- Beside.values do fly("50 Mbit/s, 20 ms", Some(line), beside, 2)
   finally wait(system.terminate()): Unit

@@ -34,7 +34,7 @@ final class PreciseScheduler(
     with Closeable:
   import PreciseScheduler.*
 
-  private val timer = ScheduledThreadPoolExecutor(1, threads)
+  private val timer = ScheduledThreadPoolExecutor(1, ControlThreads.of(threads))
   timer.setRemoveOnCancelPolicy(true)
   timer.setExecuteExistingDelayedTasksAfterShutdownPolicy(false)
 
@@ -140,10 +140,9 @@ final class PreciseScheduler(
 
 object PreciseScheduler:
 
-  /** The program's configuration with this scheduler in place of Pekko's. */
-  def config: Config = ConfigFactory
-    .parseString(s"pekko.scheduler.implementation = ${classOf[PreciseScheduler].getName}")
-    .withFallback(ConfigFactory.load())
+  /** The program's configuration with this scheduler in place of Pekko's, and with [[ControlThreads]]. */
+  def config: Config =
+    ConfigFactory.parseResources("skein/link/punctual.conf").withFallback(ConfigFactory.load())
 
   private enum State:
     case Pending, Started, Cancelled

@@ -4,7 +4,7 @@ import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import org.apache.pekko.actor.typed.scaladsl.{Behaviors, TimerScheduler}
-import org.apache.pekko.actor.typed.{ActorRef, Behavior}
+import org.apache.pekko.actor.typed.{ActorRef, Behavior, DispatcherSelector}
 import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
@@ -179,7 +179,8 @@ object SimulatorServer:
     private val outs = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
-      given ExecutionContext = context.executionContext
+      // Drawing takes long, and must not take control's threads.
+      given ExecutionContext = context.system.dispatchers.lookup(DispatcherSelector.blocking())
 
       def goOn(): Behavior[Message] =
         takeCalls()

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.hil.{AutopilotKind, SmallAutopilot}
-import skein.link.{Address, PreciseScheduler, TcpTransport}
+import skein.link.{Address, ControlThreads, PreciseScheduler, TcpTransport}
 import skein.units.{Clock, Span}
 
 /** What PX4's interface does in lockstep: `lockstep SECONDS` in virtual time, how many times as fast as the clock, twice
@@ -32,6 +32,7 @@ import skein.units.{Clock, Span}
         HilPeer.fly(SmallAutopilot(), 20_000_000, server.peerAddresses.head, TcpTransport())(),
         1.minute
       )
+      println(s"${ControlThreads.lead()} threads go first")
       val arrivals = HilPeer.Arrivals()
       val flown    = HilPeer.fly(
         SmallAutopilot(),

@@ -1,0 +1,73 @@
+package skein.link
+
+import java.lang.foreign.{Arena, FunctionDescriptor, Linker, ValueLayout}
+import java.nio.file.{Files, Path}
+import scala.jdk.CollectionConverters.*
+import scala.util.{Try, Using}
+
+/** How Linux chooses between threads that could run, see sched(7). Java's priorities have no effect there, and niceness has
+  * none on how soon a thread runs that wakes up: it waits until the one on its processor has used up its slice, some 3 to
+  * 5 ms. Other systems know no such policies.
+  *
+  * @param number
+  *   in linux/sched.h
+  * @param priority
+  *   among threads of the same policy
+  */
+enum SchedulingPolicy(private val number: Int, priority: Int):
+
+  /** Runs when no other thread of the user's session wants the processor, and gives it back at once. Any process may choose
+    * it, and may not go back.
+    */
+  case Idle extends SchedulingPolicy(5, 0)
+
+  /** Takes the processor at once from every thread without it. It takes the right to: root, `CAP_SYS_NICE`, or a limit of
+    * `ulimit -r 1`. What such a thread starts has the usual policy. The system leaves other threads a twentieth of the time.
+    */
+  case RealTime extends SchedulingPolicy(2, 1)
+
+  /** Schedules one of this process's threads like that.
+    *
+    * @param thread
+    *   as the system numbers them
+    * @return
+    *   whether the system did so
+    */
+  def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
+    val linker = Linker.nativeLinker()
+    val call   = linker.downcallHandle(
+      linker.defaultLookup().findOrThrow("sched_setscheduler"),
+      FunctionDescriptor.of(
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.ADDRESS
+      )
+    )
+    Using.resource(Arena.ofConfined()): arena =>
+      val parameter      = arena.allocateFrom(ValueLayout.JAVA_INT, priority)
+      val flags          = if this == RealTime then SchedulingPolicy.ResetOnFork else 0
+      val result: AnyRef = call.invokeWithArguments(Int.box(thread), Int.box(number | flags), parameter)
+      result == Int.box(0)
+  .getOrElse(false)
+
+object SchedulingPolicy:
+  private val isLinux = System.getProperty("os.name") == "Linux"
+
+  /** `SCHED_RESET_ON_FORK` in linux/sched.h. */
+  private val ResetOnFork = 0x40000000
+
+  /** The calling thread's number; none where the system tells none. */
+  def thisThread: Option[Int] =
+    Option.when(isLinux)(Files.readSymbolicLink(Path.of("/proc/thread-self")).getFileName.toString.toInt)
+
+  /** This process's threads whose names begin so; the system knows 15 characters of a name. */
+  def threadsNamed(beginnings: String*): Vector[Int] =
+    if isLinux then
+      Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector)
+        .filter(task => beginnings.exists(nameOf(task).startsWith))
+        .map(_.getFileName.toString.toInt)
+    else Vector.empty
+
+  /** Empty where the thread has ended since it was listed. */
+  private def nameOf(task: Path): String = Try(Files.readString(task.resolve("comm"))).getOrElse("")

@@ -1,0 +1,81 @@
+package skein.link
+
+import java.nio.file.{Files, Path}
+import java.util.concurrent.ConcurrentHashMap
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.dispatch.Dispatchers
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source, Tcp}
+import org.apache.pekko.util.ByteString
+import scala.concurrent.duration.*
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.jdk.CollectionConverters.*
+
+/** Asks Linux how it schedules the threads of this JVM, which keep that for good. */
+class ControlThreadsLiveSuite extends munit.FunSuite:
+  private given system: ActorSystem = ActorSystem("control-threads", PreciseScheduler.config)
+  private given ExecutionContext    = ExecutionContext.parasitic
+
+  override def afterAll(): Unit = system.terminate(): Unit
+
+  override def munitIgnore: Boolean = System.getProperty("os.name") != "Linux"
+
+  private val (usual, roundRobin) = (0, 2)
+
+  test("they take the lead, also those that start later; who blocks, and what they start, does not"):
+    val before  = policyOnControl(using system.dispatcher)
+    val mayLead =
+      before.flatMap: policy =>
+        assertEquals(policy, usual)
+        ControlThreads.lead()
+        policyOnControl(using system.dispatcher)
+    for
+      control <- mayLead
+      _ = assume(control == roundRobin, "this user may not take real-time priority")
+      timed    <- onTimer()
+      blocking <- policyOnControl(using system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId))
+      child    <- Future(childsPolicy())(using system.dispatcher)
+      _        <- echoed()
+    yield
+      assertEquals(timed, roundRobin)
+      assertEquals(blocking, usual)
+      assertEquals(child, usual)
+      assert(policiesOf("control-threads").contains(roundRobin))
+
+  private def policyOnControl(using ExecutionContext): Future[Int] =
+    Future(policyOf(Path.of("/proc/thread-self")))
+
+  /** Of the thread that timers run on. */
+  private def onTimer(): Future[Int] =
+    val found = Promise[Int]()
+    system.scheduler.scheduleOnce(1.milli)(found.success(policyOf(Path.of("/proc/thread-self"))): Unit)(using
+      ExecutionContext.parasitic
+    )
+    found.future
+
+  private def childsPolicy(): Int =
+    val found  = ConcurrentHashMap.newKeySet[Int]()
+    val thread = Thread(() => found.add(policyOf(Path.of("/proc/thread-self"))): Unit)
+    thread.start()
+    thread.join()
+    found.asScala.head
+
+  /** Bytes to a socket and back, so that its threads have run. */
+  private def echoed(): Future[ByteString] =
+    for
+      bound <- Tcp().bind("127.0.0.1", 0).to(Sink.foreach(_.handleWith(Flow[ByteString]): Unit)).run()
+      back  <- Source
+        .single(ByteString("there and back"))
+        .via(Tcp().outgoingConnection(bound.localAddress))
+        .runFold(ByteString.empty)(_ ++ _)
+      _ <- bound.unbind()
+    yield
+      assertEquals(back.utf8String, "there and back")
+      back
+
+  private def policiesOf(beginning: String): Vector[Int] =
+    SchedulingPolicy.threadsNamed(beginning).map(thread => policyOf(Path.of(s"/proc/self/task/$thread")))
+
+  /** The 41st field of proc_pid_stat(5); the second may hold spaces, but ends with the last parenthesis. */
+  private def policyOf(thread: Path): Int =
+    val stat = Files.readString(thread.resolve("stat"))
+    stat.substring(stat.lastIndexOf(')') + 2).split(' ')(41 - 3).toInt
