@@ -56,7 +56,7 @@ object TestGroups extends AutoPlugin {
     "skein.cli.DocumentedCommandsLiveSuite"         -> Jvm.oneCollector,
     "skein.cli.DocumentedFlightsLiveSuite"          -> Jvm.brief,
     "skein.flight.WarmUpSimulation"                 -> Jvm.brief,
-    "skein.loop.planning.BackgroundThreadLiveSuite" -> Jvm.oneCollector
+    "skein.link.BackgroundThreadLiveSuite" -> Jvm.oneCollector
   )
 
   /** By vectors, which are slow until they are optimised, or for long. */

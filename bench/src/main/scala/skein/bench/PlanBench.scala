@@ -3,7 +3,8 @@ package skein.bench
 import com.sun.management.ThreadMXBean
 import java.lang.management.ManagementFactory
 import java.util.concurrent.atomic.AtomicLong
-import skein.loop.planning.{BackgroundThread, PlanSearch, ThreadedPlanWorkers}
+import skein.link.BackgroundThread
+import skein.loop.planning.{PlanSearch, ThreadedPlanWorkers}
 import skein.planning.*
 import skein.policy.PaperEvader
 import skein.vehicle.ReducedModel
@@ -47,7 +48,7 @@ object PlanBench:
   def endlessly(threads: Int): Option[PlanSearch] =
     Option.when(threads > 0):
       val problem = this.problem(behaviours = 1)
-      new ThreadedPlanWorkers(threads).begin(problem, warm(problem))
+      new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan")).begin(problem, warm(problem))
 
   private def run(problem: PlanProblem, threads: Int, seconds: Double): (Double, Double, Double, Float) =
     val (candidates, cpuNanos, bytes) = (AtomicLong(), AtomicLong(), AtomicLong())

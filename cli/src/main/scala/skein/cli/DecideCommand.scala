@@ -13,8 +13,7 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.{BuildId, Endpoint}
 import skein.flight.WarmUp
 import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
-import skein.link.{Address, ControlThreads, TcpTransport, TransportError}
-import skein.loop.planning.BackgroundThread
+import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
 import skein.policy.Fleet
 import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}

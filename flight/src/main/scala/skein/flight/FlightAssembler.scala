@@ -10,7 +10,7 @@ import skein.airsim.{Vehicles, WorldSettings}
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
-import skein.loop.planning.{BackgroundThread, PlanWorkers, ThreadedPlanWorkers}
+import skein.loop.planning.{PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
@@ -272,7 +272,8 @@ final class FlightAssembler(
 object FlightAssembler:
   /** Threads to plan on, no more than there are cores. */
   private def threads(planning: PlanSettings): PlanWorkers =
-    new ThreadedPlanWorkers(planning.searches.min(Runtime.getRuntime.availableProcessors))
+    val threads = planning.searches.min(Runtime.getRuntime.availableProcessors)
+    new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan"))
 
   private val noSteps =
     "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"

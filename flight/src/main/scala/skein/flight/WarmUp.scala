@@ -3,9 +3,8 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.annotation.tailrec
 import scala.concurrent.Future
-import skein.link.{ControlThreads, Transport}
+import skein.link.{BackgroundThread, ControlThreads, Transport}
 import skein.loop.Outcome
-import skein.loop.planning.BackgroundThread
 import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile

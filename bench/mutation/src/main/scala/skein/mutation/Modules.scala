@@ -18,7 +18,6 @@ private object Modules:
         "skein.loop.planning.*",
         "skein.loop.*Simulation",
         "skein.loop.RunningGraphLiveSuite",
-        "skein.loop.planning.BackgroundThreadLiveSuite",
         "skein.loop.planning.PlanWorkersLiveSuite",
         "skein.loop.learning.LessonsBesideLiveSuite",
         "skein.flight.FailureTellingSimulation",

@@ -1,6 +1,6 @@
 package skein.loop.planning
 
-import java.util.concurrent.ConcurrentLinkedQueue
+import java.util.concurrent.{ConcurrentLinkedQueue, ThreadFactory}
 import java.util.concurrent.atomic.AtomicReference
 import java.util.concurrent.locks.LockSupport
 import scala.util.control.NonFatal
@@ -56,19 +56,19 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
 
   def close(): Unit = ()
 
-/** Searches on threads of its own until it is asked for the result; several problems take turns, slice by slice. The
-  * threads give way to others ([[BackgroundThread]]), so that control traffic takes the processor from them.
+/** Searches on threads of its own until it is asked for the result; several problems take turns, slice by slice.
   *
   * @param threads
   *   and searches per problem
+  * @param factory
+  *   of threads that should give way to those of control
   */
-final class ThreadedPlanWorkers(threads: Int) extends PlanWorkers:
+final class ThreadedPlanWorkers(threads: Int, factory: ThreadFactory) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
 
   // Without a lock, which a worker without the processor could keep the stream's thread waiting for.
   private val waiting            = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
   @volatile private var isClosed = false
-  private val factory            = BackgroundThread.factory("skein-plan")
   private val workers            = Vector.fill(threads)(factory.newThread(() => work()))
   workers.foreach(_.start())
 

@@ -3,6 +3,7 @@ package skein.loop.planning
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.duration.*
+import skein.link.BackgroundThread
 import skein.planning.*
 import skein.units.*
 import skein.vehicle.ReducedModel
@@ -81,7 +82,10 @@ class PlanSuite extends munit.FunSuite:
 
   test("there are as many searches as a problem has room for, and at least one"):
     def made(count: Int): Seq[() => PlanWorkers] =
-      Seq(() => CountedPlanWorkers(count, slices = 1), () => ThreadedPlanWorkers(count))
+      Seq(
+        () => CountedPlanWorkers(count, slices = 1),
+        () => ThreadedPlanWorkers(count, BackgroundThread.factory("skein-plan"))
+      )
     for make <- Seq(1, PlanProblem.MostSearches).flatMap(made) do make().close()
     for make <- Seq(0, PlanProblem.MostSearches + 1).flatMap(made) do
       intercept[IllegalArgumentException](make()): Unit

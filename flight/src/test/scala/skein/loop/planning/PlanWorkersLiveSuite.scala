@@ -1,6 +1,7 @@
 package skein.loop.planning
 
 import scala.jdk.CollectionConverters.*
+import skein.link.BackgroundThread
 import skein.planning.*
 import skein.vehicle.ReducedModel
 
@@ -28,7 +29,8 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
 
   private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
 
-  private val workers = FunFixture[ThreadedPlanWorkers](_ => ThreadedPlanWorkers(2), _.close())
+  private val workers =
+    FunFixture[ThreadedPlanWorkers](_ => ThreadedPlanWorkers(2, BackgroundThread.factory("skein-plan")), _.close())
 
   /** Polls until all searches have come so far. */
   private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
@@ -67,7 +69,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
   test("threads end when they are no longer wanted"):
     def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
     val before  = ours
-    val closing = ThreadedPlanWorkers(2)
+    val closing = ThreadedPlanWorkers(2, BackgroundThread.factory("skein-plan"))
     val begun   = ours -- before
     assertEquals(begun.size, 2)
     closing.close()

@@ -1,13 +1,12 @@
-package skein.loop.planning
+package skein.link
 
 import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.AtomicInteger
 import scala.util.Try
-import skein.link.SchedulingPolicy
 
 /** Threads that give way to all others of the user's session.
   *
-  * By Linux's [[skein.link.SchedulingPolicy.Idle]]. Its price: where other programs of the session keep all processors busy, such a thread
+  * By Linux's [[SchedulingPolicy.Idle]]. Its price: where other programs of the session keep all processors busy, such a thread
   * hardly runs, and the JVM, which stops all threads now and then, waits for one that is ready to run; 0.8 s were seen.
   */
 object BackgroundThread:

@@ -1,4 +1,4 @@
-package skein.loop.planning
+package skein.link
 
 import java.nio.file.{Files, Path}
 import munit.FunSuite
