@@ -77,7 +77,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Optimis
     val searching = Future(blocking(searched(Seq("search", "--resume", out.toString) ++ elsewhere(1))))
     val atWork    = until(log(out, 1).contains("computes its first block"))(searching.isCompleted)
     assert(atWork, log(out, 1))
-    val pid = """(\d+), 1 core, build""".r.findFirstMatchIn(log(out, 1)).get.group(1).toLong
+    val pid = """(\d+), \d+ cores?, build""".r.findFirstMatchIn(log(out, 1)).get.group(1).toLong
     assert(ProcessHandle.of(pid).toScala.exists(_.destroyForcibly()))
     val said = Await.result(searching, 8.minutes)
     assert(clue(said).contains(s"-$pid is gone"))

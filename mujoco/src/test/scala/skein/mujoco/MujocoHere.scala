@@ -19,7 +19,7 @@ private object MujocoHere:
     if sys.env.contains("SKEIN_MUJOCO") || sys.props.contains("skein.mujoco") then MujocoLibrary.find
     else
       for
-        python <- PythonEnvironment("importlib.util", None, Seq("--no-deps", "mujoco==4.0.0")).install()
+        python <- PythonEnvironment("importlib.util", None, Seq("--no-deps", "mujoco-core==4.0.0")).install()
         file   <- libraryBelow(python.getParent.getParent)
         _ = sys.props("skein.mujoco") = file.toString
         found <- MujocoLibrary.find
