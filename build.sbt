@@ -105,7 +105,7 @@ lazy val vtime = project
 /** Transport, and the emulated network. */
 lazy val link = project
   .settings(artifact("link", "Transport, and an emulated network"))
-  .dependsOn(core, vtime % Test)
+  .dependsOn(core, vtime % Test, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit :+ streamTestkit)
 
 /** Operators for control: ordinary Pekko flows, usable with nothing else of ours but the core. */
@@ -319,7 +319,7 @@ lazy val python = project
 lazy val bench =
   project
     .dependsOn(cli, mcap)
-    .settings(Jvm.vectorModule, underAgent, run / javaOptions ++= Jvm.control)
+    .settings(Jvm.vectorModule, underAgent, testsCompute := true, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
 
 /** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */

@@ -2,7 +2,7 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Which suites share a JVM, how that compiles, and what runs beside it. */
+/** Which suites share a JVM, how that compiles, and what runs beside it: as `skein.testing.Groups` marks them, or a module. */
 object TestGroups extends AutoPlugin {
 
   override def requires: Plugins      = JvmPlugin
@@ -13,10 +13,7 @@ object TestGroups extends AutoPlugin {
   }
   import autoImport.*
 
-  /** Of suites that measure time, or fly for minutes by the clock beside other programs: nothing else runs meanwhile. */
   private val Timing: Tags.Tag = Tags.Tag("timing")
-
-  /** Of suites that mostly wait: for other programs, for the real clock. */
   private val Waiting: Tags.Tag = Tags.Tag("waiting")
 
   /** One task for each core, and two that wait beside them; what measures time has the machine to itself. */
@@ -29,88 +26,28 @@ object TestGroups extends AutoPlugin {
     Tags.exclusive(Timing)
   )
 
-  private val timing = Set(
-    "skein.cli.ViewLiveSuite",
-    "skein.link.LinkFidelityLiveSuite",
-    "skein.link.PreciseSchedulerLiveSuite",
-    "skein.flight.TwinLiveSuite"
-  )
-
-  private val waiting = Set(
-    "skein.flight.MavlinkFlightLiveSuite",
-    "skein.flight.RunningSimulatorLiveSuite",
-    "skein.mcap.OfficialPythonLibraryLiveSuite",
-    "skein.mujoco.MujocoOracleLiveSuite",
-    "skein.mujoco.MujocoRotorcraftLiveSuite",
-    "skein.simulator.HilServerLiveSuite",
-    "skein.simulator.MavsdkLiveSuite",
-    "skein.simulator.OfficialPythonClientLiveSuite"
-  )
-
-  /** Each has a JVM of its own: the long ones, which then run beside one another, and those that tell the compilers of
-    * their JVM to give way, for good, as is done before a live flight: on a busy machine everything behind them would be
-    * interpreted.
-    */
-  private val alone = Map(
-    "skein.cli.DocumentedClustersLiveSuite"         -> Jvm.oneCollector,
-    "skein.cli.DocumentedCommandsLiveSuite"         -> Jvm.oneCollector,
-    "skein.cli.DocumentedFlightsLiveSuite"          -> Jvm.brief,
-    "skein.flight.WarmUpSimulation"                 -> Jvm.brief,
-    "skein.link.BackgroundThreadLiveSuite" -> Jvm.oneCollector
-  )
-
-  /** By vectors, which are slow until they are optimised, or for long. */
-  private val computing = Set(
-    "skein.budget.BudgetSuite",
-    "skein.budget.ClusterSubjectSuite",
-    "skein.budget.ScenarioSubjectSuite",
-    "skein.cli.ClusterCommandsLiveSuite",
-    "skein.cli.LearnCommandSuite",
-    "skein.cli.OwnFamilySuite",
-    "skein.cli.SearchCommandSuite",
-    "skein.cli.ShippedProgramLiveSuite",
-    "skein.cli.TortureQuestionSuite",
-    "skein.flight.ConvoySimulation",
-    "skein.flight.FailureTellingSimulation",
-    "skein.flight.FilmedFlightSimulation",
-    "skein.flight.HeldFlightSimulation",
-    "skein.flight.KeptLimitsSimulation",
-    "skein.flight.LearningFlightSimulation",
-    "skein.flight.ReplaySimulation",
-    "skein.flight.TeamSimulation",
-    "skein.loop.PlanLoopSimulation",
-    "skein.loop.ReplaySuite",
-    "skein.loop.SensorSimulation",
-    "skein.loop.planning.PlanSuite",
-    "skein.loop.planning.PlanWorkersLiveSuite",
-    "skein.recognition.AprilTagsSuite",
-    "skein.recognition.VehicleDetectorSuite",
-    "skein.search.LandscapeSuite",
-    "skein.search.SearchBlockLaws",
-    "skein.search.SearchFileSuite",
-    "skein.search.TeamSearchSuite"
-  )
-
   override val projectSettings: Seq[Setting[?]] = Seq(
     testsCompute := false,
     Test / testGrouping := {
       val options  = (Test / forkOptions).value
+      val classes  = (Test / classDirectory).value
       val computes = testsCompute.value
-      def jvm(more: Seq[String]) =
-        Tests.SubProcess(options.withRunJVMOptions(options.runJVMOptions ++ more))
+      // A class file names the traits of its class.
+      def is(suite: TestDefinition, mark: String) =
+        IO.read(classes / s"${suite.name.replace('.', '/')}.class").contains(s"skein/testing/$mark")
       val groups = (Test / definedTests).value.groupBy { suite =>
-        if (timing(suite.name)) "timing"
-        else if (waiting(suite.name)) "waiting"
-        else if (alone.contains(suite.name)) suite.name
-        else if (computes || computing(suite.name)) "computing"
-        else "others"
+        val name = if (is(suite, "Alone")) suite.name else Seq("Timing", "Waiting").find(is(suite, _)).getOrElse("")
+        (name, computes || is(suite, "Optimised"))
       }
-      groups.toSeq.sortBy(_._1).map {
-        case ("timing", suites)    => new Tests.Group("timing", suites, jvm(Nil), Seq(Timing -> 1))
-        case ("waiting", suites)   => new Tests.Group("waiting", suites, jvm(Jvm.brief), Seq(Waiting -> 1))
-        case ("others", suites)    => new Tests.Group("others", suites, jvm(Jvm.brief), Nil)
-        case ("computing", suites) => new Tests.Group("computing", suites, jvm(Jvm.oneCollector), Nil)
-        case (name, suites)        => new Tests.Group(name, suites, jvm(alone(name)), Nil)
+      groups.toSeq.sortBy(_._1).map { case ((name, isOptimised), suites) =>
+        val (more, tags) = name match {
+          case "Timing"         => (Nil, Seq(Timing -> 1))
+          case "Waiting"        => (Jvm.brief, Seq(Waiting -> 1))
+          case _ if isOptimised => (Jvm.oneCollector, Nil)
+          case _                => (Jvm.brief, Nil)
+        }
+        val jvm = Tests.SubProcess(options.withRunJVMOptions(options.runJVMOptions ++ more))
+        new Tests.Group(s"$name, optimised: $isOptimised", suites, jvm, tags)
       }
     }
   )

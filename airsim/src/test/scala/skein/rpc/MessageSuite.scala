@@ -6,7 +6,7 @@ import upack.*
 class MessageSuite extends munit.FunSuite:
 
   test("what the writer encodes is what the oracle reads"):
-    for seed <- 1 to 300 do
+    for seed <- 1 to 100 do
       val random = Random(seed)
       val params = Seq.fill(random.nextInt(20))(Wire.randomMsg(random))
       val writer = MessageWriter()
@@ -16,7 +16,7 @@ class MessageSuite extends munit.FunSuite:
       assertEquals(read.get(3), Wire.toValue(Arr(params*)), s"seed $seed")
 
   test("what the oracle encodes is what a reply's result reads as"):
-    for seed <- 1 to 300 do
+    for seed <- 1 to 100 do
       val random = Random(seed)
       val result = Wire.randomMsg(random)
       Message.fromServer(Wire.pack(Arr(Int32(1), Int32(7), Null, result))) match

@@ -7,8 +7,9 @@ import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
 import skein.settings.PolicyFile
+import skein.testing.Optimised
 
-class BudgetSuite extends munit.FunSuite:
+class BudgetSuite extends munit.FunSuite, Optimised:
   override def munitTimeout: Duration = 2.minutes
 
   private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)

@@ -8,9 +8,10 @@ import skein.scenario.Scenarios
 import skein.search.{Conditions, BlockExecutor}
 import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
+import skein.testing.Optimised
 import skein.units.Span
 
-class ClusterSubjectSuite extends munit.FunSuite:
+class ClusterSubjectSuite extends munit.FunSuite, Optimised:
   override def munitTimeout: Duration = 2.minutes
 
   private given Scenarios = Scenarios.ours

@@ -13,15 +13,17 @@ import skein.docs.Documentation
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.{Alone, Optimised}
 import skein.units.Clock
 
 /** Flights by the clock: they make compilers give way for the rest of their process. */
-class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight)
+class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight), Alone
 
 /** What takes several processes. */
-class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster)
+class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Alone,
+      Optimised
 
-class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other)
+class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone, Optimised
 
 /** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
   * loopback.
@@ -70,7 +72,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     try found.iterator.asScala.toVector
     finally found.close()
 
-  private val forward = Seq("--candidates", "48", "--episodes", "2", "--fresh", "64", "--duration", "12s")
+  private val forward = Seq("--candidates", "16", "--episodes", "2", "--fresh", "8", "--duration", "12s")
 
   private val team =
     Seq("--set", "vehicles=4", "--candidates", "4", "--episodes", "1", "--fresh", "2", "--duration", "12s")

@@ -1,9 +1,9 @@
 package skein.cli
 
 import scala.concurrent.duration.*
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 
-class SearchCommandSuite extends munit.FunSuite, TemporaryFolders:
+class SearchCommandSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   override val munitTimeout: Duration = 2.minutes
 
   test("with --json a search prints its result as data, and all else to the error output"):

@@ -12,12 +12,12 @@ import scala.util.Using
 import skein.record.*
 import skein.report.DuelReport
 import skein.scenario.Scenarios
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Timing}
 import skein.units.Clock
 import skein.view.{RecordedShow, Shows, ViewServer}
 
 /** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
-class ViewLiveSuite extends munit.FunSuite, TemporaryFolders:
+class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Timing:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
 

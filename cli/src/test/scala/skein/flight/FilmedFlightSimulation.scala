@@ -10,10 +10,11 @@ import skein.recognition.BlindPursuit
 import skein.scenario.{Forest, Scenario, Scenarios}
 import skein.settings.{FlySettings, ImageSource}
 import skein.signal.LatencyProfile
+import skein.testing.Optimised
 import skein.units.*
 
 /** Flights that record what their cameras and lidars see. */
-class FilmedFlightSimulation extends munit.FunSuite:
+class FilmedFlightSimulation extends munit.FunSuite, Optimised:
   override def munitTimeout: Duration = 2.minutes
 
   private given Scenarios = OurScenarios.all

@@ -9,11 +9,11 @@ import skein.report.DuelReport
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 
 /** Scenarios of teams in virtual time. */
-class TeamSimulation extends munit.FunSuite, TemporaryFolders:
+class TeamSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = DuelReport.scenarios
 
   // Twenty vehicles in virtual time take a while where others work too.

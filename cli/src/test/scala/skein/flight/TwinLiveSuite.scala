@@ -4,6 +4,7 @@ import scala.concurrent.duration.*
 import skein.loop.LoopKind
 import skein.measure.Twin
 import skein.report.SummaryTables
+import skein.testing.Timing
 
 /** Real sockets and real time: one flight over the emulated direct link and its twins in virtual time.
   *
@@ -13,7 +14,7 @@ import skein.report.SummaryTables
   * [[mostExcessMs]], hardly any two distributions would be too far apart: such a flight says nothing. [[checkTwins]] holds
   * full flights to 2 % without allowance.
   */
-class TwinLiveSuite extends munit.FunSuite:
+class TwinLiveSuite extends munit.FunSuite, Timing:
 
   override val munitTimeout: Duration = 5.minutes
 

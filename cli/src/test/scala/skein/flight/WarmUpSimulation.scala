@@ -6,10 +6,11 @@ import scala.concurrent.duration.*
 import skein.link.{MemoryNetwork, NetworkPlan}
 import skein.loop.LoopKind
 import skein.signal.LatencyProfile
+import skein.testing.Alone
 import skein.units.*
 import skein.vtime.VirtualTime
 
-class WarmUpSimulation extends munit.FunSuite:
+class WarmUpSimulation extends munit.FunSuite, Alone:
   override def munitTimeout: Duration = 2.minutes
 
   private val settings =

@@ -3,8 +3,9 @@ package skein.search
 import skein.optimise.{Evaluator, RunningStats}
 import skein.plot.Shape
 import skein.policy.{Axis, SearchSpace}
+import skein.testing.Optimised
 
-class LandscapeSuite extends munit.FunSuite:
+class LandscapeSuite extends munit.FunSuite, Optimised:
   private val space =
     SearchSpace(Vector(
       Axis("flat", 0, 1),

@@ -3,8 +3,9 @@ package skein.search
 import org.scalacheck.{Arbitrary, Gen, Prop}
 import scala.collection.immutable.ArraySeq
 import skein.optimise.ValueEvaluator
+import skein.testing.Optimised
 
-class SearchBlockLaws extends munit.ScalaCheckSuite:
+class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
   /** Values whose sums depend on their order. */
   private object Rough extends ValueEvaluator:
     def valuesUnless(isCancelled: () => Boolean)(candidates: Vector[Vector[Double]], episodes: Range) =

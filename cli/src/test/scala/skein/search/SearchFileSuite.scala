@@ -4,9 +4,9 @@ import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
 import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.scenario.Scenarios
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 
-class SearchFileSuite extends munit.FunSuite, TemporaryFolders:
+class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
   private def question(method: String) = SearchQuestion(

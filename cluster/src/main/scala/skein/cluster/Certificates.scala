@@ -3,8 +3,8 @@ package skein.cluster
 import java.io.IOException
 import java.net.InetAddress
 import java.nio.file.attribute.PosixFilePermissions
+import java.nio.file.StandardCopyOption.{COPY_ATTRIBUTES, REPLACE_EXISTING}
 import java.nio.file.{FileSystems, Files, Path}
-import java.security.cert.{Certificate, CertificateFactory}
 import java.security.{GeneralSecurityException, KeyStore, SecureRandom}
 import java.util.HexFormat
 import scala.util.Using
@@ -71,74 +71,44 @@ object Certificates:
     if Files.exists(own.resolve(Tls.KeyStore)) then Left(s"$own holds a certificate already")
     else
       Files.createDirectories(own)
-      val secret            = password(own.resolve(Tls.Password))
-      val (keys, trusted)   = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
-      val (request, signed) = (own.resolve("request.pem"), own.resolve("node.pem"))
-      val isAddress         = host.matches("""[\d.]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*""")
-      val names             =
+      val secret          = password(own.resolve(Tls.Password))
+      val (keys, trusted) = (own.resolve(Tls.KeyStore), own.resolve(Tls.TrustStore))
+      val isAddress       = host.matches("""[\d.]+|[0-9A-Fa-f:]*:[0-9A-Fa-f:]*""")
+      val names           =
         if host == "localhost" then "dns:localhost,ip:127.0.0.1"
         else if isAddress then s"ip:${InetAddress.getByName(host).getHostAddress}"
         else s"dns:$host"
+      // One call makes and signs a key where that of the signer lies: in a copy, of which only the node's is kept.
       val signing = Files.readString(folder.resolve("signer.password")).trim
-      val made    =
-        for
-          _ <- keytool(secret, keys, Seq("-genkeypair", "-alias", "node", "-dname", s"CN=$host") ++ Key)
-          _ <- keytool(secret, keys, Seq("-certreq", "-alias", "node", "-file", request.toString))
-          _ <- keytool(
-            signing,
-            folder.resolve(Signer),
+      val both    =
+        Files.copy(folder.resolve(Signer), own.resolve("both.p12"), COPY_ATTRIBUTES, REPLACE_EXISTING)
+      try
+        keytool(
+          signing,
+          both,
+          Seq("-genkeypair", "-alias", "node", "-signer", "signer", "-dname", s"CN=$host") ++
             Seq(
-              "-gencert",
-              "-rfc",
-              "-alias",
-              "signer",
-              "-infile",
-              request.toString,
-              "-outfile",
-              signed.toString,
-              "-validity",
-              Days.toString,
-              "-ext",
               s"san=$names",
-              "-ext",
               "eku=serverAuth,clientAuth",
-              "-ext",
               "ku:c=digitalSignature"
-            )
-          )
-        yield
-          val signer = read(folder.resolve(Signer), signing).getCertificate("signer")
-          certify(keys, secret, signed, signer)
-          trust(trusted, secret, signer)
+            ).flatMap(Seq("-ext", _)) ++ Key
+        ).map: _ =>
+          val made = KeyStore.getInstance(both.toFile, signing.toCharArray)
+          write(keys, secret)(_.setKeyEntry(
+            "node",
+            made.getKey("node", signing.toCharArray),
+            secret.toCharArray,
+            made.getCertificateChain("node")
+          ))
+          write(trusted, secret)(_.setCertificateEntry("signer", made.getCertificate("signer")))
           onlyOurs(keys)
           own
-      Files.deleteIfExists(request): Unit
-      Files.deleteIfExists(signed): Unit
-      made
+      finally Files.deleteIfExists(both): Unit
 
-  /** A node shows its signed certificate, with that of whoever signed it. */
-  private def certify(keys: Path, password: String, signed: Path, signer: Certificate): Unit =
-    val factory = CertificateFactory.getInstance("X.509")
-    val node    = Using.resource(Files.newInputStream(signed))(factory.generateCertificate)
-    val store   = read(keys, password)
-    store.setKeyEntry(
-      "node",
-      store.getKey("node", password.toCharArray),
-      password.toCharArray,
-      Array(node, signer)
-    )
-    write(store, keys, password)
-
-  private def trust(trusted: Path, password: String, signer: Certificate): Unit =
+  private def write(to: Path, password: String)(entry: KeyStore => Unit): Unit =
     val store = KeyStore.getInstance("PKCS12")
     store.load(null, null)
-    store.setCertificateEntry("signer", signer)
-    write(store, trusted, password)
-
-  private def read(store: Path, password: String): KeyStore =
-    KeyStore.getInstance(store.toFile, password.toCharArray)
-
-  private def write(store: KeyStore, to: Path, password: String): Unit =
+    entry(store)
     Using.resource(Files.newOutputStream(to))(store.store(_, password.toCharArray))
 
   private val Key =

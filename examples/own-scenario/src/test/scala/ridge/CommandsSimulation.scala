@@ -25,7 +25,7 @@ class CommandsSimulation extends munit.FunSuite:
   folder.test("it flies, is reported and replayed from its recordings alone, and a model is fitted to them"):
     out =>
       val flown = run(
-        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 30s --out".split(
+        "fly --clock virtual --loop paused --loop stream --loop predictive --link vpn --set crest-m=25 --duration 20s --out".split(
           ' '
         ) :+
           out.toString*
@@ -47,15 +47,15 @@ class CommandsSimulation extends munit.FunSuite:
       assertEquals(fitted._1, 0, fitted._2)
 
   test("many seeds are flown and added up; it stands what goes wrong"):
-    val spread = run("spread --seeds 2 --loop paused --loop stream --link vpn".split(' ')*)
+    val spread = run("spread --seeds 2 --loop paused --loop stream --link vpn --duration 12s".split(' ')*)
     assertEquals(spread._1, 0, spread._2)
     assert(clue(spread._2).contains("Spread: over-the-ridge"))
-    val tortured = run("torture --seeds 4 --duration 20s".split(' ')*)
+    val tortured = run("torture --seeds 2 --duration 12s".split(' ')*)
     assertEquals(tortured._1, 0, tortured._2)
 
   folder.test("budget tells how much latency it bears"): out =>
     val swept = run(
-      "budget --objective lowest-view --means 2 --jitters 2 --episodes 2 --duration 20s --out".split(
+      "budget --objective lowest-view --means 2 --jitters 2 --episodes 1 --duration 12s --out".split(
         ' '
       ) :+ out.toString*
     )

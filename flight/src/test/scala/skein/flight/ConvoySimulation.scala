@@ -6,10 +6,11 @@ import skein.scenario.{Convoy, Result, Tracks}
 import skein.measure.RecordedTracks
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.Optimised
 import skein.units.*
 
 /** Two cars and three drones, in virtual time. */
-class ConvoySimulation extends munit.FunSuite:
+class ConvoySimulation extends munit.FunSuite, Optimised:
   private def flown(loop: LoopKind, link: LatencyProfile): (Recording, Result) =
     val settings =
       FlySettings(List(loop), List(link), Span.ofSeconds(25), Span.ofMillis(100), 1, Convoy())
@@ -18,10 +19,12 @@ class ConvoySimulation extends munit.FunSuite:
     val recording = flight.recorder.recording
     (recording, Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get))
 
+  private lazy val predictive = flown(LoopKind.Predictive, LatencyProfile.vpn)
+
   for loop <- LoopKind.values do
     val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
     test(s"drones escort cars round a circuit: ${loop.label} over ${link.name}"):
-      val (recording, result) = flown(loop, link)
+      val (recording, result) = if loop == LoopKind.Predictive then predictive else flown(loop, link)
       def value(name: String) = result.value(name).get
       // Five vehicles asked one after the other over a VPN are too much for the other two.
       if !Set(LoopKind.Sequential, LoopKind.Futures)(loop) then
@@ -41,7 +44,7 @@ class ConvoySimulation extends munit.FunSuite:
       assert(lead.last.positionNed.x > 20 || lead.last.positionNed.y > 10, lead.last)
 
   test("predictive foresees a car better than constant velocity would"):
-    val (recording, _) = flown(LoopKind.Predictive, LatencyProfile.vpn)
+    val (recording, _) = predictive
     val errors         = recording.predictions.filter(_.vehicle == "Lead").map(_.error.value)
     assert(errors.size > 100, errors.size)
     assert(errors.sorted.apply(errors.size / 2) < 0.1, errors.sorted.apply(errors.size / 2))

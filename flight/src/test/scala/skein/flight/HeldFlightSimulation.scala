@@ -11,12 +11,12 @@ import skein.record.*
 import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights that somebody pauses after a while and lets go on 5 s later, in virtual time. */
-class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders:
+class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
   private val settings = FlySettings(

@@ -6,10 +6,11 @@ import skein.policy.*
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.Optimised
 import skein.units.*
 
 /** A scenario as a user would write it: its policies know nothing of its limits. */
-class KeptLimitsSimulation extends munit.FunSuite:
+class KeptLimitsSimulation extends munit.FunSuite, Optimised:
   override def munitTimeout: Duration = 4.minutes
 
   /** What is broken by some vehicles, theirs alone or with others. */

@@ -8,11 +8,11 @@ import skein.record.{EventKind, Recording}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.signal.{LatencyProfile, SplitMix64}
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 
 /** Flights in virtual time whose pursuer's policy is another every now and then. */
-class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders:
+class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   override val munitTimeout: Duration = 5.minutes
 
   private given Scenarios = Scenarios(ScenarioKind(PaperDuel()))

@@ -11,10 +11,11 @@ import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, Wire}
 import skein.signal.LatencyProfile
 import skein.simulator.*
+import skein.testing.Waiting
 import skein.units.*
 
 /** A flight over MAVLink by UDP, with a simulator that runs already, as PX4's would. */
-class MavlinkFlightLiveSuite extends munit.FunSuite:
+class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
   override val munitTimeout: Duration = 4.minutes
 
   private given system: ActorSystem = ActorSystem("mavlink-flight")

@@ -6,12 +6,12 @@ import skein.record.*
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
 /** Run = run = replay, for every loop. */
-class ReplaySimulation extends munit.FunSuite, TemporaryFolders:
+class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
   override val munitTimeout: scala.concurrent.duration.Duration =

@@ -152,7 +152,7 @@ class RolloutParitySimulation extends munit.FunSuite:
       s"${loop.label} over vpn, the team of ${team.name}, whose policies regard all and choose their speed"
     ):
       val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
-      check(loop, link, 5, team, duration = Span.ofSeconds(15))
+      check(loop, link, 5, team, duration = Span.ofSeconds(8))
 
   test(
     "futures over direct, twenty vehicles that cross: eighty tasks overlap, each with a reading of every vehicle"
@@ -162,7 +162,7 @@ class RolloutParitySimulation extends munit.FunSuite:
       LatencyProfile.direct,
       1,
       Crossing(),
-      Span.ofSeconds(8)
+      Span.ofSeconds(3)
     )
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left out are
@@ -179,7 +179,7 @@ class RolloutParitySimulation extends munit.FunSuite:
     link          <- links
   do
     test(s"${loop.label} over $link, where times tie"):
-      check(loop, profile(link), 1)
+      check(loop, profile(link), 1, duration = Span.ofSeconds(6))
 
   for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
     test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):

@@ -8,11 +8,12 @@ import skein.policy.*
 import skein.record.{DecisionRow, Difference, MemoryRecorder, Recording, Samples}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyProfile
+import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** What a replay decides again, and what it finds where a recording was changed. */
-class ReplaySuite extends munit.FunSuite:
+class ReplaySuite extends munit.FunSuite, Optimised:
   override val munitTimeout: Duration = 3.minutes
 
   private val planning = PlanSettings(horizonSteps = 10, searches = 1, slices = 2, blocksPerSlice = 1)

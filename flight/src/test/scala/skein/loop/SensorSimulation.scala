@@ -8,11 +8,12 @@ import skein.policy.*
 import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.record.{EventKind, MemoryRecorder, Recording, Samples}
 import skein.signal.{LatencyProfile, Stamped}
+import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Policies that read sensors, through every loop in virtual time. */
-class SensorSimulation extends munit.FunSuite:
+class SensorSimulation extends munit.FunSuite, Optimised:
 
   /** Climbs by its barometer alone, and hovers where that is too old. */
   private final case class ByBarometer(topM: Double, oldest: Span) extends AgentPolicy:

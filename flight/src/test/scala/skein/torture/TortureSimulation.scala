@@ -13,7 +13,7 @@ class TortureSimulation extends munit.FunSuite:
   override val munitTimeout: Duration = 5.minutes
 
   private val duration = Span.ofSeconds(8)
-  private val seeds    = 100
+  private val seeds    = 40
 
   test(s"$seeds flights through faults of network, simulator, answers and disk break no rule"):
     var failed = Vector.empty[String]
@@ -28,7 +28,7 @@ class TortureSimulation extends munit.FunSuite:
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
 
   test("a team that knows by its lidars, through the same faults, breaks no rule"):
-    for seed <- 1L to 3L do
+    for seed <- 1L to 2L do
       val verdict = Torture.of(seed, duration, Some(Forest()), None)
       assert(verdict.isClean, (verdict.faultPlan.toString +: verdict.violations).mkString("\n  "))
 

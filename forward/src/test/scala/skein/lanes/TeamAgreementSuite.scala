@@ -37,10 +37,10 @@ class TeamAgreementSuite extends munit.FunSuite:
     (name, draw) <- scenarios
     timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
   do
-    test(s"$name, ${timing.productPrefix}: the same decisions in every world, 10 s"):
+    test(s"$name, ${timing.productPrefix}: the same decisions in every world, 6 s"):
       val seed    = 23L
       val random  = SplitMix64(seed)
-      val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 10))
+      val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
       val key     = WorldRandom.key(2, 0, 0)
       val model   = TimetableModel.of(plant, drawn.head.agents).fold(fail(_), identity)
       val lanes   = TeamLanes.of(policies(drawn.head)).fold(throw _, identity)
@@ -51,10 +51,10 @@ class TeamAgreementSuite extends munit.FunSuite:
       for world <- 0 until worlds; self <- 0 until lanes.count do
         agents(self).take(world, drawn(world).agents(self), numbers(world)(self))
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
-        .fly(Timetable.of(lanes.count, 10, timing, DelayTable.vpn, key, model), worlds)
+        .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
       val forms        = Vector.tabulate(lanes.count)(self => Form(lanes, self))
       var same, parted = 0
-      for world <- 0 until worlds by 3 do
+      for world <- 0 until worlds by 7 do
         val logs  = policies(drawn(world)).map(Log(_))
         val all   = drawn(world)
         val flown = all.copy(agents = all.agents.zip(logs).map((agent, log) => agent.copy(policy = log)))

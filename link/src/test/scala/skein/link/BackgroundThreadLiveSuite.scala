@@ -1,10 +1,10 @@
 package skein.link
 
 import java.nio.file.{Files, Path}
-import munit.FunSuite
+import skein.testing.{Alone, Optimised}
 
 /** Asks the system itself. */
-final class BackgroundThreadLiveSuite extends FunSuite:
+class BackgroundThreadLiveSuite extends munit.FunSuite, Alone, Optimised:
 
   private def onLinux(name: String)(body: => Unit): Unit =
     test(name):

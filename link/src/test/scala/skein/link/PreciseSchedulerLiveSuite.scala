@@ -6,9 +6,10 @@ import org.apache.pekko.actor.{ActorSystem, Scheduler, SchedulerTask}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.signal.SplitMix64
+import skein.testing.Timing
 
 /** The real clock. */
-class PreciseSchedulerLiveSuite extends munit.FunSuite:
+class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   private val system             = ActorSystem("precise-scheduler", PreciseScheduler.config)
   private given ExecutionContext = system.dispatcher
   private val scheduler          = system.scheduler

@@ -6,7 +6,7 @@ import java.util.SplittableRandom
 class DamageLaws extends munit.FunSuite:
 
   test("a file cut off at any byte gives all that lies before the cut"):
-    for seed <- 1L to 8 do
+    for seed <- 1L to 4 do
       val file  = RandomFile.draw(seed, most = 40)
       val whole = Parsing.all(file.bytes)
       for length <- places(file) do
@@ -24,7 +24,7 @@ class DamageLaws extends munit.FunSuite:
         assertEquals(came.drop(before.size), rest(whole, before.size, came.size - before.size), what)
 
   test("of an uncompressed chunk that is cut through, every whole message is read"):
-    for seed <- 1L to 15 do
+    for seed <- 1L to 6 do
       val file =
         RandomFile.draw(
           seed,
@@ -46,7 +46,7 @@ class DamageLaws extends munit.FunSuite:
         )
 
   test("by index, a file cut off anywhere gives what its stream gives"):
-    for seed <- 1L to 5 do
+    for seed <- 1L to 3 do
       val file = RandomFile.draw(seed, most = 40)
       for length <- places(file) do
         val cut    = file.bytes.slice(0, length)
@@ -61,7 +61,7 @@ class DamageLaws extends munit.FunSuite:
             assertEquals(found.toVector, stream.messages, what)
 
   test("a byte that has changed anywhere is found, and the error says where"):
-    for seed <- 1L to 10 do
+    for seed <- 1L to 5 do
       val file   = RandomFile.draw(seed, most = 40)
       val random = SplittableRandom(seed)
       for at <- places(file) do
@@ -73,7 +73,7 @@ class DamageLaws extends munit.FunSuite:
           case other                => fail(s"$what: $other")
 
   test("by index, a changed byte gives no message of a chunk that was not written"):
-    for seed <- 1L to 6 do
+    for seed <- 1L to 4 do
       val file    = RandomFile.draw(seed, options = RandomFile.indexed)
       val written = file.messages.toSet
       val random  = SplittableRandom(seed)
@@ -87,7 +87,7 @@ class DamageLaws extends munit.FunSuite:
           )))
 
   test("whatever comes, a reader gives records or says why not"):
-    for seed <- 1L to 1000 do
+    for seed <- 1L to 400 do
       val random  = SplittableRandom(seed)
       val file    = RandomFile.draw(seed % 50, most = 30)
       val changed = file.bytes.toArray
@@ -108,7 +108,7 @@ class DamageLaws extends munit.FunSuite:
   test(
     "what lz4 or zstd is damaged to is refused, never more than it claims, and never an error of the machine's"
   ):
-    for seed <- 1L to 2000 do
+    for seed <- 1L to 1000 do
       val random = SplittableRandom(seed)
       val source = new Array[Byte](random.nextInt(400))
       if random.nextInt(2) == 0 then random.nextBytes(source)

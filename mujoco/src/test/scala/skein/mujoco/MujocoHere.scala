@@ -6,8 +6,10 @@ import scala.util.Using
 import skein.testing.PythonEnvironment
 
 /** For tests with MuJoCo's library: the one that is found, or else PyPI's, installed for tests. */
-trait MujocoHere:
-  self: munit.FunSuite =>
+trait MujocoHere extends munit.FunSuite:
+
+  /** Not within a test's time. */
+  override def beforeAll(): Unit = MujocoHere.library: Unit
 
   protected def assumeMujoco(): Unit =
     assume(MujocoHere.library.isRight, s"MuJoCo is not here: ${MujocoHere.library}")
@@ -17,7 +19,7 @@ private object MujocoHere:
     if sys.env.contains("SKEIN_MUJOCO") || sys.props.contains("skein.mujoco") then MujocoLibrary.find
     else
       for
-        python <- PythonEnvironment("mujoco", None, Seq("mujoco==4.0.0")).install()
+        python <- PythonEnvironment("importlib.util", None, Seq("--no-deps", "mujoco-core==4.0.0")).install()
         file   <- libraryBelow(python.getParent.getParent)
         _ = sys.props("skein.mujoco") = file.toString
         found <- MujocoLibrary.find

@@ -3,6 +3,7 @@ package skein.mujoco
 import java.nio.file.Files
 import scala.concurrent.duration.*
 import scala.util.Random
+import skein.testing.Waiting
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
@@ -14,7 +15,7 @@ import skein.vehicle.*
   * So accelerations act half a step late, and its error is of the first order: it falls to a half with half the step. Where
   * both lead, for steps that become ever smaller, is where MuJoCo is.
   */
-class MujocoOracleLiveSuite extends munit.FunSuite, MujocoHere:
+class MujocoOracleLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
   import MujocoOracleLiveSuite.*
   override val munitTimeout: Duration = 5.minutes
 

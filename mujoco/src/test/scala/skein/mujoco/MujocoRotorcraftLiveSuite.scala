@@ -1,11 +1,12 @@
 package skein.mujoco
 
 import java.nio.file.{Files, Path}
+import skein.testing.Waiting
 import skein.units.Vector3
 import skein.vehicle.*
 
 /** Models of MuJoCo's as bodies, flown by AirSim's flight controller. */
-class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere:
+class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
   import MujocoRotorcraftLiveSuite.*
 
   private def flying(name: String)(body: => Unit): Unit = test(name):

@@ -3,9 +3,10 @@ package skein.recognition
 import skein.airsim.Pixels
 import skein.rpc.Bytes
 import skein.signal.{SplitMix64, Stamped}
+import skein.testing.Optimised
 import skein.units.*
 
-class AprilTagsSuite extends munit.FunSuite:
+class AprilTagsSuite extends munit.FunSuite, Optimised:
   private val camera = Pinhole(1280, 720, Radians(math.Pi / 2))
   private val size   = 0.4
   private val tags   = AprilTags(camera, Metres(size))

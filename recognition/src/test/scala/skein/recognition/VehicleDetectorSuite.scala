@@ -3,9 +3,10 @@ package skein.recognition
 import java.nio.ByteBuffer
 import java.nio.file.Path
 import scala.concurrent.duration.*
+import skein.testing.Optimised
 
 /** The shipped detector on pictures of a seed that it was not taught by. `measureDetector` has more of them. */
-class VehicleDetectorSuite extends munit.FunSuite:
+class VehicleDetectorSuite extends munit.FunSuite, Optimised:
   override val munitTimeout: Duration = 3.minutes
 
   private val camera = DetectorAccuracy.Camera

@@ -8,10 +8,11 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.{Address, PreciseScheduler, TcpTransport}
+import skein.testing.Waiting
 import skein.units.*
 
 /** Autopilots' interfaces over real sockets. */
-class HilServerLiveSuite extends munit.FunSuite:
+class HilServerLiveSuite extends munit.FunSuite, Waiting:
   override val munitTimeout: Duration = 2.minutes
 
   private given system: ActorSystem = ActorSystem("hil", PreciseScheduler.config)

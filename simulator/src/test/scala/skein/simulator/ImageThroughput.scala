@@ -128,10 +128,10 @@ private val MostOnTheWay = 4
     row("4 cameras, as many as come, 4 connections", 4, 0, seconds / 2.0)
     row("4 cameras, as many as come, one connection", 1, 0, seconds / 2.0)
     OfficialPythonClient.install() match
-      case Left(reason)  => println(s"the official Python client cannot be installed here: $reason")
-      case Right(python) =>
+      case Left(reason) => println(s"the official Python client cannot be installed here: $reason")
+      case Right(_)     =>
         val (status, output) =
-          OfficialPythonClient.run(python, "image_rate.py", s"${server.address.port}", s"${seconds / 2.0}")
+          OfficialPythonClient.run("image_rate.py", s"${server.address.port}", s"${seconds / 2.0}")
         println(if status == 0 then output.trim else s"the official Python client: $status: $output")
     println(f"simulated time that the simulator left out: ${server.behind.toMillis}%.0f ms")
 

@@ -41,7 +41,7 @@ private object Modules:
     Module(
       "torture",
       "flight/src/main/scala/skein/torture",
-      Vector("skein.torture.*Suite", "skein.torture.RestartSimulation")
+      Vector("skein.torture.*Suite", "skein.torture.ChecksSimulation", "skein.torture.RestartSimulation")
     )
   )
 

@@ -5,11 +5,12 @@ import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.duration.*
 import skein.link.BackgroundThread
 import skein.planning.*
+import skein.testing.Optimised
 import skein.units.*
 import skein.vehicle.ReducedModel
 import skein.vtime.VirtualTime
 
-class PlanSuite extends munit.FunSuite:
+class PlanSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
   private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
   private val goal      = Target.Along(PredictedTrack.standing(10, 10, settings.steps))

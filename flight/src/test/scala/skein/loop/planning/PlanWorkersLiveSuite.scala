@@ -3,10 +3,11 @@ package skein.loop.planning
 import scala.jdk.CollectionConverters.*
 import skein.link.BackgroundThread
 import skein.planning.*
+import skein.testing.Optimised
 import skein.vehicle.ReducedModel
 
 /** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is not. */
-class PlanWorkersLiveSuite extends munit.FunSuite:
+class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
   private val objective = PlanCost(Limits.paperPursuer, cruiseSpeed = 10)
 
@@ -36,7 +37,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
   private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
     val search   = workers.begin(problem, warm(problem))
     val deadline = System.nanoTime() + 60_000_000_000L
-    while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.onSpinWait()
+    while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.sleep(1)
     search.finish()
 
   workers.test("what threads find in so many slices is found again by counting them"): workers =>
@@ -56,7 +57,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite:
     val searches = Vector.tabulate(5)(stream => workers.begin(problem(stream), warm(problem(stream))))
     val deadline = System.nanoTime() + 60_000_000_000L
     while System.nanoTime() < deadline && !searches.forall(_.found.forall(_.slices > 3)) do
-      Thread.onSpinWait()
+      Thread.sleep(1)
     assert(searches.flatMap(_.finish()).forall(_.slices > 3))
 
   workers.test("a search that was ended finds nothing more"): workers =>

@@ -5,7 +5,7 @@ import scala.concurrent.duration.*
 import scala.util.Using
 import skein.policy.*
 import skein.scenario.Scenarios
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 
 /** Turns towards where the opponent is, the less the older that is known to be. */
 final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
@@ -29,7 +29,7 @@ object Doubters extends SkeinApp(Scenarios.ours.kinds*):
       numbers => Doubting(numbers(0), numbers(1))
     )
 
-class OwnFamilySuite extends munit.FunSuite, TemporaryFolders:
+class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   override val munitTimeout: Duration = 2.minutes
 
   private def run(program: SkeinApp, words: String): (Int, String) =

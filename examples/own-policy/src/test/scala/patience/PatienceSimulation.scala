@@ -6,7 +6,7 @@ import skein.policy.*
 import skein.signal.{Kinematics, LatencyProfile}
 import skein.units.*
 
-class PatienceSuite extends munit.FunSuite:
+class PatienceSimulation extends munit.FunSuite:
   private def seen(age: Span) =
     def at(north: Double, speed: Double) = Seen(
       Kinematics(Vector3(north, 0, -20), Vector3(speed, 0, 0), Quaternion.Identity, Vector3.Zero),

@@ -11,7 +11,7 @@ import skein.signal.Stamped
 import skein.units.*
 
 /** The checks find what they are there to find: a clean flight's trace is forged in one thing at a time. */
-class ChecksSuite extends munit.FunSuite:
+class ChecksSimulation extends munit.FunSuite:
   override val munitTimeout: Duration = 3.minutes
 
   private val clean = undisturbed(LoopKind.Stream)

@@ -13,7 +13,7 @@ import skein.report.Report
 import skein.units.*
 import skein.vtime.VirtualTime
 
-class RoverSuite extends munit.FunSuite:
+class RoverSimulation extends munit.FunSuite:
   import Chase.scenarios
   private val loops = Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream)
 
@@ -24,7 +24,7 @@ class RoverSuite extends munit.FunSuite:
     test(
       s"${loop.label}: after 10 s the hound is at the hare's heels, and everything is decided again from the recording"
     ):
-      val recording = Chase.virtual(loop, Span.ofSeconds(40), seed = 1).recording
+      val recording = Chase.virtual(loop, Span.ofSeconds(20), seed = 1).recording
       assertEquals(recording.ending.map(_.how.toString), Some("Completed"))
       for (atS, distance) <- distances(recording) if atS > 10 do
         assert(distance > 0.5 && distance < 3.5, s"$distance m at $atS s")

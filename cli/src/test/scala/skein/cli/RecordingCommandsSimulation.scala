@@ -20,7 +20,7 @@ import skein.testing.TemporaryFolders
 import skein.units.Span
 import skein.vehicle.ReducedModel
 
-class RecordingCommandsSuite extends munit.FunSuite, TemporaryFolders:
+class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   override val munitTimeout: Duration = 2.minutes

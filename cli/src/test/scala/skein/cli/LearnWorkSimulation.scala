@@ -11,7 +11,7 @@ import skein.search.{ClusterEvaluator, BlockExecutor, Judge}
 import skein.settings.PolicyFile
 import skein.training.{LearnRun, LearnState}
 
-class LearnWorkSuite extends munit.FunSuite:
+class LearnWorkSimulation extends munit.FunSuite:
   override def munitTimeout: Duration = 2.minutes
 
   private given Scenarios = Scenarios.ours

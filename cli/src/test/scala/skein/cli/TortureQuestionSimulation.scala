@@ -6,7 +6,7 @@ import skein.scenario.*
 import skein.torture.Verdict
 import skein.units.*
 
-class TortureQuestionSuite extends munit.FunSuite:
+class TortureQuestionSimulation extends munit.FunSuite:
   override def munitTimeout: Duration = 2.minutes
 
   private given Scenarios = Scenarios(ScenarioKind(Failing()))

@@ -11,7 +11,7 @@ import skein.report.{DuelReport, ReportSections, Section}
 import skein.scenario.Scenarios
 import skein.search.BlockExecutor
 
-class SpreadQuestionSuite extends munit.FunSuite:
+class SpreadQuestionSimulation extends munit.FunSuite:
   override def munitTimeout: Duration = 4.minutes
 
   private given Scenarios = DuelReport.scenarios

@@ -8,7 +8,7 @@ import skein.mavlink.{FrameReader, HilSensor}
 import skein.units.*
 
 /** Autopilots outside, without sockets and without a clock. */
-class HilVehiclesSuite extends munit.FunSuite:
+class HilVehiclesSimulation extends munit.FunSuite:
 
   private final class Flown(kind: AutopilotKind = AutopilotKind.Px4, vehicles: Int = 1, speed: Double = 1):
     val simulation = Simulation(

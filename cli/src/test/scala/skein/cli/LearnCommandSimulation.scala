@@ -5,10 +5,10 @@ import scala.concurrent.duration.*
 import skein.scenario.Scenarios
 import skein.search.Judge
 import skein.settings.PolicyFile
-import skein.testing.TemporaryFolders
+import skein.testing.{Optimised, TemporaryFolders}
 import skein.training.*
 
-class LearnCommandSuite extends munit.FunSuite, TemporaryFolders:
+class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
   override val munitTimeout: Duration = 5.minutes

@@ -4,9 +4,10 @@ import scala.concurrent.duration.*
 import skein.scenario.*
 import skein.search.Conditions
 import skein.signal.LatencyDistribution
+import skein.testing.Optimised
 import skein.units.*
 
-class ScenarioSubjectSuite extends munit.FunSuite:
+class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
   override def munitTimeout: Duration = 2.minutes
 
   private val surround = Surround(vehicles = 4)
