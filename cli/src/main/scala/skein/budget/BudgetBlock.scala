@@ -12,7 +12,7 @@ import upickle.default.{ReadWriter, read as readJson, readwriter, write as write
 /** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
   *
   * @param number
-  *   of the one that is swept, from 0
+  *   of the subject, from 0
   * @param episodes
   *   of each link
   */
@@ -26,10 +26,10 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
     * @return
     *   or why there is none
     */
-  def answer(swept: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
+  def answer(subjects: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for
-      one <- swept.lift(number).toRight(s"expected one of ${swept.size} that are swept, came number $number")
-      tallies <- one.tallies(links, episodes, _ => (), () => false)
+      one <- subjects.lift(number).toRight(s"expected one of ${subjects.size} subjects, came number $number")
+      tallies <- one.tallies(BudgetCells(links, episodes))
     yield StatsBytes.write(tallies)
 
   /** What an answer says. */

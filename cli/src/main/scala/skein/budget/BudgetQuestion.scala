@@ -10,7 +10,7 @@ import upickle.default.ReadWriter
 /** What a budget is asked of, in the words of the user: enough for another process to fly the same. */
 sealed trait BudgetQuestion derives ReadWriter:
   /** @return or what was expected, what came, and in which option */
-  def swept(threads: Int)(using Scenarios): Either[String, BudgetSubject]
+  def subject(threads: Int)(using Scenarios): Either[String, BudgetSubject]
 
 object BudgetQuestion:
 
@@ -29,7 +29,7 @@ object BudgetQuestion:
       conditions: Conditions,
       seed: Long
   ) extends BudgetQuestion:
-    def swept(threads: Int)(using Scenarios): Either[String, BudgetSubject] =
+    def subject(threads: Int)(using Scenarios): Either[String, BudgetSubject] =
       for
         role      <- PolicyFile.role(role)
         policy    <- PolicyFile.parse(role, policy).left.map("--policy: " + _)
@@ -53,10 +53,10 @@ object BudgetQuestion:
       plantIsTold: Boolean,
       seed: Long
   ) extends BudgetQuestion:
-    def swept(threads: Int)(using scenarios: Scenarios): Either[String, BudgetSubject] =
+    def subject(threads: Int)(using scenarios: Scenarios): Either[String, BudgetSubject] =
       for
-        kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
-        stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
-        asked  <- ScenarioQuestion.of(stated, objective, conditions, seed, threads)
-        swept  <- asked.swept(plantIsTold)
-      yield swept
+        kind    <- scenarios.kind(scenario).left.map("--scenario: " + _)
+        stated  <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
+        asked   <- ScenarioQuestion.of(stated, objective, conditions, seed, threads)
+        subject <- asked.subject(plantIsTold)
+      yield subject

@@ -41,19 +41,28 @@ trait BudgetSubject(
   /** Rows of a map that are flown in one call. */
   def rowsTogether: Int = 1
 
-  /** Of each link, by its round trips; all links meet the same random numbers.
+  /** Of each cell; all meet the same random numbers.
     *
-    * @param onProgress
-    *   told how many episodes are flown
     * @return
     *   or why not
     */
-  def tallies(
-      links: Vector[LatencyDistribution],
-      episodes: Int,
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Either[String, Vector[RunningStats]]
+  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]]
+
+/** Cells of a map that are to be flown.
+  *
+  * @param links
+  *   by their round trips
+  * @param episodes
+  *   of each
+  * @param onProgress
+  *   told how many episodes are flown
+  */
+final case class BudgetCells(
+    links: Vector[LatencyDistribution],
+    episodes: Int,
+    onProgress: Long => Unit = _ => (),
+    isCancelled: () => Boolean = () => false
+)
 
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
@@ -92,14 +101,11 @@ final class DuelSubject(
   def engine(links: Vector[LatencyDistribution]): String =
     batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
 
-  def tallies(
-      links: Vector[LatencyDistribution],
-      episodes: Int,
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Either[String, Vector[RunningStats]] =
+  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
+    import cells.{episodes, links}
     val worlds   = Worlds(links.map(DelayTable.of), episodes)
-    val outcomes = batch.fly(worlds, objective.captureRadiusM, done => onProgress(done), isCancelled)
+    val outcomes =
+      batch.fly(worlds, objective.captureRadiusM, done => cells.onProgress(done), cells.isCancelled)
     Either.cond(
       outcomes.flown == worlds.size,
       Vector.tabulate(links.size): link =>

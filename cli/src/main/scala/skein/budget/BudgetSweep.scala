@@ -8,7 +8,7 @@ import skein.signal.LatencyDistribution
   * @param asked
   *   episodes of each cell, where they were asked for
   */
-final class BudgetSweep(swept: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
+final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
   /** Of the map's cells, row by row. */
   private val links: Vector[Vector[Option[LatencyDistribution]]] =
     axes.jittersMs.map(jitter => axes.meansMs.map(LatencyBudget.link(_, jitter)))
@@ -16,14 +16,14 @@ final class BudgetSweep(swept: BudgetSubject, axes: BudgetAxes, tolerance: Toler
   private val known = links.flatten.flatten
 
   /** Of each cell: as many as were asked for, or as are flown in seconds. */
-  lazy val episodes: Int = asked.getOrElse(swept.cellEpisodes(known))
+  lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
   /** What flies the cells, in a line for the user. */
-  def engine: String = swept.engine(known)
+  def engine: String = subject.engine(known)
 
   /** Over a link with these round trips. */
   def over(roundTrip: LatencyDistribution): Either[String, RunningStats] =
-    swept.tallies(Vector(roundTrip), episodes, _ => (), () => false).map(_.head)
+    subject.tallies(BudgetCells(Vector(roundTrip), episodes)).map(_.head)
 
   /** The whole map, row by row.
     *
@@ -40,21 +40,25 @@ final class BudgetSweep(swept: BudgetSubject, axes: BudgetAxes, tolerance: Toler
       onRow: Vector[Vector[Option[RunningStats]]] => Unit = _ => ()
   ): Either[String, LatencyBudget] =
     for
-      truth <- swept.truth
-      per   <- tolerance.per(truth).left.map(mistake => s"${swept.formula}: $mistake")
+      truth <- subject.truth
+      per   <- tolerance.per(truth).left.map(mistake => s"${subject.formula}: $mistake")
       rows  <- links
-        .grouped(swept.rowsTogether)
+        .grouped(subject.rowsTogether)
         .foldLeft[Either[String, Vector[Vector[Option[RunningStats]]]]](Right(Vector.empty)):
           (before, rows) =>
             before.flatMap: above =>
               val flown = above.flatten.flatten.size.toLong * episodes
-              swept
-                .tallies(rows.flatten.flatten, episodes, done => onProgress(flown + done), isCancelled)
-                .map: tallies =>
-                  val next  = tallies.iterator
-                  val known = above ++ rows.map(_.map(_.map(_ => next.next())))
-                  onRow(known)
-                  known
+              val cells = BudgetCells(
+                rows.flatten.flatten,
+                episodes,
+                done => onProgress(flown + done),
+                isCancelled
+              )
+              subject.tallies(cells).map: tallies =>
+                val next  = tallies.iterator
+                val known = above ++ rows.map(_.map(_.map(_ => next.next())))
+                onRow(known)
+                known
     yield LatencyBudget(axes.meansMs, axes.jittersMs, rows, truth, per)
 
   /** Episodes of the map. */

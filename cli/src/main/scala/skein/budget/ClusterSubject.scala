@@ -37,18 +37,16 @@ final class ClusterSubject(
   /** A map at once: there are always enough workers. */
   override def rowsTogether: Int = Int.MaxValue
 
-  def tallies(
-      links: Vector[LatencyDistribution],
-      episodes: Int,
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Either[String, Vector[RunningStats]] =
+  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
+    import cells.{episodes, links}
     val most   = blockEpisodes.getOrElse(ClusterSubject.CellsOfBlock * here.cellEpisodes(links))
     val blocks = links.grouped((most / episodes).max(1)).map(BudgetBlock(number, _, episodes)).toVector
     val total  = links.size.toLong * episodes
     for
-      answered <- elsewhere.computed(blocks.map(_.bytes), isCancelled)(onProgress((total * share()).toLong))
-      answers  <- answered.toRight(BudgetSubject.Stopped)
+      answered <- elsewhere.computed(blocks.map(_.bytes), cells.isCancelled)(
+        cells.onProgress((total * share()).toLong)
+      )
+      answers <- answered.toRight(BudgetSubject.Stopped)
       tallies <- UntilWrong.each(blocks.zip(answers))((block, answer) => block.tallies(answer)).map(_.flatten)
     yield tallies
 
@@ -65,13 +63,16 @@ object ClusterSubject:
   private final case class ProbedQuestion(questions: Vector[BudgetQuestion], probes: Vector[Long])
       derives ReadWriter
 
-  def bytes(questions: Vector[BudgetQuestion], swept: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
-    probes(swept).map(came =>
+  def bytes(
+      questions: Vector[BudgetQuestion],
+      subjects: Vector[BudgetSubject]
+  ): Either[String, ArraySeq[Byte]] =
+    probes(subjects).map(came =>
       ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(questions, came)).getBytes(UTF_8))
     )
 
-  private def probes(swept: Vector[BudgetSubject]): Either[String, Vector[Long]] =
-    UntilWrong.each(swept)(_.tallies(Vector(LatencyDistribution.Vpn), 1, _ => (), () => false).map(tallies =>
+  private def probes(subjects: Vector[BudgetSubject]): Either[String, Vector[Long]] =
+    UntilWrong.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(tallies =>
       java.lang.Double.doubleToLongBits(tallies.head.mean)
     ))
 
@@ -81,22 +82,22 @@ object ClusterSubject:
       posed <-
         try Right(readJson[ProbedQuestion](String(asked.toArray, UTF_8)))
         catch case mistake: Exception => Left(s"expected a budget's question, came: ${mistake.getMessage}")
-      came <- swept(posed).flatMap(probes)
+      came <- subjects(posed).flatMap(probes)
       _    <- Either.cond(
         came == posed.probes,
         (),
         "one episode does not come to the same here and at the coordinator; has a file that --plant names another content here?"
       )
     yield () =>
-      val own = swept(posed)
+      val own = subjects(posed)
       block =>
         val answer =
           for
             read     <- BudgetBlock.read(block)
-            swept    <- own
-            answered <- read.answer(swept)
+            subjects <- own
+            answered <- read.answer(subjects)
           yield answered
         answer.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
-  private def swept(posed: ProbedQuestion)(using Scenarios) =
-    UntilWrong.each(posed.questions)(_.swept(threads = 1))
+  private def subjects(posed: ProbedQuestion)(using Scenarios) =
+    UntilWrong.each(posed.questions)(_.subject(threads = 1))

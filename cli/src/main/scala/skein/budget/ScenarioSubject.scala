@@ -33,7 +33,7 @@ final case class ScenarioQuestion(
     * @return
     *   or what was expected, what came, and in which option
     */
-  def swept(plantIsTold: Boolean): Either[String, BudgetSubject] =
+  def subject(plantIsTold: Boolean): Either[String, BudgetSubject] =
     engagement match
       case Left(reason) if plantIsTold =>
         Left(
@@ -107,15 +107,10 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = 10
 
-  def tallies(
-      links: Vector[LatencyDistribution],
-      episodes: Int,
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Either[String, Vector[RunningStats]] =
-    UntilWrong.each(links.zipWithIndex): (link, number) =>
-      onProgress(number.toLong * episodes)
-      fly(flown.timing, DelayTable.of(link), episodes, isCancelled)
+  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
+    UntilWrong.each(cells.links.zipWithIndex): (link, number) =>
+      cells.onProgress(number.toLong * cells.episodes)
+      fly(flown.timing, DelayTable.of(link), cells.episodes, cells.isCancelled)
 
 /** Whatever its measures are: each is taken of a whole flight.
   *
@@ -143,23 +138,18 @@ final class FlownSubject private (
         measure.of(tracks).fold(Double.PositiveInfinity)(weight * _)
       ).sum
 
-  def tallies(
-      links: Vector[LatencyDistribution],
-      episodes: Int,
-      onProgress: Long => Unit,
-      isCancelled: () => Boolean
-  ): Either[String, Vector[RunningStats]] =
+  def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
-    val all  = links.flatMap(link => Vector.tabulate(episodes)((link, _)))
+    val all  = cells.links.flatMap(link => Vector.tabulate(cells.episodes)((link, _)))
     val came = InParallel.map(all, question.threads): (link, episode) =>
-      if isCancelled() then Left(BudgetSubject.Stopped)
+      if cells.isCancelled() then Left(BudgetSubject.Stopped)
       else
         val came = value(Some(link), episode)
-        onProgress(done.incrementAndGet())
+        cells.onProgress(done.incrementAndGet())
         came
     val (missing, flown) = came.partitionMap(identity)
     missing.headOption.toLeft(
-      flown.grouped(episodes).map(values => RunningStats.of(values.size)(values)).toVector
+      flown.grouped(cells.episodes).map(values => RunningStats.of(values.size)(values)).toVector
     )
 
 object FlownSubject:

@@ -84,9 +84,9 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       questions <- Arguments.all(periods)(period =>
         scenario(options).fold(duel(options, period))(team(options, _, period))
       ).map(_.toVector)
-      swept <- Arguments.all(questions)(_.swept(threads)).map(_.toVector)
-      _     <- Either.cond(
-        swept.forall(_.loop != LoopKind.Paused.label),
+      subjects <- Arguments.all(questions)(_.subject(threads)).map(_.toVector)
+      _        <- Either.cond(
+        subjects.forall(_.loop != LoopKind.Paused.label),
         (),
         "--loop: the paused loop is the truth and feels no latency; expected another"
       )
@@ -99,7 +99,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           cluster,
           options,
           questions,
-          swept,
+          subjects,
           folder,
           threads
         )(fly(options, _, tolerance, axes, legs, task))
@@ -170,18 +170,18 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       cluster: Option[ClusterOptions.Checked],
       options: BudgetOptions,
       questions: Vector[BudgetQuestion],
-      swept: Vector[BudgetSubject],
+      subjects: Vector[BudgetSubject],
       folder: Path,
       threads: Int
   )(fly: Vector[BudgetSubject] => Either[String, Vector[BudgetMap]]): Either[String, Vector[BudgetMap]] =
-    cluster.fold(fly(swept)): asked =>
+    cluster.fold(fly(subjects)): asked =>
       ClusterSubject
-        .bytes(questions, swept)
+        .bytes(questions, subjects)
         .flatMap: question =>
           val shown = Shown(options.json.value)
           OutFolder.alone(folder):
             ClusterRun.using(asked, program, Questions.budget(question), folder, threads, shown): run =>
-              fly(swept.zipWithIndex.map((one, number) =>
+              fly(subjects.zipWithIndex.map((one, number) =>
                 ClusterSubject(one, number, run, () => run.share, asked.block)
               ))
 
@@ -221,22 +221,22 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
-      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, swept) =>
+      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, subject) =>
         for
           maps <- before
-          sweep = BudgetSweep(swept, axes, tolerance, options.episodes)
+          sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
           _     = shown.say(
-            s"${swept.loop} every ${swept.periodMs.significant(4)} ms, ${swept.vehicles}\n" +
-              s"${sweep.episodes} episodes of ${swept.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
+            s"${subject.loop} every ${subject.periodMs.significant(4)} ms, ${subject.vehicles}\n" +
+              s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
           )
           startedAt = System.nanoTime()
           line      = ProgressLine(sweep.expected, Console.err)
           onShow    = BudgetOnShow(
             task,
-            s"${swept.loop} every ${swept.periodMs.significant(4)} ms",
+            s"${subject.loop} every ${subject.periodMs.significant(4)} ms",
             sweep.expected,
             axes,
-            WeightedSum.withUnit(swept.formula, swept.unit)
+            WeightedSum.withUnit(subject.formula, subject.unit)
           )
           budget <- sweep.map(
             done =>
@@ -252,12 +252,12 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
             Arguments.all(Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)):
               (name, roundTrip) => sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
         yield maps :+ BudgetMap(
-          swept.loop,
-          swept.periodMs,
-          swept.formula,
-          swept.unit,
-          swept.vehicles,
-          swept.label,
+          subject.loop,
+          subject.periodMs,
+          subject.formula,
+          subject.unit,
+          subject.vehicles,
+          subject.label,
           tolerance,
           sweep.episodes,
           budget,

@@ -35,13 +35,13 @@ class ClusterSubjectSuite extends munit.FunSuite, Optimised:
     )
   )
 
-  private lazy val here = questions.map(_.swept(threads = 2).fold(fail(_), identity))
+  private lazy val here = questions.map(_.subject(threads = 2).fold(fail(_), identity))
 
   private lazy val question = ClusterSubject.bytes(questions, here).fold(fail(_), identity)
 
   private val links = Vector(20, 80, 140).map(ms => LatencyDistribution.Uniform(Span.Zero, Span.ofMillis(ms)))
 
-  private def tallies(of: BudgetSubject) = of.tallies(links, 4, _ => (), () => false)
+  private def tallies(of: BudgetSubject) = of.tallies(BudgetCells(links, 4))
 
   test("cells flown elsewhere, one by one and in any order, come to what they come to here, to the bit"):
     val solver    = ClusterSubject.solvers.of(question).fold(fail(_), identity)()

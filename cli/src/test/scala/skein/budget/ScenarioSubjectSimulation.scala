@@ -15,27 +15,27 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
   private def question(scenario: Scenario, objective: Option[String], conditions: Conditions, threads: Int) =
     ScenarioQuestion.of(scenario, objective, conditions, seed = 1, threads)
 
-  private def swept(
+  private def subject(
       scenario: Scenario,
       objective: Option[String] = None,
       conditions: Conditions = Conditions("stream", "drag", 100, 20),
       threads: Int = 2
   ): BudgetSubject =
-    question(scenario, objective, conditions, threads).flatMap(_.swept(plantIsTold =
+    question(scenario, objective, conditions, threads).flatMap(_.subject(plantIsTold =
       false
     )).fold(fail(_), identity)
 
   private def at(of: BudgetSubject, roundTripMs: Double) = of
-    .tallies(Vector(LatencyDistribution.Constant(Span.ofMillis(roundTripMs))), 2, _ => (), () => false)
+    .tallies(BudgetCells(Vector(LatencyDistribution.Constant(Span.ofMillis(roundTripMs))), 2))
     .fold(fail(_), _.head.mean)
 
   test(
     "a measure of a quantity comes to the same as with the whole flight's tracks"
   ):
-    val plain = swept(surround)
+    val plain = subject(surround)
     assertEquals(plain.engine(Vector.empty), "scalar: every world has delays of its own")
     assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
-    val both   = swept(surround, Some("off-ring + 0*surrounded-after"))
+    val both   = subject(surround, Some("off-ring + 0*surrounded-after"))
     val scalar = both.engine(Vector.empty)
     assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
     for latencyMs <- Seq(0.0, 200.0) do
@@ -43,25 +43,25 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       assertEqualsDouble(at(plain, latencyMs), at(both, latencyMs), 0.1 * at(plain, latencyMs))
 
   test("without latency the truth is met, and more latency is further off it"):
-    val plain = swept(surround)
+    val plain = subject(surround)
     val truth = plain.truth.fold(fail(_), identity)
     val off   = Seq(0.0, 200.0, 400.0).map(at(plain, _) - truth).map(_.abs)
     assert(off(0) < 0.02 * truth && off(1) > off(0) && off(2) > off(1), s"$off off $truth")
 
   test("any measure is judged: vehicles that cross come to their goals later over a slow link"):
-    val crossing = swept(Crossing(vehicles = 4), Some("to-goal"))
+    val crossing = subject(Crossing(vehicles = 4), Some("to-goal"))
     val truth    = crossing.truth.fold(fail(_), identity)
     assertEqualsDouble(at(crossing, 0), truth, 0.1)
     assert(at(crossing, 400) > truth + 0.1, s"$truth")
 
   test("policies in three dimensions are flown in virtual time, with what ends the flight"):
-    val drifting = swept(Drift(), conditions = Conditions("stream", "drag", 100, 10))
+    val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
     assert(drifting.engine(Vector.empty).startsWith("flights in virtual time: vehicle Lone"))
     val truth = drifting.truth.fold(fail(_), identity)
     assert(at(drifting, 400) > truth, s"$truth")
 
   test("a measure that a flight never comes to is further off than anything"):
-    val never = swept(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
+    val never = subject(Drift(toM = 1000), Some("arrives"), Conditions("stream", "drag", 100, 10))
     assertEquals(at(never, 0), Double.PositiveInfinity)
     assert(BudgetSweep(never, BudgetAxes(Vector(0), Vector(0)), Tolerance.Within(1), Some(1)).map(
       _ => (),
@@ -82,7 +82,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     )
     assert(
       question(Drift(), None, Conditions("stream", "quadrotor", 100, 20), 1)
-        .flatMap(_.swept(plantIsTold = true))
+        .flatMap(_.subject(plantIsTold = true))
         .left
         .exists(_.startsWith("--plant: expected none"))
     )

@@ -35,31 +35,37 @@ private[formula] final class MethodCode(
   lazy val joins: Array[Int] =
     val end          = instructions.length
     val successors   = Array.tabulate(end)(nextOf)
-    val after        = Array.fill(end + 1)(mutable.BitSet.empty)
     val predecessors = Array.fill(end + 1)(mutable.ArrayBuffer.empty[Int])
     for i <- 0 until end; next <- successors(i) do predecessors(next) += i
-    // Those from which the end can be reached.
-    val returns            = mutable.BitSet.empty
-    def mark(i: Int): Unit =
-      val waiting = mutable.Stack(i)
-      while waiting.nonEmpty do
-        val one = waiting.pop()
-        if returns.add(one) then waiting.pushAll(predecessors(one))
-    mark(end)
-    val everything = mutable.BitSet.fromSpecific(returns)
-    for i <- 0 to end do after(i) = if i == end then mutable.BitSet(end) else everything.clone
+    // Backwards from the end, in the order in which a depth-first walk ends; −1 from where none leads there.
+    val order = mutable.ArrayBuffer.empty[Int]
+    val seen  = mutable.BitSet(end)
+    val walk  = mutable.Stack((end, 0))
+    while walk.nonEmpty do
+      val (one, gone) = walk.pop()
+      if gone == predecessors(one).size then order += one
+      else
+        walk.push((one, gone + 1))
+        val next = predecessors(one)(gone)
+        if seen.add(next) then walk.push((next, 0))
+    val rank = Array.fill(end + 1)(-1)
+    for i <- order.indices do rank(order(i)) = i
+    // Cooper, Harvey, Kennedy: A Simple, Fast Dominance Algorithm (2001), of the reversed graph.
+    val joins                     = Array.fill(end + 1)(-1)
+    def meet(a: Int, b: Int): Int =
+      if a == b then a
+      else if rank(a) < rank(b) then meet(joins(a), b)
+      else meet(a, joins(b))
+    joins(end) = end
     var changes = true
     while changes do
       changes = false
-      for i <- (0 until end).reverse if returns(i) do
-        val ways = successors(i).filter(returns)
-        val both = ways.map(after(_)).reduce((a, b) => a & b).clone
-        both += i
-        if both != after(i) then
-          after(i) = both
+      for i <- order.reverseIterator if i != end do
+        val join = successors(i).filter(joins(_) >= 0).reduce(meet)
+        if join != joins(i) then
+          joins(i) = join
           changes = true
-    Array.tabulate(end): i =>
-      if !returns(i) then end else after(i).iterator.filter(_ != i).maxBy(next => after(next).size)
+    Array.tabulate(end)(i => if joins(i) < 0 then end else joins(i))
 
   private def nextOf(i: Int): Seq[Int] = instructions(i) match
     case branch: BranchInstruction =>

@@ -35,7 +35,7 @@ final class Node private[formula] (
   *   nodes; more are refused
   */
 final class Trace(most: Int = 200_000):
-  private val known = mutable.HashMap.empty[(Op, Vector[Int], Long), Node]
+  private val known = mutable.HashMap.empty[Trace.Key, Node]
   private val all   = mutable.ArrayBuffer.empty[Node]
 
   def size: Int = all.size
@@ -138,10 +138,12 @@ final class Trace(most: Int = 200_000):
       else or(and(a.args(0), yes), and(not(a.args(0)), no))
 
   private def node(op: Op, args: Node*): Node =
-    known.getOrElseUpdate((op, args.iterator.map(_.id).toVector, 0L), make(op, args.toVector, 0, 0))
+    def id(argument: Int) = if argument < args.size then args(argument).id.toLong else -1L
+    val key               = Trace.Key(op.ordinal, id(0) << 32 | id(1) & 0xffffffffL, id(2))
+    known.getOrElseUpdate(key, make(op, args.toVector, 0, 0))
 
   private def leaf(op: Op, value: Double, index: Int, key: Long): Node =
-    known.getOrElseUpdate((op, Vector.empty, key), make(op, Vector.empty, value, index))
+    known.getOrElseUpdate(Trace.Key(op.ordinal, key, -1), make(op, Vector.empty, value, index))
 
   private def make(op: Op, args: Vector[Node], value: Double, index: Int): Node =
     if all.size >= most then throw Untraceable(s"it comes to more than $most operations")
@@ -150,6 +152,12 @@ final class Trace(most: Int = 200_000):
     made
 
 object Trace:
+  /** What makes a node the same as another: its operation, and its arguments' numbers or its own. */
+  private final case class Key(op: Int, first: Long, rest: Long):
+    override def hashCode: Int =
+      val mixed = (first * 31 + rest) * 0x9e3779b97f4a7c15L + op
+      (mixed ^ mixed >>> 32).toInt
+
   /** What these need, each once, arguments first; in the order in which a depth-first walk ends. */
   def needed(of: Seq[Node]): Vector[Node] =
     val seen  = mutable.HashSet.empty[Int]

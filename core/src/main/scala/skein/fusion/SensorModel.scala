@@ -49,27 +49,12 @@ final case class SensorModel(
     s"a sensor takes pictures, sees less than 180° and says how wrong it may be: $this"
   )
 
-  /** What comes of a picture, if the opponent is found in it.
-    *
-    * @param axisRad
-    *   where the camera looks, from north to the east
-    * @param ownNed
-    *   and the opponent's place at the exposure, m
-    * @param found
-    *   and `bearing`, `range`: three numbers evenly drawn from 0 to 1
-    */
-  def measured(
-      at: Instant,
-      axisRad: Double,
-      ownNed: Vector3,
-      opponentNed: Vector3,
-      found: Double,
-      bearing: Double,
-      range: Double
-  ): Option[Measurement] =
-    Option.when(found < detection && isInView(axisRad, ownNed, opponentNed)):
-      val (place, covariance) =
-        seen(axisRad, ownNed, opponentNed, SensorModel.normal(bearing), SensorModel.normal(range))
+  /** What comes of a picture, if the opponent is found in it. */
+  def measured(at: Instant, picture: Exposure): Option[Measurement] =
+    import picture.{axisRad, opponentNed, ownNed}
+    Option.when(picture.found < detection && isInView(axisRad, ownNed, opponentNed)):
+      val (bearing, range)    = (SensorModel.normal(picture.bearing), SensorModel.normal(picture.range))
+      val (place, covariance) = seen(axisRad, ownNed, opponentNed, bearing, range)
       Measurement(at, place, covariance)
 
   /** Whether a picture shows the opponent near enough. */
@@ -106,6 +91,24 @@ final case class SensorModel(
 
   private def offAxis(axisRad: Double, way: Vector3) =
     math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
+
+/** A picture as it is taken, and what chance adds to it.
+  *
+  * @param axisRad
+  *   where the camera looks, from north to the east
+  * @param ownNed
+  *   and the opponent's place, m
+  * @param found
+  *   and `bearing`, `range`: three numbers evenly drawn from 0 to 1
+  */
+final case class Exposure(
+    axisRad: Double,
+    ownNed: Vector3,
+    opponentNed: Vector3,
+    found: Double,
+    bearing: Double,
+    range: Double
+)
 
 object SensorModel:
   /** Of the standard normal distribution, by a number evenly drawn from 0 to 1. */

@@ -26,12 +26,45 @@ package skein.vehicle
 final case class ReducedModel(
     gain: Double,
     lagS: Double,
-    deadTimeS: Double,
+    override val deadTimeS: Double,
     turnLagS: Double,
     dragPerM: Double
-):
+) extends Plant[PlaneReading]:
   require(lagS > 0 && turnLagS > 0, s"both lags must be positive, came $lagS s and $turnLagS s")
   require(deadTimeS >= 0 && dragPerM >= 0, s"negative: dead time $deadTimeS s or drag $dragPerM /m")
+
+  private val turns = turnLagS != lagS
+
+  def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
+  def read(state: PlaneReading): PlaneReading = state
+  def stepS: Double                           = ReducedModel.PieceS
+
+  /** Within a piece of the flight, from its begin. */
+  def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
+    import from.{eastMps as vy, northMps as vx}
+    val wanted = math.sqrt(wantedVx * wantedVx + wantedVy * wantedVy)
+    val speed  = math.sqrt(vx * vx + vy * vy)
+    // Told to stand still, all velocity dies away with the lag along.
+    val alongX             = if wanted > 0 then wantedVx / wanted else if speed > 0 then vx / speed else 1.0
+    val alongY             = if wanted > 0 then wantedVy / wanted else if speed > 0 then vy / speed else 0.0
+    val drag               = dragPerM * speed
+    val rateAlong          = 1 / lagS + drag
+    val rateCross          = 1 / turnLagS + drag
+    val goal               = gain * wanted / (lagS * rateAlong)
+    val along              = vx * alongX + vy * alongY
+    val excess             = along - goal
+    val (crossVx, crossVy) = (vx - along * alongX, vy - along * alongY)
+    val leftAlong          = StrictMath.exp(-rateAlong * spanS)
+    val leftCross          = if turns then StrictMath.exp(-rateCross * spanS) else leftAlong
+    val movedAlong         = goal * spanS + excess * (1 - leftAlong) / rateAlong
+    val movedCross         = (1 - leftCross) / rateCross
+    val reached            = goal + excess * leftAlong
+    PlaneReading(
+      from.northM + alongX * movedAlong + crossVx * movedCross,
+      from.eastM + alongY * movedAlong + crossVy * movedCross,
+      alongX * reached + crossVx * leftCross,
+      alongY * reached + crossVy * leftCross
+    )
 
 object ReducedModel:
   /** The longest flight under one value of the drag, s. */
@@ -68,12 +101,14 @@ object ReducedModel:
   * [[advance]] does not change the flight, but for rounding.
   */
 final class ReducedFlight(model: ReducedModel):
-  private var wantedVx, wantedVy                   = 0.0
-  private var pieceAtS                             = 0.0
-  private var pieceX, pieceY                       = 0.0
-  private var alongX, alongY, rateAlong, rateCross = 0.0
-  private var goal, excess, crossVx, crossVy       = 0.0
-  var x, y, vx, vy                                 = 0.0
+  private var wantedVx, wantedVy = 0.0
+  private var pieceAtS           = 0.0
+  private var piece, now         = model.initial
+
+  def x: Double  = now.northM
+  def y: Double  = now.eastM
+  def vx: Double = now.northMps
+  def vy: Double = now.eastMps
 
   /** Places it; the command given here acts from the start. */
   def start(
@@ -85,7 +120,7 @@ final class ReducedFlight(model: ReducedModel):
       wantedVx: Double = 0,
       wantedVy: Double = 0
   ): Unit =
-    this.x = x; this.y = y; this.vx = vx; this.vy = vy
+    now = PlaneReading(x, y, vx, vy)
     this.wantedVx = wantedVx; this.wantedVy = wantedVy
     beginPiece(atS)
 
@@ -104,29 +139,6 @@ final class ReducedFlight(model: ReducedModel):
 
   private def beginPiece(atS: Double): Unit =
     pieceAtS = atS
-    pieceX = x; pieceY = y
-    val wanted = math.sqrt(wantedVx * wantedVx + wantedVy * wantedVy)
-    if wanted > 0 then
-      alongX = wantedVx / wanted; alongY = wantedVy / wanted
-    else
-      // Told to stand still, all velocity dies away with the lag along.
-      val speed = math.sqrt(vx * vx + vy * vy)
-      alongX = if speed > 0 then vx / speed else 1; alongY = if speed > 0 then vy / speed else 0
-    val drag = model.dragPerM * math.sqrt(vx * vx + vy * vy)
-    rateAlong = 1 / model.lagS + drag
-    rateCross = 1 / model.turnLagS + drag
-    goal = model.gain * wanted / (model.lagS * rateAlong)
-    val along = vx * alongX + vy * alongY
-    excess = along - goal
-    crossVx = vx - along * alongX; crossVy = vy - along * alongY
+    piece = now
 
-  private def fly(spanS: Double): Unit =
-    val leftAlong  = StrictMath.exp(-rateAlong * spanS)
-    val leftCross  = if rateCross == rateAlong then leftAlong else StrictMath.exp(-rateCross * spanS)
-    val movedAlong = goal * spanS + excess * (1 - leftAlong) / rateAlong
-    val movedCross = (1 - leftCross) / rateCross
-    val along      = goal + excess * leftAlong
-    x = pieceX + alongX * movedAlong + crossVx * movedCross
-    y = pieceY + alongY * movedAlong + crossVy * movedCross
-    vx = alongX * along + crossVx * leftCross
-    vy = alongY * along + crossVy * leftCross
+  private def fly(spanS: Double): Unit = now = model.step(piece, wantedVx, wantedVy, spanS)

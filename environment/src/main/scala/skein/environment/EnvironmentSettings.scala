@@ -3,7 +3,7 @@ package skein.environment
 import scala.jdk.CollectionConverters.*
 import skein.flight.AirSimFleet
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
-import skein.lanes.{SteppedDuels, TimetableModel}
+import skein.lanes.{SteppedDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -84,7 +84,7 @@ final case class EnvironmentSettings(
       flown <- flown(altitudeM)
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
-      model   <- TimetableModel.under(timing, vehicle.response, paper).left.map("plant: " + _)
+      model   <- LaneDynamics.under(timing, vehicle.response, paper).left.map("plant: " + _)
       against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
       (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
         if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
@@ -151,7 +151,7 @@ object EnvironmentSettings:
       duel: Duel,
       timing: LoopTiming,
       link: Delays,
-      model: TimetableModel
+      model: LaneDynamics
   )
 
   private val Learners: Map[String, Vector[Role]] = Map(

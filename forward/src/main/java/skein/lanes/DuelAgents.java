@@ -30,7 +30,7 @@ final class DuelAgents extends TimetableAgents {
   DuelAgents(
       int self,
       Duelist duelist,
-      TimetableModel model,
+      LaneDynamics model,
       LanePolicy policy,
       float[] effort,
       LaneObservation sight,

@@ -31,8 +31,8 @@ final class LagFlights extends LaneFlights {
 
   private final float speedMps, lagS;
 
-  LagFlights(Duelist duelist, Reduced model, double periodS, int keptRows) {
-    super(duelist, FIELDS, keptRows, periodS);
+  LagFlights(Duelist duelist, Reduced model, FlightTiming timing) {
+    super(duelist, FIELDS, timing);
     speedMps = (float) (duelist.speed() * model.gain());
     lagS = (float) Math.max(model.lagS(), LEAST_LAG_S);
   }

@@ -58,13 +58,12 @@ abstract class LaneFlights extends LaneVehicles {
 
   /**
    * @param fields numbers of a piece
-   * @param keptRows periods before, of which a reading may ask for the pieces that were the newest
    */
-  LaneFlights(Duelist duelist, int fields, int keptRows, double periodS) {
+  LaneFlights(Duelist duelist, int fields, FlightTiming timing) {
     super(duelist, 0);
     this.fields = fields;
-    this.keptRows = keptRows;
-    this.periodS = periodS;
+    keptRows = timing.keptRows();
+    periodS = timing.loop().periodS();
     pieces = new float[slots * fields * WORLDS];
     chosen = new float[fields * WORLDS];
   }

@@ -6,31 +6,29 @@ import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
-import skein.forward.Rollout;
 
-/** Adds up the distances of many worlds as they come, once a period. */
-final class LaneScores {
+/** Adds up the distances of duels in many worlds as they come, once a period. */
+final class LaneScores implements TimetableScores {
   private static final int WORLDS = LanePolicy.WORLDS;
 
   private final int steps;
-  private final double durationS, periodS;
   private final DuelKernel into;
   private float captureRadiusM;
   private int lastScores;
-  private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
+  private final float[] distance = new float[WORLDS], sum = new float[WORLDS], lastSum = new float[WORLDS];
 
   LaneScores(double durationS, double periodS, DuelKernel into) {
     this.into = into;
-    this.durationS = durationS;
-    this.periodS = periodS;
     steps = (int) Math.round(durationS / periodS);
   }
 
-  /**
-   * @param captureRadiusM a distance of at most this is a capture
-   */
-  void start(float captureRadiusM) {
-    this.captureRadiusM = captureRadiusM;
+  /** A distance of at most this is a capture, m. */
+  void captureWithin(float radiusM) {
+    captureRadiusM = radiusM;
+  }
+
+  @Override
+  public void start() {
     lastScores = 0;
     Arrays.fill(into.minDistance, Float.POSITIVE_INFINITY);
     Arrays.fill(into.captureS, Float.POSITIVE_INFINITY);
@@ -39,25 +37,47 @@ final class LaneScores {
   }
 
   /**
-   * Adds the distances of two vehicles at the end of a period, counted from 1.
+   * Adds the distances of two vehicles at the end of a period.
    *
-   * @param evaders and pursuers: positions as {@link LaneVehicles#state} has them
+   * @param isLast whether they count for the mean of the last 10 s
    */
-  void add(int period, float[] evaders, float[] pursuers) {
-    FloatVector time = FloatVector.broadcast(SPECIES, (float) (period * periodS)),
-        radius = FloatVector.broadcast(SPECIES, captureRadiusM),
-        infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
-    boolean isLast = Rollout.isLast10s(period * periodS, durationS);
-    if (isLast) lastScores++;
+  void add(LaneVehicles one, LaneVehicles other, float timeS, boolean isLast) {
+    int x = LaneVehicles.X, y = LaneVehicles.Y;
+    distances(one.state, x, one.state, y, other.state, x, other.state, y, distance);
+    add(timeS, isLast);
+  }
+
+  @Override
+  public void score(TimetableAgents[] agents, int[] views, int view, boolean isLast, float timeS) {
+    distances(agents, views, view, distance);
+    add(timeS, isLast);
+  }
+
+  /** Between the readings of a timetable's first two vehicles. */
+  static void distances(TimetableAgents[] agents, int[] views, int view, float[] into) {
+    TimetableVehicles one = agents[0].vehicles, other = agents[1].vehicles;
+    int at = views[view] * WORLDS, there = views[view + 1] * WORLDS;
+    distances(
+        one.seenX, at, one.seenY, at, other.seenX, there, other.seenY, there, into);
+  }
+
+  private static void distances(
+      float[] x1, int x1At, float[] y1, int y1At, float[] x2, int x2At, float[] y2, int y2At, float[] into) {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
-          x =
-              FloatVector.fromArray(SPECIES, evaders, LaneVehicles.X + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuers, LaneVehicles.X + i)),
-          y =
-              FloatVector.fromArray(SPECIES, evaders, LaneVehicles.Y + i)
-                  .sub(FloatVector.fromArray(SPECIES, pursuers, LaneVehicles.Y + i));
-      FloatVector now = x.fma(x, y.mul(y)).sqrt();
+          x = FloatVector.fromArray(SPECIES, x1, x1At + i).sub(FloatVector.fromArray(SPECIES, x2, x2At + i)),
+          y = FloatVector.fromArray(SPECIES, y1, y1At + i).sub(FloatVector.fromArray(SPECIES, y2, y2At + i));
+      x.fma(x, y.mul(y)).sqrt().intoArray(into, i);
+    }
+  }
+
+  private void add(float timeS, boolean isLast) {
+    FloatVector time = FloatVector.broadcast(SPECIES, timeS),
+        radius = FloatVector.broadcast(SPECIES, captureRadiusM),
+        infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
+    if (isLast) lastScores++;
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
       FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);
       if (isLast) FloatVector.fromArray(SPECIES, lastSum, i).add(now).intoArray(lastSum, i);
@@ -68,8 +88,8 @@ final class LaneScores {
     }
   }
 
-  /** At the end of the episode. */
-  void finish() {
+  @Override
+  public void finish() {
     for (int i = 0; i < WORLDS; i++) {
       into.meanDistance[i] = sum[i] / steps;
       into.meanLast10s[i] = lastSum[i] / lastScores;

@@ -9,13 +9,14 @@ import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 import skein.forward.Duel;
 import skein.forward.LoopTiming;
+import skein.forward.Rollout;
 import skein.forward.Steering;
 
 /**
  * Duels of many worlds at a time, each with delays of its own, under the full event timing of {@code
  * stream}, {@code sequential} or {@code futures}, with vehicles whose flight is known in pieces. A loop tells
  * what is offered when ({@link LaneOffers}), {@link LaneAgents} decide upon it and send, {@link
- * LaneVehicles} fly. {@link skein.forward.Rollout} is the scalar reference: both draw the same delays
+ * LaneVehicles} fly. {@link Rollout} is the scalar reference: both draw the same delays
  * from a world's key, and every event happens at the same nanosecond in both. Nothing is allocated
  * after construction but where links need more room than any before; one instance per thread.
  */
@@ -24,7 +25,7 @@ final class LoopDuelKernel extends DuelKernel {
   private static final double MOST_S = 3.5;
 
   private final int steps;
-  private final double periodS;
+  private final double durationS, periodS;
   private final LaneOffers offers;
   private final LaneAgents evader, pursuer;
   private final boolean withVelocity, withAges;
@@ -39,7 +40,7 @@ final class LoopDuelKernel extends DuelKernel {
    *
    * @param maxDelayS the longest one-way delay of the link
    */
-  static String refusal(LoopTiming timing, double maxDelayS, TimetableModel model) {
+  static String refusal(LoopTiming timing, double maxDelayS, LaneDynamics model) {
     if (!model.fliesAlone()) return "worlds with delays of their own fly vehicle by vehicle with the quadrotor";
     Steering steering = LoopTiming.steeringOf(timing);
     double deadTimeS = model.deadTimeS();
@@ -82,7 +83,7 @@ final class LoopDuelKernel extends DuelKernel {
   LoopDuelKernel(
       Duel duel,
       LoopTiming timing,
-      TimetableModel model,
+      LaneDynamics model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy) {
@@ -96,13 +97,14 @@ final class LoopDuelKernel extends DuelKernel {
   LoopDuelKernel(
       Duel duel,
       LoopTiming timing,
-      TimetableModel model,
+      LaneDynamics model,
       double maxDelayS,
       LanePolicy pursuerPolicy,
       LanePolicy evaderPolicy,
       boolean shortCut) {
+    durationS = duel.durationS();
     periodS = timing.periodS();
-    steps = (int) Math.round(duel.durationS() / periodS);
+    steps = (int) Math.round(durationS / periodS);
     double intervalS = 0;
     boolean decidesFirst = true;
     if (timing instanceof LoopTiming.Stream stream) {
@@ -112,9 +114,9 @@ final class LoopDuelKernel extends DuelKernel {
     } else if (timing instanceof LoopTiming.Sequential sequential)
       offers = new SequentialOffers(sequential);
     else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
-    int keptRows = keptRows(timing, maxDelayS);
-    LaneVehicles evaders = model.flights(duel.evader(), timing, keptRows, 2 * MOST_S),
-        pursuers = model.flights(duel.pursuer(), timing, keptRows, 2 * MOST_S);
+    FlightTiming flight = new FlightTiming(timing, keptRows(timing, maxDelayS), 2 * MOST_S);
+    LaneVehicles evaders = model.flights(duel.evader(), flight),
+        pursuers = model.flights(duel.pursuer(), flight);
     double deadTimeS = model.deadTimeS();
     Steering steering = LoopTiming.steeringOf(timing);
     evader =
@@ -127,7 +129,7 @@ final class LoopDuelKernel extends DuelKernel {
             pursuerPolicy, pursuerEffortRad);
     withVelocity = evaderPolicy.needsVelocity() || pursuerPolicy.needsVelocity();
     withAges = evaderPolicy.needsAges() || pursuerPolicy.needsAges();
-    scores = new LaneScores(duel.durationS(), periodS, this);
+    scores = new LaneScores(durationS, periodS, this);
   }
 
   /** From a reading to its decision, and from the decision before that to when its command acts. */
@@ -148,7 +150,8 @@ final class LoopDuelKernel extends DuelKernel {
     offers.start(worldKeys, links);
     evader.start();
     pursuer.start();
-    scores.start(captureRadiusM);
+    scores.captureWithin(captureRadiusM);
+    scores.start();
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         evader.nextRow();
@@ -198,7 +201,8 @@ final class LoopDuelKernel extends DuelKernel {
   private void score(int row) {
     evader.vehicles.flyToRow(row);
     pursuer.vehicles.flyToRow(row);
-    scores.add(row, evader.vehicles.state, pursuer.vehicles.state);
+    double timeS = row * periodS;
+    scores.add(evader.vehicles, pursuer.vehicles, (float) timeS, Rollout.isLast10s(timeS, durationS));
   }
 
   /** From a row's begin to the end of the episode, as far as integers count. */

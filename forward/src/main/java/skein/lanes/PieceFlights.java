@@ -24,8 +24,8 @@ abstract class PieceFlights extends LaneFlights {
    * @param command the number of a piece at which the command's direction stands, north, then east
    */
   PieceFlights(
-      Duelist duelist, int fields, int keptRows, double periodS, double pieceS, int command) {
-    super(duelist, fields, keptRows, periodS);
+      Duelist duelist, int fields, FlightTiming timing, double pieceS, int command) {
+    super(duelist, fields, timing);
     this.pieceS = (float) pieceS;
     this.command = command;
   }

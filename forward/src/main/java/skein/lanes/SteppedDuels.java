@@ -49,7 +49,7 @@ public final class SteppedDuels implements TimetableScores {
    * @param isOutside whether the evader, and whether the pursuer does
    */
   public SteppedDuels(
-      Duel duel, TimetableModel model, Policy evader, Policy pursuer, boolean[] isOutside) {
+      Duel duel, LaneDynamics model, Policy evader, Policy pursuer, boolean[] isOutside) {
     this.isOutside = isOutside.clone();
     policies = new LanePolicy[] {LanePolicy.of(evader), LanePolicy.of(pursuer)};
     for (int world = 0; world < WORLDS; world++) {
@@ -203,17 +203,9 @@ public final class SteppedDuels implements TimetableScores {
   public void score(TimetableAgents[] all, int[] views, int view, boolean isLast, float timeS) {
     if (timeS > untilS + TOLERANCE_S) return;
     scoredAtS = timeS;
-    TimetableVehicles evader = all[0].vehicles, pursuer = all[1].vehicles;
-    int evaderSeen = views[view] * WORLDS, pursuerSeen = views[view + 1] * WORLDS;
+    LaneScores.distances(all, views, view, distance);
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector x =
-          FloatVector.fromArray(SPECIES, evader.seenX, evaderSeen + i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenX, pursuerSeen + i));
-      FloatVector y =
-          FloatVector.fromArray(SPECIES, evader.seenY, evaderSeen + i)
-              .sub(FloatVector.fromArray(SPECIES, pursuer.seenY, pursuerSeen + i));
-      FloatVector now = x.fma(x, y.mul(y)).sqrt();
-      now.intoArray(distance, i);
+      FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
       FloatVector.fromArray(SPECIES, distanceSum, i).add(now).intoArray(distanceSum, i);
       FloatVector.fromArray(SPECIES, distanceLeast, i).min(now).intoArray(distanceLeast, i);
     }

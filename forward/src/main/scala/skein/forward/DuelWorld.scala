@@ -1,6 +1,7 @@
 package skein.forward
 
 import skein.forecast.{Forecast, Leg}
+import skein.fusion.Exposure
 import skein.policy.Assignment
 import skein.signal.Kinematics
 
@@ -267,18 +268,8 @@ trait LoopObserver:
   /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's dead time. */
   def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 
-  /** Who sees takes a picture now.
-    *
-    * @param draws
-    *   what decides of it: whether the opponent is found, by which error of the bearing and of the range; evenly from 0 to
-    *   1
-    */
-  private[skein] def exposed(
-      vehicle: Int,
-      picture: Int,
-      atNs: Long,
-      draws: (found: Double, bearing: Double, range: Double)
-  ): Unit = ()
+  /** Who sees takes a picture now. */
+  private[skein] def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit = ()
 
   /** What a picture showed is known now. */
   private[skein] def recognised(vehicle: Int, picture: Int, atNs: Long): Unit = ()

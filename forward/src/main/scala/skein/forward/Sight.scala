@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.fusion.{Fusion, Measurement, SensorModel}
+import skein.fusion.{Exposure, Fusion, Measurement, SensorModel}
 import skein.policy.CameraPursuer
 import skein.simd.WorldRandom
 import skein.units.*
@@ -74,17 +74,10 @@ private[skein] final class Sight(
   private def join(measured: Measurement): Unit = for joined <- fusion.including(measured) do fusion = joined
 
   private def measured(number: Int): Option[Measurement] =
-    val draws = (found = even(number, 0), bearing = even(number, 1), range = even(number, 2))
-    world.observer.exposed(agent, number, world.nowNs, draws)
-    model.measured(
-      Instant.ofNanos(world.nowNs),
-      axisRad,
-      place(agent),
-      place(opponent),
-      draws.found,
-      draws.bearing,
-      draws.range
-    )
+    val taken =
+      Exposure(axisRad, place(agent), place(opponent), even(number, 0), even(number, 1), even(number, 2))
+    world.observer.exposed(agent, number, world.nowNs, taken)
+    model.measured(Instant.ofNanos(world.nowNs), taken)
 
   /** While the world stands still, a picture is waited for. */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double) =

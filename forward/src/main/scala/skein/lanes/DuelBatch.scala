@@ -31,10 +31,10 @@ final class DuelBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  private val plant: Either[String, TimetableModel] =
+  private val plant: Either[String, LaneDynamics] =
     for
       _     <- LaneSupport.present
-      plant <- TimetableModel.of(model, duel)
+      plant <- LaneDynamics.of(model, duel)
     yield plant
 
   private val eyes: Either[String, DuelEyes] = DuelEyes.of(duel)
@@ -43,11 +43,11 @@ final class DuelBatch(
   private val sees = duel.pursuer.eye.isDefined || duel.evader.eye.isDefined
 
   /** The vehicles under the loop, if it flies by timetables. */
-  private val lanes: Either[String, TimetableModel] =
+  private val lanes: Either[String, LaneDynamics] =
     for
       _     <- plant
       _     <- eyes
-      lanes <- TimetableModel.under(timing, model, duel)
+      lanes <- LaneDynamics.under(timing, model, duel)
     yield lanes
 
   /** One per thread. */

@@ -98,7 +98,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
 
 /** By [[LoopDuelKernel]], where a world's link allows. */
-private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: TimetableModel, other: DuelFlyer)
+private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamics, other: DuelFlyer)
     extends LaneFlyer(other):
 
   protected def canFly(link: Delays): Boolean = link match
@@ -132,7 +132,7 @@ private object LoopFlyer:
 private final class TimetableFlyer(
     duel: Duel,
     timing: LoopTiming,
-    model: TimetableModel,
+    model: LaneDynamics,
     eyes: DuelEyes,
     timetables: Timetables,
     other: DuelFlyer

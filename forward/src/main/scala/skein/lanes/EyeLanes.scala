@@ -8,7 +8,7 @@ import skein.fusion.{SensorFormulas, SensorModel}
 /** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same pictures at the same
   * times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.Sight`. Mutable.
   */
-private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Duelist):
+private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Duelist):
   import EyeLanes.*
   import TimetableAgents.WORLDS
 
@@ -20,7 +20,6 @@ private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponen
   private val validS         = Array.ofDim[Float](Sight.Ring)
   private var newest, before = Array.ofDim[Float](Belief * WORLDS)
   private var replayed       = Array.ofDim[Float](Belief * WORLDS)
-  private val axis           = Array.ofDim[Float](WORLDS)
   private val ownDown        = everywhere(own.altitudeDownM)
   private val opponentDown   = everywhere(opponent.altitudeDownM)
   private val startX         = everywhere(opponent.startX)
@@ -32,6 +31,12 @@ private[lanes] final class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponen
   /** What is decided upon; velocities are the opponent's own. */
   val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
   val heading: Directions                                  = Directions(WORLDS)
+
+  /** Where the camera looks, rad. */
+  protected val axis: Array[Float] = Array.ofDim[Float](WORLDS)
+
+  /** By world, whether a picture shows the opponent: 1 or 0. */
+  protected def found(picture: Int): Array[Float] = Arrays.copyOf(pictures(picture), WORLDS)
 
   expose.input(0, axis, 0)
   expose.input(3, ownDown, 0)

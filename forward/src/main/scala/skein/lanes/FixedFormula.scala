@@ -16,14 +16,20 @@ private[lanes] final class FixedFormula(
     changed: (Trace, Vector[Node]) => Vector[Node] = (_, outputs) => outputs
 ):
   import FixedFormula.First
-  private val inputs           = formula.inputs.size + extra
-  private val (bound, numbers) =
+  private val inputs = formula.inputs.size + extra
+
+  /** What is computed of the inputs and of the object's own numbers; and these. */
+  val (bound, numbers) =
     val trace  = Trace()
     val angles =
       Angles(formula.trace, trace, trace.input, _ => None, number => trace.input(First + number))
     val outputs = changed(trace, formula.outputs.map((_, node) => angles.convert(node)))
     val values  = formula.evaluate(angles.derived, Array.emptyDoubleArray, formula.parametersOf(of))
-    (BoundFunction.of(outputs), values.map(_.toFloat))
+    (BoundFunction.of(outputs), values)
+
+  /** The inputs of [[bound]] for those of the method. */
+  def inputsOf(own: Array[Double]): Array[Double] =
+    bound.inputs.map(input => if input < First then own(input) else numbers(input - First))
 
   def call: FixedFormula.Call = FixedFormula.Call(bound, numbers, inputs)
 
@@ -32,12 +38,12 @@ private[lanes] object FixedFormula:
   private val First = 1 << 20
 
   /** Mutable. */
-  final class Call(bound: BoundFunction, numbers: Array[Float], inputs: Int):
+  final class Call(bound: BoundFunction, numbers: Array[Double], inputs: Int):
     private val call   = LaneCall(bound)
     private val places = Array.fill(inputs)(-1)
     for (input, place) <- bound.inputs.zipWithIndex do
       if input < First then places(input) = place
-      else call.input(place, Array.fill(TimetableVehicles.WORLDS)(numbers(input - First)), 0)
+      else call.input(place, Array.fill(TimetableVehicles.WORLDS)(numbers(input - First).toFloat), 0)
 
     /** From where in an array on an input's numbers stand, one of each world. */
     def input(number: Int, array: Array[Float], from: Int): Unit =

@@ -25,7 +25,7 @@ private object TeamViews:
   private val Nothing = -1
 
 /** One vehicle of a team in many worlds, each with a start and a policy of its own. */
-private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: TimetableModel, team: TeamViews)
+private[lanes] class TeamAgents(self: Int, duelist: Duelist, model: LaneDynamics, team: TeamViews)
     extends TimetableAgents(model.vehicles(duelist.copy(speed = 1))):
   import TeamLanes.Source
   import TimetableAgents.WORLDS

@@ -41,7 +41,7 @@ final class TeamBatch(
     for
       _        <- Either.cond(areShared, (), "every world has delays of its own")
       _        <- LaneSupport.present
-      vehicles <- TimetableModel.under(timing, model, engagement.agents)
+      vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       _        <- Either.cond(
         policies.size == engagement.agents.size,
         (),
@@ -147,7 +147,7 @@ final class TeamBatch(
       durationS: Double,
       judged: Vector[(Reduction, Double)],
       altitudesDownM: Vector[Double]
-  )(val vehicles: TimetableModel)
+  )(val vehicles: LaneDynamics)
 
   /** Of some 90 kB for each vehicle and minute; a search flies the same few episodes again and again. */
   private inline val MostBytes = 256L << 20

@@ -174,8 +174,11 @@ private object Common:
         case _                    => node.args.forall(isOfInputs)
     def isCommon(node: Node) = users(node) > 1 && node.args.nonEmpty && isOfInputs(node)
     def isWorth(node: Node)  =
-      val all = Trace.needed(Seq(node)).filter(_.args.nonEmpty)
-      all.sizeIs >= LeastOperations || all.exists(_.op.isDear)
+      val seen                        = mutable.HashSet.empty[Node]
+      def isDear(part: Node): Boolean =
+        part.args.nonEmpty && seen.add(part) &&
+          (seen.size >= LeastOperations || part.op.isDear || part.args.exists(isDear))
+      isDear(node)
     // Masks are not laid by, but what they compare.
     def numbersOf(node: Node): Vector[Node] =
       if node.op.isCondition then node.args.flatMap(numbersOf) else Vector(node)

@@ -1,22 +1,8 @@
 package skein.lanes
 
-import scala.collection.mutable
-import skein.forecast.{Forecast, Leg}
-import skein.forward.{
-  Delays,
-  Duelist,
-  Engagement,
-  Grounds,
-  LoopObserver,
-  LoopTiming,
-  Rollout,
-  Sight,
-  Vehicle,
-  VelocityResponse
-}
+import skein.forward.{Delays, Duelist, Engagement, LoopTiming, Rollout, Sight, Vehicle, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
-import skein.units.Instant
 import skein.vehicle.ConstantVelocity
 
 /** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where the
@@ -44,7 +30,7 @@ import skein.vehicle.ConstantVelocity
   * @param headings
   *   the same for the headings of one vehicle
   */
-private[skein] final class Timetable private (
+private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
     val operations: Array[Int],
     val times: Array[Float],
@@ -73,17 +59,15 @@ private[skein] object Timetable:
       timing: LoopTiming,
       link: Delays,
       key: Int,
-      model: TimetableModel,
+      model: LaneDynamics,
       eyes: Map[Int, SensorModel] = Map.empty
   ): Timetable =
-    val notes = Notes(vehicles, model, eyes)
+    val notes = TimetableNotes(vehicles, model, eyes)
     Rollout(still(vehicles, durationS, eyes), unpredicted(timing), link, Still(model)).fly(
       key,
       observer = notes
     ): Unit
-    Compiler(notes, vehicles, durationS, model).result
-
-  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+    TimetableCompiler(notes, vehicles, durationS, model).result
 
   /** The same loop; what stands still is predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
@@ -98,7 +82,7 @@ private[skein] object Timetable:
     durationS
   )
 
-  private final class Still(model: TimetableModel) extends VelocityResponse:
+  private final class Still(model: LaneDynamics) extends VelocityResponse:
     override def handoverS: Double = model.handoverS
     def create(): Vehicle          = new Vehicle:
       def start(x: Double, y: Double, z: Double): Unit = ()
@@ -109,445 +93,263 @@ private[skein] object Timetable:
       def vx: Double                                   = 0
       def vy: Double                                   = 0
 
-  /** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle. */
-  private final class Notes(vehicles: Int, model: TimetableModel, eyes: Map[Int, SensorModel])
-      extends LoopObserver:
-    var size               = 0
-    private var capacity   = 4096
-    var kind: Array[Int]   = Array.ofDim[Int](capacity)
-    var agent: Array[Int]  = Array.ofDim[Int](capacity)
-    var atS: Array[Double] = Array.ofDim[Double](capacity) // a decision's: not before
+/** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
+  * tells each vehicle when what happens to it.
+  */
+private final class TimetableCompiler(
+    notes: TimetableNotes,
+    vehicles: Int,
+    durationS: Double,
+    model: LaneDynamics
+):
+  import Timetable.{Fields, Numbers}
+  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+  private val order    = inOrder
+  private val scores   = notes.kind.iterator.take(notes.size).count(_ == SCORE)
+  private val end      = endOf(scores)
+  private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
+  private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
+  private val clocks   = Array.fill(vehicles)(model.clock())
 
-    // Of a decision; of a picture the errors, and whether what is in view is found.
-    var elapsedS, ownAgeS, opponentAgeS: Array[Double] = Array.ofDim[Double](capacity)
+  /** Readings that are decided upon; of others only places count. */
+  private val decidedUpon =
+    Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
-    /** Of a decision by who sees: until when what is believed is carried on. */
-    var aheadS: Array[Double] = Array.ofDim[Double](capacity)
+  /** The number of each view among those that are told, or −1. */
+  private val told    = Array.fill(notes.views.size)(-1)
+  private val courses = Course.Builder()
+  private val views   = Array.newBuilder[Int]
+  private var count   = 0
 
-    /** `LOOK`: the reading's number. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one
-      * more. `EXPOSE` and `JOIN`: the picture's.
-      */
-    var number: Array[Int] = Array.ofDim[Int](capacity)
+  private val operations = Array.ofDim[Int](end * Fields)
+  private val times      = Array.ofDim[Float](end * Numbers)
+  private var size       = 0
 
-    /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
-    var view: Array[Int] = Array.ofDim[Int](capacity)
-
-    /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
-      * the one that joined before.
-      */
-    var opponent: Array[Int] = Array.ofDim[Int](capacity)
-
-    /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
-    var from: Array[Int] = Array.ofDim[Int](capacity)
-
-    /** `PREDICT`: the number of the course, among [[courses]]. */
-    var course: Array[Int] = Array.ofDim[Int](capacity)
-
-    val courses: mutable.ArrayBuffer[Course] = mutable.ArrayBuffer.empty
-
-    /** By vehicle: the readings that entered the forecast. */
-    private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
-
-    // What was predicted last: of which forecast, for a decision when, in which view.
-    private var predictedOf: Forecast = null
-    private var predictedAtNs         = 0L
-    private var predicted             = 0
-
-    /** By vehicle: how many there are, of what is predicted too. */
-    val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
-
-    /** By view, then by vehicle: the readings' numbers. */
-    val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
-
-    private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
-    private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
-    private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
-    private val placed     = Array.ofDim[Int](vehicles)
-
-    private def note(what: Int, who: Int, time: Double, which: Int): Unit =
-      if size == capacity then grow()
-      kind(size) = what; agent(size) = who; atS(size) = time; number(size) = which
-      size += 1
-
-    private def grow(): Unit =
-      capacity *= 2
-      kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
-      view = view.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
-      from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
-      atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
-      ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
-      aheadS = aheadS.padTo(capacity, 0.0)
-
-    private def look(vehicle: Int, timeS: Double): Int =
-      looks(vehicle) += 1
-      note(LOOK, vehicle, timeS, looks(vehicle))
-      looks(vehicle)
-
-    private def viewOf(seen: Array[Int]): Int =
-      numberOf.getOrElseUpdate(
-        mutable.ArraySeq.make(seen), {
-          views += seen
-          views.size - 1
-        }
-      )
-
-    override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
-      val seen = readingOf(vehicle)
-      while seen.size <= question do seen += 0
-      seen(question) = look(vehicle, atNs * 1e-9)
-
-    override def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit =
-      for predictor <- model.predictor do
-        val plotter = entered(vehicle).lastOption
-          .fold(predictor.plotter)(_.plotter.next(legs.map(plotted(vehicle, _))))
-        entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, plotter)
-
-    /** The reading that a forecast starts from. */
-    private def newest(vehicle: Int, forecast: Forecast): Entered =
-      val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
-      entered(vehicle).findLast(_.validAtNs == validAt).get
-
-    private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
-      CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
-
-    /** The view of where all vehicles will be when a command acts that is sent now. */
-    private def predict(forecast: Forecast, atNs: Long): Int =
-      if (forecast ne predictedOf) || atNs != predictedAtNs then
-        predictedOf = forecast
-        predictedAtNs = atNs
-        val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
-        predicted = viewOf(Array.tabulate(vehicles): vehicle =>
-          val start = newest(vehicle, forecast)
-          courses += start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
-          looks(vehicle) += 1
-          note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
-          from(size - 1) = start.reading
-          course(size - 1) = courses.size - 1
-          looks(vehicle))
-      predicted
-
-    override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: Grounds): Unit =
-      val seen = upon.forecast match
-        case Some(forecast) => predict(forecast, atNs)
-        case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
-      note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
-      decisions(vehicle) += 1
-      view(size - 1) = seen
-      elapsedS(size - 1) = elapsed
-      if vehicles == 2 then
-        opponent(size - 1) = upon.sentDecision(1 - vehicle)
-        ownAgeS(size - 1) = (atNs - upon.validAtNs(vehicle)) * 1e-9
-        opponentAgeS(size - 1) = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
-      if eyes.contains(vehicle) then
-        opponentAgeS(size - 1) = atNs * 1e-9
-        aheadS(size - 1) = upon.forecast.fold(-1.0): forecast =>
-          val now = Instant.ofNanos(atNs)
-          forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
-
-    // By vehicle: when its pictures were taken, and which of them joined last and before that.
-    private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
-    private val newest, runnerUp = Array.fill(vehicles)(-1)
-
-    override def exposed(
-        vehicle: Int,
-        picture: Int,
-        atNs: Long,
-        draws: (found: Double, bearing: Double, range: Double)
-    ): Unit =
-      val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
-      note(EXPOSE, vehicle, atNs * 1e-9, picture)
-      view(size - 1) = seen
-      elapsedS(size - 1) = SensorModel.normal(draws.bearing)
-      ownAgeS(size - 1) = SensorModel.normal(draws.range)
-      opponentAgeS(size - 1) = if draws.found < eyes(vehicle).detection then 1 else 0
-      exposedNs(vehicle)(picture % Sight.Ring) = atNs
-
-    override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
-      def takenNs(number: Int) =
-        if number < 0 then Long.MinValue else exposedNs(vehicle)(number % Sight.Ring)
-      val isOlder = takenNs(picture) < takenNs(newest(vehicle))
-      // Two are on the way at most, and whichever is overtaken twice is dropped.
-      require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")
-      note(JOIN, vehicle, atNs * 1e-9, picture)
-      opponent(size - 1) = if isOlder then 1 else 0
-      from(size - 1) = newest(vehicle)
-      if isOlder then runnerUp(vehicle) = picture
-      else
-        runnerUp(vehicle) = newest(vehicle)
-        newest(vehicle) = picture
-
-    override def commanded(
-        vehicle: Int,
-        number: Int,
-        atNs: Long,
-        headingRad: Double,
-        speedMps: Double
-    ): Unit = decisionOf(vehicle) += decisions(vehicle)
-
-    override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
-      note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number))
-
-    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
-      placed(vehicle) = look(vehicle, timeS)
-      if vehicle == vehicles - 1 then
-        note(SCORE, 0, timeS, 0)
-        view(size - 1) = viewOf(placed.clone)
-
-  /** A reading in the forecast.
-    *
-    * @param plotter
-    *   for what is predicted from it
-    */
-  private final case class Entered(reading: Int, validAtNs: Long, plotter: CoursePlotter)
-
-  /** Puts events in the order of their times, chooses places for readings and headings, each until its last use, and
-    * tells each vehicle when what happens to it.
-    */
-  private final class Compiler(notes: Notes, vehicles: Int, durationS: Double, model: TimetableModel):
-    private val order    = inOrder
-    private val scores   = notes.kind.iterator.take(notes.size).count(_ == SCORE)
-    private val end      = endOf(scores)
-    private val readings = Array.tabulate(vehicles)(vehicle => Places(notes.looks(vehicle) + 1))
-    private val headings = Array.tabulate(vehicles)(vehicle => Places(notes.decisions(vehicle) + 1))
-    private val clocks   = Array.fill(vehicles)(model.clock())
-
-    /** Readings that are decided upon; of others only places count. */
-    private val decidedUpon =
-      Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
-
-    /** The number of each view among those that are told, or −1. */
-    private val told    = Array.fill(notes.views.size)(-1)
-    private val courses = Course.Builder()
-    private val views   = Array.newBuilder[Int]
-    private var count   = 0
-
-    private val operations = Array.ofDim[Int](end * Fields)
-    private val times      = Array.ofDim[Float](end * Numbers)
-    private var size       = 0
-
-    def result: Timetable =
-      for i <- 0 until end do findLastUses(order(i), i)
-      for heading <- headings do heading.take(0)
-      for i <- 0 until end do
-        val event = order(i)
-        notes.kind(event) match
-          case LOOK    => look(event)
-          case DECIDE  => decide(event, i)
-          case ACT     => act(event, i)
-          case SCORE   => score(event, i)
-          case PREDICT => predict(event, i)
-          case EXPOSE  => expose(event, i)
-          case JOIN    => join(event)
-      Timetable(
-        vehicles,
-        java.util.Arrays.copyOf(operations, size * Fields),
-        java.util.Arrays.copyOf(times, size * Numbers),
-        views.result(),
-        courses.result(),
-        readings.map(_.size).max,
-        headings.map(_.size).max
-      )
-
-    /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
-    private def inOrder: Array[Int] =
-      val sorted = Array.range(0, notes.size)
-      for i <- 1 until sorted.length do
-        val event = sorted(i)
-        var hole  = i
-        while hole > 0 && notes.atS(sorted(hole - 1)) > notes.atS(event) do
-          sorted(hole) = sorted(hole - 1)
-          hole -= 1
-        sorted(hole) = event
-      sorted
-
-    /** Behind the last score. */
-    private def endOf(count: Int): Int =
-      var (i, seen) = (0, 0)
-      while seen < count do
-        if notes.kind(order(i)) == SCORE then seen += 1
-        i += 1
-      i
-
-    private def findLastUses(event: Int, at: Int): Unit =
-      val agent = notes.agent(event)
+  def result: Timetable =
+    for i <- 0 until end do findLastUses(order(i), i)
+    for heading <- headings do heading.take(0)
+    for i <- 0 until end do
+      val event = order(i)
       notes.kind(event) match
-        case DECIDE =>
-          usedAt(notes.view(event), at)
-          val seen = notes.views(notes.view(event))
-          for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
-          headings(agent).usedAt(notes.number(event), at)
-          if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
-          // Its effort is counted even where nobody uses it.
-          headings(agent).usedAt(notes.number(event) + 1, at)
-        case ACT            => headings(agent).usedAt(notes.number(event), at)
-        case SCORE | EXPOSE => usedAt(notes.view(event), at)
-        case PREDICT        =>
-          readings(agent).usedAt(notes.from(event), at)
-          decidedUpon(agent)(notes.from(event)) = true
-          for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
-            headings(agent).usedAt(part.decision, at)
-        case LOOK | JOIN => ()
+        case LOOK    => look(event)
+        case DECIDE  => decide(event, i)
+        case ACT     => act(event, i)
+        case SCORE   => score(event, i)
+        case PREDICT => predict(event, i)
+        case EXPOSE  => expose(event, i)
+        case JOIN    => join(event)
+    Timetable(
+      vehicles,
+      java.util.Arrays.copyOf(operations, size * Fields),
+      java.util.Arrays.copyOf(times, size * Numbers),
+      views.result(),
+      courses.result(),
+      readings.map(_.size).max,
+      headings.map(_.size).max
+    )
 
-    private def usedAt(view: Int, at: Int): Unit =
+  /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
+  private def inOrder: Array[Int] =
+    val sorted = Array.range(0, notes.size)
+    for i <- 1 until sorted.length do
+      val event = sorted(i)
+      var hole  = i
+      while hole > 0 && notes.atS(sorted(hole - 1)) > notes.atS(event) do
+        sorted(hole) = sorted(hole - 1)
+        hole -= 1
+      sorted(hole) = event
+    sorted
+
+  /** Behind the last score. */
+  private def endOf(count: Int): Int =
+    var (i, seen) = (0, 0)
+    while seen < count do
+      if notes.kind(order(i)) == SCORE then seen += 1
+      i += 1
+    i
+
+  private def findLastUses(event: Int, at: Int): Unit =
+    val agent = notes.agent(event)
+    notes.kind(event) match
+      case DECIDE =>
+        usedAt(notes.view(event), at)
+        val seen = notes.views(notes.view(event))
+        for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
+        headings(agent).usedAt(notes.number(event), at)
+        if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
+        // Its effort is counted even where nobody uses it.
+        headings(agent).usedAt(notes.number(event) + 1, at)
+      case ACT            => headings(agent).usedAt(notes.number(event), at)
+      case SCORE | EXPOSE => usedAt(notes.view(event), at)
+      case PREDICT        =>
+        readings(agent).usedAt(notes.from(event), at)
+        decidedUpon(agent)(notes.from(event)) = true
+        for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
+          headings(agent).usedAt(part.decision, at)
+      case LOOK | JOIN => ()
+
+  private def usedAt(view: Int, at: Int): Unit =
+    val seen = notes.views(view)
+    for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
+
+  private def releaseView(view: Int, at: Int): Unit =
+    val seen = notes.views(view)
+    for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
+
+  /** Its number in the timetable; its readings keep their places until it is used for the last time. */
+  private def tell(view: Int): Int =
+    if told(view) < 0 then
       val seen = notes.views(view)
-      for vehicle <- 0 until vehicles do readings(vehicle).usedAt(seen(vehicle), at)
+      for vehicle <- 0 until vehicles do views += readings(vehicle).place(seen(vehicle))
+      told(view) = count
+      count += 1
+    told(view)
 
-    private def releaseView(view: Int, at: Int): Unit =
-      val seen = notes.views(view)
-      for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
-
-    /** Its number in the timetable; its readings keep their places until it is used for the last time. */
-    private def tell(view: Int): Int =
-      if told(view) < 0 then
-        val seen = notes.views(view)
-        for vehicle <- 0 until vehicles do views += readings(vehicle).place(seen(vehicle))
-        told(view) = count
-        count += 1
-      told(view)
-
-    private def look(event: Int): Unit =
-      val vehicle = notes.agent(event)
-      val reading = notes.number(event)
-      if readings(vehicle).isUsed(reading) then
-        operation(
-          LOOK,
-          vehicle,
-          readings(vehicle).take(reading),
-          if decidedUpon(vehicle)(reading) then 1 else 0
-        )
-        happens(event, acts = false)
-
-    private def decide(event: Int, at: Int): Unit =
-      val agent = notes.agent(event)
-      val own   = notes.number(event)
-      val view  = notes.view(event)
+  private def look(event: Int): Unit =
+    val vehicle = notes.agent(event)
+    val reading = notes.number(event)
+    if readings(vehicle).isUsed(reading) then
       operation(
-        DECIDE,
-        agent,
-        tell(view),
-        if vehicles == 2 then headings(1 - agent).place(notes.opponent(event)) else 0,
-        headings(agent).place(own),
-        // Taken before the one before is given back: its effort is counted from there.
-        headings(agent).take(own + 1)
-      )
-      times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
-      times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
-      times(size * Numbers + 3) = notes.aheadS(event).toFloat
-      took(notes.elapsedS(event))
-      releaseView(view, at)
-      headings(agent).release(own, at)
-      if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
-      headings(agent).release(own + 1, at)
-
-    private def predict(event: Int, at: Int): Unit =
-      val vehicle = notes.agent(event)
-      val from    = notes.from(event)
-      operation(
-        PREDICT,
+        LOOK,
         vehicle,
-        readings(vehicle).place(from),
-        // Taken before the reading is given back: it is carried forward beside it.
-        readings(vehicle).take(notes.number(event)),
-        place(vehicle, event)
+        readings(vehicle).take(reading),
+        if decidedUpon(vehicle)(reading) then 1 else 0
       )
-      size += 1
-      release(vehicle, event, at)
+      happens(event, acts = false)
 
-    /** The number of a course, whose commands have their places now. */
-    private def place(vehicle: Int, event: Int): Int =
-      courses.add(notes.courses(notes.course(event)), headings(vehicle).place)
+  private def decide(event: Int, at: Int): Unit =
+    val agent = notes.agent(event)
+    val own   = notes.number(event)
+    val view  = notes.view(event)
+    operation(
+      DECIDE,
+      agent,
+      tell(view),
+      if vehicles == 2 then headings(1 - agent).place(notes.opponent(event)) else 0,
+      headings(agent).place(own),
+      // Taken before the one before is given back: its effort is counted from there.
+      headings(agent).take(own + 1)
+    )
+    times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
+    times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
+    times(size * Numbers + 3) = notes.aheadS(event).toFloat
+    took(notes.elapsedS(event))
+    releaseView(view, at)
+    headings(agent).release(own, at)
+    if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
+    headings(agent).release(own + 1, at)
 
-    private def release(vehicle: Int, event: Int, at: Int): Unit =
-      readings(vehicle).release(notes.from(event), at)
-      for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
-        headings(vehicle).release(part.decision, at)
+  private def predict(event: Int, at: Int): Unit =
+    val vehicle = notes.agent(event)
+    val from    = notes.from(event)
+    operation(
+      PREDICT,
+      vehicle,
+      readings(vehicle).place(from),
+      // Taken before the reading is given back: it is carried forward beside it.
+      readings(vehicle).take(notes.number(event)),
+      place(vehicle, event)
+    )
+    size += 1
+    release(vehicle, event, at)
 
-    private def act(event: Int, at: Int): Unit =
-      val vehicle = notes.agent(event)
-      operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
-      happens(event, acts = true)
-      headings(vehicle).release(notes.number(event), at)
+  /** The number of a course, whose commands have their places now. */
+  private def place(vehicle: Int, event: Int): Int =
+    courses.add(notes.courses(notes.course(event)), headings(vehicle).place)
 
-    private def expose(event: Int, at: Int): Unit =
-      val view = notes.view(event)
-      operation(EXPOSE, notes.agent(event), tell(view), notes.number(event) % Sight.Ring)
-      times(size * Numbers + 1) = notes.elapsedS(event).toFloat
-      times(size * Numbers + 2) = notes.ownAgeS(event).toFloat
-      times(size * Numbers + 3) = notes.opponentAgeS(event).toFloat
-      took(notes.atS(event))
-      releaseView(view, at)
+  private def release(vehicle: Int, event: Int, at: Int): Unit =
+    readings(vehicle).release(notes.from(event), at)
+    for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
+      headings(vehicle).release(part.decision, at)
 
-    private def join(event: Int): Unit =
-      operation(
-        JOIN,
-        notes.agent(event),
-        notes.number(event) % Sight.Ring,
-        notes.opponent(event),
-        notes.from(event).max(0) % Sight.Ring
-      )
-      size += 1
+  private def act(event: Int, at: Int): Unit =
+    val vehicle = notes.agent(event)
+    operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
+    happens(event, acts = true)
+    headings(vehicle).release(notes.number(event), at)
 
-    private def score(event: Int, at: Int): Unit =
-      val view   = notes.view(event)
-      val isLast = Rollout.isLast10s(notes.atS(event), durationS)
-      operation(SCORE, 0, tell(view), if isLast then 1 else 0)
-      took(notes.atS(event))
-      releaseView(view, at)
+  private def expose(event: Int, at: Int): Unit =
+    val view = notes.view(event)
+    operation(EXPOSE, notes.agent(event), tell(view), notes.number(event) % Sight.Ring)
+    times(size * Numbers + 1) = notes.elapsedS(event).toFloat
+    times(size * Numbers + 2) = notes.ownAgeS(event).toFloat
+    times(size * Numbers + 3) = notes.opponentAgeS(event).toFloat
+    took(notes.atS(event))
+    releaseView(view, at)
 
-    private def operation(
-        kind: Int,
-        agent: Int,
-        a: Int,
-        b: Int = 0,
-        c: Int = 0,
-        d: Int = 0
-    ): Unit =
-      val at = size * Fields
-      operations(at) = kind; operations(at + 1) = agent
-      operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
-      operations(at + 5) = d
+  private def join(event: Int): Unit =
+    operation(
+      JOIN,
+      notes.agent(event),
+      notes.number(event) % Sight.Ring,
+      notes.opponent(event),
+      notes.from(event).max(0) % Sight.Ring
+    )
+    size += 1
 
-    /** Ends an operation that happens to a vehicle. */
-    private def happens(event: Int, acts: Boolean): Unit =
-      clocks(notes.agent(event)).tell(notes.atS(event), acts, times, size * Numbers)
-      size += 1
+  private def score(event: Int, at: Int): Unit =
+    val view   = notes.view(event)
+    val isLast = Rollout.isLast10s(notes.atS(event), durationS)
+    operation(SCORE, 0, tell(view), if isLast then 1 else 0)
+    took(notes.atS(event))
+    releaseView(view, at)
 
-    /** Ends another operation. */
-    private def took(seconds: Double): Unit =
-      times(size * Numbers) = seconds.toFloat
-      size += 1
+  private def operation(
+      kind: Int,
+      agent: Int,
+      a: Int,
+      b: Int = 0,
+      c: Int = 0,
+      d: Int = 0
+  ): Unit =
+    val at = size * Fields
+    operations(at) = kind; operations(at + 1) = agent
+    operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
+    operations(at + 5) = d
 
-  /** Places for numbered things until their last use; as few as possible. */
-  private final class Places(numbers: Int):
-    private val lastUse = Array.fill(numbers)(-1)
-    private val placeOf = Array.ofDim[Int](numbers)
-    private val unused  = Array.ofDim[Int](numbers)
-    private var free    = 0
-    private var most    = 0
+  /** Ends an operation that happens to a vehicle. */
+  private def happens(event: Int, acts: Boolean): Unit =
+    clocks(notes.agent(event)).tell(notes.atS(event), acts, times, size * Numbers)
+    size += 1
 
-    def size: Int = most
+  /** Ends another operation. */
+  private def took(seconds: Double): Unit =
+    times(size * Numbers) = seconds.toFloat
+    size += 1
 
-    def isUsed(number: Int): Boolean = lastUse(number) >= 0
+/** Places for numbered things until their last use; as few as possible. */
+private final class ReusedPlaces(numbers: Int):
+  import ReusedPlaces.Released
+  private val lastUse = Array.fill(numbers)(-1)
+  private val placeOf = Array.ofDim[Int](numbers)
+  private val unused  = Array.ofDim[Int](numbers)
+  private var free    = 0
+  private var most    = 0
 
-    def usedAt(number: Int, at: Int): Unit = lastUse(number) = at
+  def size: Int = most
 
-    def place(number: Int): Int = placeOf(number)
+  def isUsed(number: Int): Boolean = lastUse(number) >= 0
 
-    def take(number: Int): Int =
-      if free > 0 then
-        free -= 1
-        placeOf(number) = unused(free)
-      else
-        placeOf(number) = most
-        most += 1
-      placeOf(number)
+  def usedAt(number: Int, at: Int): Unit = lastUse(number) = at
 
-    /** Gives the place back if this was its last use. */
-    def release(number: Int, at: Int): Unit =
-      if lastUse(number) == at then
-        unused(free) = placeOf(number)
-        free += 1
-        // Two agents may have used it in the same event.
-        lastUse(number) = Released
+  def place(number: Int): Int = placeOf(number)
 
+  def take(number: Int): Int =
+    if free > 0 then
+      free -= 1
+      placeOf(number) = unused(free)
+    else
+      placeOf(number) = most
+      most += 1
+    placeOf(number)
+
+  /** Gives the place back if this was its last use. */
+  def release(number: Int, at: Int): Unit =
+    if lastUse(number) == at then
+      unused(free) = placeOf(number)
+      free += 1
+      // Two agents may have used it in the same event.
+      lastUse(number) = Released
+
+private object ReusedPlaces:
   private val Released = Int.MaxValue

@@ -59,8 +59,9 @@ private object Passes:
     def isLeaf(node: Node) = node.op match
       case Op.Const | Op.Input | Op.Param | Op.Always => true
       case _                                          => false
-    val needs = Vector.tabulate(number + 1): pass =>
-      computed.filter(passOf(_) == pass).flatMap(argsOf).distinct.filter(arg =>
+    val ofPass = computed.groupBy(passOf).withDefaultValue(Vector.empty)
+    val needs  = Vector.tabulate(number + 1): pass =>
+      ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
         !isLeaf(arg) && passOf(arg) < pass
       )
     // Conditions are computed again where another pass needs them: a mask is not laid by.
@@ -73,7 +74,7 @@ private object Passes:
     def conditionsOf(node: Node): Vector[Node] =
       if node.op.isCondition then node.args.flatMap(conditionsOf) :+ node else Vector.empty
     Vector.tabulate(number + 1): pass =>
-      val own    = computed.filter(passOf(_) == pass)
+      val own    = ofPass(pass)
       val again  = needs(pass).flatMap(conditionsOf).distinct
       val loaded = numbers(pass).filter(node => !isLeaf(node) && passOf(node) < pass)
       Pass(

@@ -43,7 +43,7 @@ class AgreementSuite extends munit.FunSuite:
       val hunters  = Vector.fill(worlds)(drawPursuer(random))
       val fleeing  = Vector.fill(worlds)(drawEvader(random))
       val key      = WorldRandom.key(2, 0, 0)
-      val vehicles = TimetableModel.under(timing, model, duel).fold(fail(_), identity)
+      val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
       val lanes    = Vector(Logged(fleeing(0)), Logged(hunters(0)))
       for world <- 0 until worlds do
         lanes(0).take(world, fleeing(world))
@@ -78,30 +78,8 @@ class AgreementSuite extends munit.FunSuite:
     // Of both agents, by how far into the flight it is.
     val share = order.sortBy((agent, k) => k.toDouble / scalar(agent).seen.size)
     share.iterator
-      .map: (agent, k) =>
-        val form       = PolicyLanes.get(policies(agent))
-        val parameters = form.parametersOf(policies(agent))
-        val ours       = lanes(agent).made(k)
-        val seen       = form.inputsOf(scalar(agent).seen(k), scalar(agent).before(k))
-        // Angles a turn apart are one.
-        val heading = PolicyLanes.In.Heading
-        seen(
-          heading
-        ) += 2 * math.Pi * math.rint((ours.inputs(heading)(world) - seen(heading)) / (2 * math.Pi))
-        val off = seen.indices.map(i => math.abs(ours.inputs(i)(world) - seen(i))).toArray
-        // Until decisions part, the vehicles are where they are in doubles.
-        assert(
-          math.max(off(0), off(1)) < MostOffM,
-          s"world $world, decision $k: ${off(0)} and ${off(1)} m off"
-        )
-        def bound(isSame: Boolean)  = ErrorBound.of(form.outputs, seen, off, parameters, isSame)
-        def apart(most: ErrorBound) = form.outputs.take(2).zip(ours.outputs).map: (node, lane) =>
-          (math.abs(lane(world) - most.value(node)), most.error(node))
-        val asDoubles = apart(bound(true))
-        Option.when(asDoubles.exists((by, most) => !(by <= most))):
-          val either = bound(false)
-          Difference(agent, k, apart(either), asDoubles, either.undecided(form.outputs))
-      .collectFirst { case Some(difference) => difference }
+      .flatMap((agent, k) => difference(agent, k, policies(agent), scalar(agent), lanes(agent), world))
+      .nextOption()
 
 object AgreementSuite:
   /** Of what floats add up to in the vehicles' flight. */
@@ -116,6 +94,34 @@ object AgreementSuite:
   ):
     /** A threshold is so near that rounding may decide, and the decision is off by no more than both ways allow. */
     def isUndecided: Boolean = near.nonEmpty && apart.forall((by, most) => by <= most)
+
+  /** A decision of an agent in a world, where it differs by more than the bound of the way that doubles take. */
+  def difference(
+      agent: Int,
+      k: Int,
+      policy: Policy,
+      scalar: Log,
+      lanes: Logged,
+      world: Int
+  ): Option[Difference] =
+    val form       = PolicyLanes.get(policy)
+    val parameters = form.parametersOf(policy)
+    val ours       = lanes.made(k)
+    val seen       = form.inputsOf(scalar.seen(k), scalar.before(k))
+    // Angles a turn apart are one.
+    val heading = PolicyLanes.In.Heading
+    seen(heading) += 2 * math.Pi * math.rint((ours.inputs(heading)(world) - seen(heading)) / (2 * math.Pi))
+    val off = seen.indices.map(i => math.abs(ours.inputs(i)(world) - seen(i))).toArray
+    // Until decisions part, the vehicles are where they are in doubles.
+    if math.max(off(0), off(1)) >= MostOffM then
+      throw AssertionError(s"world $world, agent $agent, decision $k: ${off(0)} and ${off(1)} m off")
+    def bound(isSame: Boolean)  = ErrorBound.of(form.outputs, seen, off, parameters, isSame)
+    def apart(most: ErrorBound) = form.outputs.take(2).zip(ours.outputs).map: (node, lane) =>
+      (math.abs(lane(world) - most.value(node)), most.error(node))
+    val asDoubles = apart(bound(true))
+    Option.when(asDoubles.exists((by, most) => !(by <= most))):
+      val either = bound(false)
+      Difference(agent, k, apart(either), asDoubles, either.undecided(form.outputs))
 
   /** What one decision was made from and came to, by input or output, then by world. */
   final case class Made(inputs: Vector[Array[Float]], outputs: Vector[Array[Float]])

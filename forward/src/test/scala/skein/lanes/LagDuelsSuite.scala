@@ -49,8 +49,8 @@ class LagDuelsSuite extends munit.FunSuite:
       shortCut
     )
 
-  private def vehicles(model: VelocityResponse): TimetableModel =
-    TimetableModel.of(model, Duel.paper).fold(fail(_), identity)
+  private def vehicles(model: VelocityResponse): LaneDynamics =
+    LaneDynamics.of(model, Duel.paper).fold(fail(_), identity)
 
   private def fly(link: DelayTable, durationS: Double): LoopDuelKernel =
     val kernel = kernelOf(turnRates, radii, durationS)

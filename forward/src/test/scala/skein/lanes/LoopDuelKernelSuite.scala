@@ -49,7 +49,7 @@ class LoopDuelKernelSuite extends munit.FunSuite:
     for world <- 0 until worlds do
       pursuers.take(world, PaperPursuer(0.6 + 0.008 * world))
       evaders.take(world, PaperEvader(7 + 0.02 * world))
-    val vehicles = TimetableModel.of(model, duel(0, durationS)).fold(fail(_), identity)
+    val vehicles = LaneDynamics.of(model, duel(0, durationS)).fold(fail(_), identity)
     assertEquals(LoopDuelKernel.refusal(timing, link.maxS, vehicles), null)
     val kernel = LoopDuelKernel(duel(0, durationS), timing, vehicles, link.maxS, pursuers, evaders)
     kernel.fly(keys, Array.fill(worlds)(link), captureM)

@@ -42,7 +42,7 @@ class TeamAgreementSuite extends munit.FunSuite:
       val random  = SplitMix64(seed)
       val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
       val key     = WorldRandom.key(2, 0, 0)
-      val model   = TimetableModel.of(plant, drawn.head.agents).fold(fail(_), identity)
+      val model   = LaneDynamics.of(plant, drawn.head.agents).fold(fail(_), identity)
       val lanes   = TeamLanes.of(policies(drawn.head)).fold(throw _, identity)
       val team    = TeamViews(lanes)
       val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))
@@ -150,7 +150,7 @@ object TeamAgreementSuite:
         val either = of(false)
         Difference(self, k, apart(either), either.undecided(north))
 
-  final class Logged(self: Int, duelist: Duelist, model: TimetableModel, team: TeamViews)
+  final class Logged(self: Int, duelist: Duelist, model: LaneDynamics, team: TeamViews)
       extends TeamAgents(self, duelist, model, team):
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 

@@ -106,7 +106,7 @@ class TeamLanesSuite extends munit.FunSuite:
     val random = SplitMix64(7)
     val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
     val key    = WorldRandom.key(3, 1, 0)
-    val model  = TimetableModel.under(timing, plant, all.head.agents).fold(fail(_), identity)
+    val model  = LaneDynamics.under(timing, plant, all.head.agents).fold(fail(_), identity)
     val lanes  = TeamLanes.of(policies(all.head)).fold(throw _, identity)
     val count  = lanes.count
     val team   = TeamViews(lanes)

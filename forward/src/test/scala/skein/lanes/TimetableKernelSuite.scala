@@ -52,7 +52,7 @@ class TimetableKernelSuite extends munit.FunSuite:
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))
     val duel   = paper.copy(durationS = durationS)
-    val lanes  = TimetableModel.under(timing, model, duel).fold(fail(_), identity)
+    val lanes  = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
     val kernel = TimetableDuels(duel, timing, lanes, pursuers, evaders)
     kernel.fly(Timetable.of(2, durationS, timing, link, key, lanes), worlds, captureM)
     kernel
@@ -69,7 +69,7 @@ class TimetableKernelSuite extends munit.FunSuite:
   /** The loop that predicts, by the best model of the vehicles that flies by lanes. */
   private def predicted(model: VelocityResponse): Option[LoopTiming] =
     Some(LoopTiming.Predictive(predictor = model.predictor)).filter(timing =>
-      TimetableModel.under(timing, model, paper).isRight
+      LaneDynamics.under(timing, model, paper).isRight
     )
 
   private val links = Seq[(String, Delays)](

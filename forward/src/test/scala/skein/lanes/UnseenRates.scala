@@ -23,7 +23,7 @@ import skein.signal.SplitMix64
   do
     val random                   = SplitMix64(3)
     val candidates               = Array.fill(DuelKernel.WORLDS)(draw(random))
-    val lanes                    = TimetableModel.of(model, Duel.paper).fold(sys.error, identity)
+    val lanes                    = LaneDynamics.of(model, Duel.paper).fold(sys.error, identity)
     val table                    = Timetable.of(2, 60, timing, DelayTable.vpn, 1, lanes)
     val started                  = System.nanoTime
     val pursuers                 = LanePolicy.of(candidates(0))

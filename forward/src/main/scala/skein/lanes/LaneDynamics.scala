@@ -13,10 +13,10 @@ import skein.forward.{
 }
 import skein.vehicle.{Quadrotor, ReducedModel}
 
-/** A kind of vehicle that flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has delays of its
+/** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has delays of its
   * own.
   */
-private[skein] trait TimetableModel:
+private[skein] trait LaneDynamics:
   /** From a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double
 
@@ -36,19 +36,8 @@ private[skein] trait TimetableModel:
   /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
   def fliesAlone: Boolean = true
 
-  /** All worlds' vehicles of one role, whose commands act at times of their own.
-    *
-    * @param keptRows
-    *   see [[LaneFlights]]
-    * @param longestS
-    *   a command is under way at most
-    */
-  private[lanes] def flights(
-      duelist: Duelist,
-      timing: LoopTiming,
-      keptRows: Int,
-      longestS: Double
-  ): LaneVehicles
+  /** All worlds' vehicles of one role, whose commands act at times of their own. */
+  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles
 
   /** What carries their readings forward, in loops that predict. */
   def predictor: Option[TimetablePredictor] = None
@@ -62,24 +51,27 @@ private[skein] trait VehicleClock:
     */
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
 
-private[skein] object TimetableModel:
+private[skein] object LaneDynamics:
   /** @return
     *   or why this model does not fly by lanes
     */
-  def of(model: VelocityResponse, duel: Duel): Either[String, TimetableModel] =
+  def of(model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     of(model, Seq(duel.pursuer, duel.evader))
 
   /** @return
     *   or why these do not fly by lanes with this model
     */
-  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, TimetableModel] = model match
-    case lag: Reduced          => Right(LagTimetables(lag))
+  def of(model: VelocityResponse, vehicles: Seq[Duelist]): Either[String, LaneDynamics] = model match
+    case lag: Reduced          => Right(LagDynamics(lag))
     case ReducedResponse(drag) =>
-      Either.cond(
-        drag.lagS.min(drag.turnLagS) >= LeastLagS,
-        DragTimetables(drag),
-        s"the lanes fly models with lags of $LeastLagS s at least"
-      )
+      Either
+        .cond(
+          drag.lagS.min(drag.turnLagS) >= LeastLagS,
+          drag,
+          s"the lanes fly models with lags of $LeastLagS s at least"
+        )
+        .flatMap(PlantLanes.of)
+        .map(DragDynamics(drag, _))
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
@@ -93,8 +85,8 @@ private[skein] object TimetableModel:
           (),
           s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
         )
-      yield QuadrotorTimetables(quadrotor)
-    case PlantResponse(plant) => PlantLanes.of(plant).map(PlantTimetables(_))
+      yield QuadrotorDynamics(quadrotor)
+    case PlantResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
     case _                    => Left("the lanes do not know the vehicle")
 
   /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
@@ -102,7 +94,7 @@ private[skein] object TimetableModel:
     * @return
     *   or why not
     */
-  def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, TimetableModel] =
+  def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     under(timing, model, Seq(duel.pursuer, duel.evader))
 
   /** @return
@@ -112,11 +104,11 @@ private[skein] object TimetableModel:
       timing: LoopTiming,
       model: VelocityResponse,
       vehicles: Seq[Duelist]
-  ): Either[String, TimetableModel] =
+  ): Either[String, LaneDynamics] =
     of(model, vehicles).flatMap: vehicles =>
       timing match
         case predictive: LoopTiming.Predictive =>
-          TimetablePredictor.of(predictive.predictor).map(Predicted(vehicles, _))
+          TimetablePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
 
   /** Below, powers of e leave what floats hold. */
@@ -126,7 +118,7 @@ private[skein] object TimetableModel:
   private val LeastAltitudeM = 5.0
 
 /** Vehicles whose readings are carried forward. */
-private final class Predicted(model: TimetableModel, by: TimetablePredictor) extends TimetableModel:
+private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS}
   override def fliesAlone: Boolean                   = model.fliesAlone
   override def predictor: Option[TimetablePredictor] = Some(by)
@@ -138,24 +130,19 @@ private final class Predicted(model: TimetableModel, by: TimetablePredictor) ext
 /** By [[TimetableLagVehicles]]: how long ago a command acted last, how far an error of velocity has carried the vehicle
   * since, over the error, and what remains of it.
   */
-private final class LagTimetables(model: Reduced) extends TimetableModel:
+private final class LagDynamics(model: Reduced) extends LaneDynamics:
   def deadTimeS: Double                             = model.deadTimeS
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableLagVehicles(duelist, model)
 
-  private[lanes] def flights(
-      duelist: Duelist,
-      timing: LoopTiming,
-      keptRows: Int,
-      longestS: Double
-  ): LaneVehicles =
-    timing match
+  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
+    timing.loop match
       // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
       case stream: LoopTiming.Stream
-          if stream.periodS >= LagTimetables.LeastPeriodS && LagVehicles.canFly(model, longestS) =>
+          if stream.periodS >= LagDynamics.LeastPeriodS && LagVehicles.canFly(model, timing.longestS) =>
         val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
-        LagVehicles(duelist, model, stream.periodS, longestS, earliestS)
-      case _ => LagFlights(duelist, model, timing.periodS, keptRows)
+        LagVehicles(duelist, model, stream.periodS, timing.longestS, earliestS)
+      case _ => LagFlights(duelist, model, timing)
 
   def clock(): VehicleClock = new VehicleClock:
     private var actedS                                                      = 0.0
@@ -166,39 +153,23 @@ private final class LagTimetables(model: Reduced) extends TimetableModel:
       into(at + 2) = if model.lagS == 0 then 0 else StrictMath.exp(-dt / model.lagS).toFloat
       if acts then actedS = atS
 
-private object LagTimetables:
+private object LagDynamics:
   /** Below, too many periods' commands are under way for [[LagVehicles]]. */
   private val LeastPeriodS = 0.02
 
-/** By [[TimetableDragVehicles]]. */
-private final class DragTimetables(model: ReducedModel) extends TimetableModel:
-  def deadTimeS: Double                             = model.deadTimeS
-  def handoverS: Double                             = 0
-  def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
-  def clock(): VehicleClock                         = PieceClock(ReducedModel.PieceS)
-
-  private[lanes] def flights(
-      duelist: Duelist,
-      timing: LoopTiming,
-      keptRows: Int,
-      longestS: Double
-  ): LaneVehicles =
-    DragFlights(duelist, model, timing.periodS, keptRows)
+/** By [[TimetableDragVehicles]]; alone as a plant. */
+private final class DragDynamics(model: ReducedModel, lanes: PlantLanes) extends PlantDynamics(lanes):
+  override def vehicles(duelist: Duelist): TimetableVehicles = TimetableDragVehicles(duelist, model)
 
 /** By [[TimetablePlants]]. */
-private final class PlantTimetables(lanes: PlantLanes) extends TimetableModel:
+private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
   def clock(): VehicleClock                         = PieceClock(lanes.plant.stepS)
 
-  private[lanes] def flights(
-      duelist: Duelist,
-      timing: LoopTiming,
-      keptRows: Int,
-      longestS: Double
-  ): LaneVehicles =
-    PlantFlights(duelist, lanes, timing.periodS, keptRows)
+  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
+    PlantFlights(duelist, lanes, timing)
 
 /** How many pieces end until then, and the time since the last. A piece begins with a command, or with the end of another. */
 private final class PieceClock(lengthS: Double) extends VehicleClock:
@@ -213,7 +184,7 @@ private final class PieceClock(lengthS: Double) extends VehicleClock:
     if acts then pieceS = atS
 
 /** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
-private final class QuadrotorTimetables(model: QuadrotorResponse) extends TimetableModel:
+private final class QuadrotorDynamics(model: QuadrotorResponse) extends LaneDynamics:
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
   private val hoveredNs = Nanos.of(model.hoveredS)
 
@@ -221,13 +192,8 @@ private final class QuadrotorTimetables(model: QuadrotorResponse) extends Timeta
   def handoverS: Double                             = model.handoverS
   def vehicles(duelist: Duelist): TimetableVehicles = TimetableQuadrotors(duelist)
 
-  override def fliesAlone: Boolean = false
-  private[lanes] def flights(
-      duelist: Duelist,
-      timing: LoopTiming,
-      keptRows: Int,
-      longestS: Double
-  ): LaneVehicles =
+  override def fliesAlone: Boolean                                                 = false
+  private[lanes] def flights(duelist: Duelist, timing: FlightTiming): LaneVehicles =
     throw UnsupportedOperationException("quadrotors of worlds with delays of their own fly by SteppedBatch")
 
   def clock(): VehicleClock = new VehicleClock:

@@ -1,0 +1,194 @@
+package skein.lanes
+
+import scala.collection.mutable
+import skein.forecast.{Forecast, Leg}
+import skein.forward.{Grounds, LoopObserver, Sight}
+import skein.fusion.{Exposure, SensorModel}
+import skein.units.Instant
+
+/** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle. */
+private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, eyes: Map[Int, SensorModel])
+    extends LoopObserver:
+  import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+  var size               = 0
+  private var capacity   = 4096
+  var kind: Array[Int]   = Array.ofDim[Int](capacity)
+  var agent: Array[Int]  = Array.ofDim[Int](capacity)
+  var atS: Array[Double] = Array.ofDim[Double](capacity) // a decision's: not before
+
+  // Of a decision; of a picture the errors, and whether what is in view is found.
+  var elapsedS, ownAgeS, opponentAgeS: Array[Double] = Array.ofDim[Double](capacity)
+
+  /** Of a decision by who sees: until when what is believed is carried on. */
+  var aheadS: Array[Double] = Array.ofDim[Double](capacity)
+
+  /** `LOOK`: the reading's number. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one
+    * more. `EXPOSE` and `JOIN`: the picture's.
+    */
+  var number: Array[Int] = Array.ofDim[Int](capacity)
+
+  /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
+  var view: Array[Int] = Array.ofDim[Int](capacity)
+
+  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
+    * the one that joined before.
+    */
+  var opponent: Array[Int] = Array.ofDim[Int](capacity)
+
+  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
+  var from: Array[Int] = Array.ofDim[Int](capacity)
+
+  /** `PREDICT`: the number of the course, among [[courses]]. */
+  var course: Array[Int] = Array.ofDim[Int](capacity)
+
+  val courses: mutable.ArrayBuffer[Course] = mutable.ArrayBuffer.empty
+
+  /** By vehicle: the readings that entered the forecast. */
+  private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
+
+  // What was predicted last: of which forecast, for a decision when, in which view.
+  private var predictedOf: Forecast = null
+  private var predictedAtNs         = 0L
+  private var predicted             = 0
+
+  /** By vehicle: how many there are, of what is predicted too. */
+  val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
+
+  /** By view, then by vehicle: the readings' numbers. */
+  val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
+
+  private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+  private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
+  private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
+  private val placed     = Array.ofDim[Int](vehicles)
+
+  private def note(what: Int, who: Int, time: Double, which: Int): Unit =
+    if size == capacity then grow()
+    kind(size) = what; agent(size) = who; atS(size) = time; number(size) = which
+    size += 1
+
+  private def grow(): Unit =
+    capacity *= 2
+    kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
+    view = view.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
+    from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
+    atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
+    ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
+    aheadS = aheadS.padTo(capacity, 0.0)
+
+  private def look(vehicle: Int, timeS: Double): Int =
+    looks(vehicle) += 1
+    note(LOOK, vehicle, timeS, looks(vehicle))
+    looks(vehicle)
+
+  private def viewOf(seen: Array[Int]): Int =
+    numberOf.getOrElseUpdate(
+      mutable.ArraySeq.make(seen), {
+        views += seen
+        views.size - 1
+      }
+    )
+
+  override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
+    val seen = readingOf(vehicle)
+    while seen.size <= question do seen += 0
+    seen(question) = look(vehicle, atNs * 1e-9)
+
+  override def entered(vehicle: Int, question: Int, validAtNs: Long, legs: => Vector[Leg]): Unit =
+    for predictor <- model.predictor do
+      val plotter = entered(vehicle).lastOption
+        .fold(predictor.plotter)(_.plotter.next(legs.map(plotted(vehicle, _))))
+      entered(vehicle) += Entered(readingOf(vehicle)(question), validAtNs, plotter)
+
+  /** The reading that a forecast starts from. */
+  private def newest(vehicle: Int, forecast: Forecast): Entered =
+    val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
+    entered(vehicle).findLast(_.validAtNs == validAt).get
+
+  private def plotted(vehicle: Int, leg: Leg): CoursePlotter.Leg =
+    CoursePlotter.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
+
+  /** The view of where all vehicles will be when a command acts that is sent now. */
+  private def predict(forecast: Forecast, atNs: Long): Int =
+    if (forecast ne predictedOf) || atNs != predictedAtNs then
+      predictedOf = forecast
+      predictedAtNs = atNs
+      val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
+      predicted = viewOf(Array.tabulate(vehicles): vehicle =>
+        val start = newest(vehicle, forecast)
+        courses += start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
+        looks(vehicle) += 1
+        note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
+        from(size - 1) = start.reading
+        course(size - 1) = courses.size - 1
+        looks(vehicle))
+    predicted
+
+  override def decided(vehicle: Int, atNs: Long, elapsed: Double, upon: Grounds): Unit =
+    val seen = upon.forecast match
+      case Some(forecast) => predict(forecast, atNs)
+      case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+    note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
+    decisions(vehicle) += 1
+    view(size - 1) = seen
+    elapsedS(size - 1) = elapsed
+    if vehicles == 2 then
+      opponent(size - 1) = upon.sentDecision(1 - vehicle)
+      ownAgeS(size - 1) = (atNs - upon.validAtNs(vehicle)) * 1e-9
+      opponentAgeS(size - 1) = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
+    if eyes.contains(vehicle) then
+      opponentAgeS(size - 1) = atNs * 1e-9
+      aheadS(size - 1) = upon.forecast.fold(-1.0): forecast =>
+        val now = Instant.ofNanos(atNs)
+        forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
+
+  // By vehicle: when its pictures were taken, and which of them joined last and before that.
+  private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
+  private val newest, runnerUp = Array.fill(vehicles)(-1)
+
+  override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
+    val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
+    note(EXPOSE, vehicle, atNs * 1e-9, number)
+    view(size - 1) = seen
+    elapsedS(size - 1) = SensorModel.normal(picture.bearing)
+    ownAgeS(size - 1) = SensorModel.normal(picture.range)
+    opponentAgeS(size - 1) = if picture.found < eyes(vehicle).detection then 1 else 0
+    exposedNs(vehicle)(number % Sight.Ring) = atNs
+
+  override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
+    def takenNs(number: Int) =
+      if number < 0 then Long.MinValue else exposedNs(vehicle)(number % Sight.Ring)
+    val isOlder = takenNs(picture) < takenNs(newest(vehicle))
+    // Two are on the way at most, and whichever is overtaken twice is dropped.
+    require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")
+    note(JOIN, vehicle, atNs * 1e-9, picture)
+    opponent(size - 1) = if isOlder then 1 else 0
+    from(size - 1) = newest(vehicle)
+    if isOlder then runnerUp(vehicle) = picture
+    else
+      runnerUp(vehicle) = newest(vehicle)
+      newest(vehicle) = picture
+
+  override def commanded(
+      vehicle: Int,
+      number: Int,
+      atNs: Long,
+      headingRad: Double,
+      speedMps: Double
+  ): Unit = decisionOf(vehicle) += decisions(vehicle)
+
+  override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
+    note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number))
+
+  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+    placed(vehicle) = look(vehicle, timeS)
+    if vehicle == vehicles - 1 then
+      note(SCORE, 0, timeS, 0)
+      view(size - 1) = viewOf(placed.clone)
+
+/** A reading in the forecast.
+  *
+  * @param plotter
+  *   for what is predicted from it
+  */
+private final case class Entered(reading: Int, validAtNs: Long, plotter: CoursePlotter)
