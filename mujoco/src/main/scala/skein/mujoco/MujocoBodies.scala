@@ -10,12 +10,12 @@ import skein.vehicle.{Environment, FlightController, HorizontalMode, Quadrotor, 
   * world that moves: MuJoCo is given velocities relative to the air, whose density the model states.
   */
 private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
-  private val batch                   = MujocoBatch(model.compiled, count)
+  private val batch                   = model.batch(count)
   private val reference               = Quadrotor(stepS = model.stepS)
   private val before                  = Array.fill(count)(QuadrotorState())
   private val isDirect                = Array.ofDim[Boolean](count)
-  private val controls                = MujocoControls(model)
-  private val (place0, speed0, told0) = (model.positionAt, model.velocityAt, model.controlAt)
+  private val controls                = MujocoControls(model.actuators)
+  private val (place0, speed0, told0) = (model.place.at, model.velocity.at, model.controls.at)
   private val stepS                   = model.stepS
 
   /** As [[skein.vehicle.Rotorcraft.hover]] says. */
@@ -51,13 +51,13 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
       batch(place, speed0 + 4) = -state.wy
       batch(place, speed0 + 5) = -state.wz
       // MuJoCo begins anew where a state diverges; its time shows that.
-      batch(place, model.timeAt) = Running
+      batch(place, model.time.at) = Running
       var i = 0
       while i < told.length do
         batch(place, told0 + i) = told(i)
         i += 1
       batch.mark(place)
-    else if model.lifts(told) then state.grounded = false
+    else if model.actuators.lifts(told) then state.grounded = false
 
   /** Steps those in the air. */
   def step(): Unit = batch.step()
@@ -72,7 +72,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
   ): Unit =
     val was = before(place)
     if !was.grounded then
-      if batch(place, model.timeAt) < Running then
+      if batch(place, model.time.at) < Running then
         throw IllegalStateException(s"${model.text}: its motion has diverged; expected a shorter timestep")
       val wind = environment.windNed
       state.x = batch(place, place0) + wind.x * stepS
