@@ -42,6 +42,7 @@ object TestGroups extends AutoPlugin {
     "skein.mcap.OfficialPythonLibraryLiveSuite",
     "skein.mujoco.MujocoOracleLiveSuite",
     "skein.mujoco.MujocoRotorcraftLiveSuite",
+    "skein.simulator.BetaflightLiveSuite",
     "skein.simulator.HilServerLiveSuite",
     "skein.simulator.MavsdkLiveSuite",
     "skein.simulator.OfficialPythonClientLiveSuite"
