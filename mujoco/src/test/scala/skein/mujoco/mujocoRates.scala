@@ -23,7 +23,8 @@ import skein.units.Decimals.fixed
   val told  = arena.allocate(JAVA_DOUBLE, vehicles.toLong * steps * model.actuators.count)
   for index <- 0L until vehicles.toLong * steps * model.actuators.count do
     val wobble = 1 + 0.05 * math.sin(index * 0.37)
-    told.setAtIndex(JAVA_DOUBLE, index, hover(model.controlAt + (index % model.actuators.count).toInt) * wobble)
+    val control = model.controls.at + (index % model.actuators.count).toInt
+    told.setAtIndex(JAVA_DOUBLE, index, hover(control) * wobble)
   val turnEvery = (0.1 / model.stepS).round.toInt.max(1)
 
   def rate(work: => Unit): Double =
