@@ -43,7 +43,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
           duel.durationS
         )
         val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
-        assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM, s"$told, world $world")
+        assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
 
   test("teams fly by the scalar engine under every loop"):
     assumeMujoco()
