@@ -42,7 +42,9 @@ private[identify] object LeastSquares:
           LinearSystem.solve(damped, gradient)
             .map(step => clamped(step.zip(at).map(_ + _)))
             .map(next => (next, residuals(next)))
-            .collect { case (next, there) if dot(there, there) < dot(here, here) => (next, there, damping / 5) }
+            .collect {
+              case (next, there) if dot(there, there) < dot(here, here) => (next, there, damping / 5)
+            }
             .orElse(attempt(damping * 4))
 
       attempt(damping) match

@@ -34,5 +34,7 @@ private[skein] object LinearSystem:
   def inverseColumns(matrix: Array[Array[Double]], least: Double = 0): Option[Array[Array[Double]]] =
     val n       = matrix.length
     val columns =
-      Array.tabulate(n)(column => solve(matrix, Array.tabulate(n)(i => if i == column then 1.0 else 0.0), least))
+      Array.tabulate(n)(column =>
+        solve(matrix, Array.tabulate(n)(i => if i == column then 1.0 else 0.0), least)
+      )
     Option.when(columns.forall(_.isDefined))(columns.flatten)

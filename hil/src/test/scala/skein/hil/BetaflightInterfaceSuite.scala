@@ -49,13 +49,13 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
   test("Betaflight reads the attitude as it is: roll to the right, nose down, heading clockwise"):
     val random = Random(11)
     for _ <- 1 to 200 do
-      def one()       = random.nextGaussian()
-      val turn        = Quaternion(one(), one(), one(), one()).normalized
-      val truth       = atRest(Span.ofMillis(5))
-      val packet      = interface.sense(truth.copy(kinematics = truth.kinematics.copy(orientation = turn))).head
-      val told        = ByteBuffer.wrap(packet).order(ByteOrder.LITTLE_ENDIAN)
-      val (w, x)      = (told.getDouble(7 * 8), told.getDouble(8 * 8))
-      val (y, z)      = (told.getDouble(9 * 8), told.getDouble(10 * 8))
+      def one()  = random.nextGaussian()
+      val turn   = Quaternion(one(), one(), one(), one()).normalized
+      val truth  = atRest(Span.ofMillis(5))
+      val packet = interface.sense(truth.copy(kinematics = truth.kinematics.copy(orientation = turn))).head
+      val told   = ByteBuffer.wrap(packet).order(ByteOrder.LITTLE_ENDIAN)
+      val (w, x) = (told.getDouble(7 * 8), told.getDouble(8 * 8))
+      val (y, z) = (told.getDouble(9 * 8), told.getDouble(10 * 8))
       // As imuComputeRotationMatrix and imuUpdateEulerAngles have it where the simulator gives the attitude.
       val (m00, m10) = (1 - 2 * (y * y + z * z), -2 * (x * y + w * z))
       val m20        = -2 * (x * z - w * y)

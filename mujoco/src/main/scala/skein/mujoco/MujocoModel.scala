@@ -48,8 +48,8 @@ object MujocoModel:
     */
   def read(file: Path): Either[String, MujocoModel] =
     for
-      _        <- MujocoLibrary.find
-      _        <- Either.cond(Files.isRegularFile(file), (), s"expected a file of MuJoCo's XML, there is no $file")
+      _ <- MujocoLibrary.find
+      _ <- Either.cond(Files.isRegularFile(file), (), s"expected a file of MuJoCo's XML, there is no $file")
       compiled <- load(file)
       model    <- measured(file, compiled).left.map(reason => s"$file: $reason")
     yield model

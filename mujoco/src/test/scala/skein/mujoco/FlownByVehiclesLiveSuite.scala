@@ -37,7 +37,7 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
       val flown = batch.fly(all)
       for world <- 0 until all.size do
-        val own    = Duel(
+        val own = Duel(
           duel.pursuer.copy(policy = all.pursuer(world)),
           duel.evader.copy(policy = all.evader(world)),
           duel.durationS

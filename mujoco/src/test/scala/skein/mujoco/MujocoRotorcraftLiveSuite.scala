@@ -109,8 +109,8 @@ class MujocoRotorcraftLiveSuite extends MujocoHere:
 
   flying("MuJoCo's memory of models that nobody has any more is freed"):
     // Those that other tests keep stay.
-    val _      = Vector("quadrotor", "slung-load").map(example)
-    val before = NativeMemory.held
+    val _              = Vector("quadrotor", "slung-load").map(example)
+    val before         = NativeMemory.held
     def readAndFlown() =
       for _ <- 1 to 5 do
         val craft = MujocoRotorcraft(read(path("quadrotor")))

@@ -22,7 +22,7 @@ import skein.units.Decimals.fixed
   val arena = Arena.ofConfined()
   val told  = arena.allocate(JAVA_DOUBLE, vehicles.toLong * steps * model.actuators.count)
   for index <- 0L until vehicles.toLong * steps * model.actuators.count do
-    val wobble = 1 + 0.05 * math.sin(index * 0.37)
+    val wobble  = 1 + 0.05 * math.sin(index * 0.37)
     val control = model.controls.at + (index % model.actuators.count).toInt
     told.setAtIndex(JAVA_DOUBLE, index, hover(control) * wobble)
   val turnEvery = (0.1 / model.stepS).round.toInt.max(1)

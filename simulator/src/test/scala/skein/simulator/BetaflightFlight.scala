@@ -22,7 +22,12 @@ import skein.units.*
   * @param track
   *   where it was, a line every 0.2 s of the simulator's clock
   */
-private final case class BetaflightFlight(isArmed: Boolean, worstM: Double, updatesPerS: Double, track: String)
+private final case class BetaflightFlight(
+    isArmed: Boolean,
+    worstM: Double,
+    updatesPerS: Double,
+    track: String
+)
 
 private object BetaflightFlight:
   /** Flies the firmware by the interface that `serve --hil betaflight` has.
