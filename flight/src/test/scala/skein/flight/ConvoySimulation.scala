@@ -7,6 +7,7 @@ import skein.measure.RecordedTracks
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** Two cars and three drones, in virtual time. */
 class ConvoySimulation extends munit.FunSuite:
@@ -35,8 +36,8 @@ class ConvoySimulation extends munit.FunSuite:
         assert(commands.size > 30, s"$name: ${commands.size} commands")
         val ended = recording.acknowledgements.filter(_.vehicle == name)
         assertEquals(ended.size, commands.size, name)
-      val kinds = recording.heading.parametersOf("kind")
-      assertEquals(kinds, recording.vehicles.filter(_.role == "Car").map(_.name -> "Car").toMap)
+      val cars = Convoy().agents.filter(_.kind == VehicleKind.Car)
+      assertEquals(recording.heading.parametersOf("kind"), cars.map(_.name -> "Car").toMap)
       // It stays on the ground.
       val lead = recording.readings.filter(_.vehicle == "Lead").map(_.state.value)
       assert(lead.forall(_.positionNed.z == 0))

@@ -1,16 +1,37 @@
 package skein.mujoco
 
-import java.lang.foreign.MemorySegment
+/** What a model's body is, as it was measured.
+  *
+  * @param stepS
+  *   of a step, s
+  * @param place
+  *   where a row has the body's position and attitude; likewise the next ones
+  * @param standsAtM
+  *   the body's height in the model, m: where it stands on the ground
+  * @param hoveringRow
+  *   of one that has long hovered
+  * @param standingRow
+  *   of one that stands
+  */
+private[mujoco] final class MujocoBody(
+    val stepS: Double,
+    val place: MujocoBatch.Part,
+    val velocity: MujocoBatch.Part,
+    val controls: MujocoBatch.Part,
+    val time: MujocoBatch.Part,
+    val standsAtM: Double,
+    val actuators: MujocoActuators,
+    val hoveringRow: Array[Double],
+    val standingRow: Array[Double]
+)
 
 /** Finds out whether a model can be flown. What its actuators do is measured: each is held at a control until it has
   * settled, and the accelerations are read.
   *
-  * @param text
-  *   names the model in messages
   * @param one
   *   a simulation of it
   */
-private[mujoco] final class MujocoMeasuring(text: String, compiled: MemorySegment, one: MujocoBatch):
+private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
   import MujocoBatch.*
   import MujocoMeasuring.*
 
@@ -37,7 +58,7 @@ private[mujoco] final class MujocoMeasuring(text: String, compiled: MemorySegmen
   private val resting = Array.tabulate(count)(i => 0.0.max(lowest(i)).min(highest(i)))
 
   /** Or why it cannot be flown. */
-  def model: Either[String, MujocoModel] =
+  def body: Either[String, MujocoBody] =
     for
       _ <- expect(place.size >= 7 && one.ints("jnt_type").head == FreeJoint)(
         "the vehicle's free joint to be the first joint"
@@ -53,10 +74,8 @@ private[mujoco] final class MujocoMeasuring(text: String, compiled: MemorySegmen
         expect(hovering(i) >= lowest(i) && hovering(i) <= highest(i))(
           s"a control range with ${hovering(i)}, by which it hovers, came ${lowest(i)} to ${highest(i)}"
         ).left.map(named(i))
-    yield MujocoModel(
-      text,
+    yield MujocoBody(
       stepS,
-      compiled,
       place,
       velocity,
       controls,

@@ -18,7 +18,9 @@ import skein.units.*
   * @param worstM
   *   its greatest distance from the place while it was to hold it
   * @param updatesPerS
-  *   of its motors, which are at most as many as states: 500 in a second of the simulator's clock
+  *   of its motors meanwhile, which are at most as many as states: 500 in a second of the simulator's clock
+  * @param longestPauseS
+  *   between two of them, of the simulator's clock
   * @param track
   *   where it was, a line every 0.2 s of the simulator's clock
   */
@@ -73,11 +75,18 @@ private object BetaflightFlight:
         control.isArmed
       during(RisesS)(hold)
       val before = control.updates
-      var worst  = 0.0
+      control.longestPauseNanos = 0
+      var worst = 0.0
       during(holdsS): (seen, dtS) =>
         worst = worst.max((seen.positionNed - goal).norm)
         hold(seen, dtS)
-      BetaflightFlight(isArmed, worst, (control.updates - before) / holdsS, track.toString)
+      BetaflightFlight(
+        isArmed,
+        worst,
+        (control.updates - before) / holdsS,
+        control.longestPauseNanos * 1e-9 * speed,
+        track.toString
+      )
 
     private def hold(seen: Kinematics, dtS: Double): Unit =
       val (roll, pitch, throttle, yaw) = pilot.sticks(seen, dtS)

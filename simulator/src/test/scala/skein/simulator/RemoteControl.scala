@@ -16,15 +16,22 @@ private final class RemoteControl extends AutoCloseable:
   /** Updates of its motors so far. */
   @volatile var updates: Long = 0L
 
+  /** The longest time between two of them since this was set to 0, ns. */
+  @volatile var longestPauseNanos: Long = 0L
+
   /** Whether its motors turn. */
   @volatile var isArmed = false
 
   Thread.ofPlatform.daemon.start: () =>
     val packet = DatagramPacket(new Array[Byte](PulsesLength), PulsesLength)
     val pulses = ByteBuffer.wrap(packet.getData).order(ByteOrder.LITTLE_ENDIAN)
+    var before = System.nanoTime
     try
       while true do
         receiver.receive(packet)
+        val now = System.nanoTime
+        longestPauseNanos = longestPauseNanos.max(now - before)
+        before = now
         updates += 1
         isArmed = (0 until 4).forall(motor => pulses.getFloat(FirstPulseAt + 4 * motor) > StoppedUs)
     catch case _: java.net.SocketException => () // closed

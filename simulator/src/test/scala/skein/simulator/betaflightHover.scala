@@ -18,9 +18,6 @@ import skein.link.PreciseScheduler
     require(Betaflight.arePortsFree, "another program has Betaflight's ports")
     val flight = BetaflightFlight.fly(firmware, holdsS, speed)
     println(flight.track)
-    println(
-      f"armed: ${flight.isArmed}; at most ${flight.worstM}%.3f m from its place in $holdsS%.0f s, " +
-        f"${flight.updatesPerS}%.0f updates of its motors a second"
-    )
+    println(flight)
   finally
     val _ = Await.result(system.terminate(), 20.seconds)
