@@ -7,15 +7,14 @@ import java.util.concurrent.atomic.AtomicLong
 private[mujoco] object NativeMemory:
   private val count = AtomicLong()
 
-  /** Models and batches that are not freed yet. */
-  def held: Long = count.get
+  /** Models and batches that have been freed. */
+  def freed: Long = count.get
 
   /** The same, freed as soon as nobody refers to what is of this arena any more. */
   def owned(allocated: MemorySegment, arena: Arena)(free: MemorySegment => Unit): MemorySegment =
-    count.incrementAndGet()
     allocated.reinterpret(
       arena,
-      freed =>
-        free(freed)
-        count.decrementAndGet(): Unit
+      gone =>
+        free(gone)
+        count.incrementAndGet(): Unit
     )
