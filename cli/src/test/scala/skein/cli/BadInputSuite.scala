@@ -47,7 +47,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
 
   test("what follows multirotors alone refuses a scenario with cars, and says so"):
     val cars = Seq("--scenario", "convoy")
-    assertRefused(TortureCommand("skein.cli.Main"), cars, "--scenario convoy: expected multirotors, came cars")
+    assertRefused(
+      TortureCommand("skein.cli.Main"),
+      cars,
+      "--scenario convoy: expected multirotors, came cars"
+    )
     assertRefused(FlyCommand(), cars :+ "--mavlink", "came mavlink, which cars do not speak: Lead")
 
   test("a tolerance without end holds for everything, and is refused"):

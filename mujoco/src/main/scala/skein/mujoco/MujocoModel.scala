@@ -9,7 +9,11 @@ import java.nio.file.{Files, Path}
   * @param text
   *   names it in messages
   */
-final class MujocoModel private (val text: String, compiled: MemorySegment, private[mujoco] val body: MujocoBody):
+final class MujocoModel private (
+    val text: String,
+    compiled: MemorySegment,
+    private[mujoco] val body: MujocoBody
+):
   /** Of a step, s. */
   def stepS: Double = body.stepS
 
