@@ -28,8 +28,12 @@ private final case class BetaflightFlight(
     isArmed: Boolean,
     worstM: Double,
     updatesPerS: Double,
+    longestPauseS: Double,
     track: String
-)
+):
+  override def toString: String =
+    f"armed: $isArmed; at most $worstM%.3f m from its place, $updatesPerS%.0f updates of its motors a second, " +
+      f"${longestPauseS * 1000}%.0f ms between two"
 
 private object BetaflightFlight:
   /** Flies the firmware by the interface that `serve --hil betaflight` has.
