@@ -7,6 +7,7 @@ import skein.record.{FlightRow, RecordingHeader, ReadingRow, Vehicle}
 import skein.signal.Stamped
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
+import skein.vehicle.VehicleKind
 import skein.view.{Feed, LiveShow, Shows}
 
 /** The vehicles of a simulator where they truly are, for viewers: as readings that took no time. */
@@ -46,5 +47,5 @@ private[cli] object TruthOnShow:
     settings.world.vehicles.map(vehicle =>
       Vehicle(vehicle.name, "", MetresPerSecond(0), vehicle.startNed)
     ),
-    Nil
+    settings.world.vehicles.filter(_.isCar).flatMap(car => Vehicle.kind(car.name, VehicleKind.Car))
   )

@@ -45,6 +45,15 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
       "--view-port: expected with --view"
     )
 
+  test("what follows multirotors alone refuses a scenario with cars, and says so"):
+    val cars = Seq("--scenario", "convoy")
+    assertRefused(
+      TortureCommand("skein.cli.Main"),
+      cars,
+      "--scenario convoy: expected multirotors, came cars"
+    )
+    assertRefused(FlyCommand(), cars :+ "--mavlink", "came mavlink, which cars do not speak: Lead")
+
   test("a tolerance without end holds for everything, and is refused"):
     for value <- Seq("Infinity", "NaN", "0", "-1") do
       assertRefused(

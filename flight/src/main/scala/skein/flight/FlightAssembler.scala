@@ -84,7 +84,9 @@ final class FlightAssembler(
       clock.now()
     ),
     fleet.agents.map(Vehicle.of),
-    RecordedPlan.parameters(settings, plan)
+    RecordedPlan.parameters(settings, plan) ++ fleet.agents.flatMap(agent =>
+      Vehicle.kind(agent.name, agent.kind)
+    )
   )
 
   /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.

@@ -8,6 +8,7 @@ import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.testing.Optimised
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** Two cars and three drones, in virtual time. */
 class ConvoySimulation extends munit.FunSuite, Optimised:
@@ -38,6 +39,8 @@ class ConvoySimulation extends munit.FunSuite, Optimised:
         assert(commands.size > 30, s"$name: ${commands.size} commands")
         val ended = recording.acknowledgements.filter(_.vehicle == name)
         assertEquals(ended.size, commands.size, name)
+      val cars = Convoy().agents.filter(_.kind == VehicleKind.Car)
+      assertEquals(recording.heading.parametersOf("kind"), cars.map(_.name -> "Car").toMap)
       // It stays on the ground.
       val lead = recording.readings.filter(_.vehicle == "Lead").map(_.state.value)
       assert(lead.forall(_.positionNed.z == 0))

@@ -124,11 +124,9 @@ object Identification:
   ): Array[Double] =
     val n       = solution.parameters.length
     val normal  = Array.tabulate(n, n)((i, j) => LeastSquares.dot(solution.jacobian(i), solution.jacobian(j)))
-    val inverse = Array.tabulate(n)(i =>
-      LeastSquares.solveLinear(normal, Array.tabulate(n)(j => if i == j then 1.0 else 0.0))
-    )
-    val starts = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
-    val scores = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
+    val inverse = LinearSystem.inverseColumns(normal).getOrElse(Array.fill(n, n)(Double.NaN))
+    val starts  = windows.scanLeft(0)((at, window) => at + PerSample * window.size)
+    val scores  = windows.indices.groupMap(windows(_).block)(identity).values.map: members =>
       Array.tabulate(n): i =>
         members.iterator
           .flatMap(member => Iterator.range(starts(member), starts(member + 1)))

@@ -39,10 +39,13 @@ private[identify] object LeastSquares:
         else
           val damped = normal.map(_.clone)
           for i <- at.indices do damped(i)(i) += damping * normal(i)(i).max(1e-12)
-          val next  = clamped(solveLinear(damped, gradient).zip(at).map(_ + _))
-          val there = residuals(next)
-          if dot(there, there) < dot(here, here) then Some((next, there, damping / 5))
-          else attempt(damping * 4)
+          LinearSystem.solve(damped, gradient)
+            .map(step => clamped(step.zip(at).map(_ + _)))
+            .map(next => (next, residuals(next)))
+            .collect {
+              case (next, there) if dot(there, there) < dot(here, here) => (next, there, damping / 5)
+            }
+            .orElse(attempt(damping * 4))
 
       attempt(damping) match
         case None                      => Solution(at, here, jacobian, iteration)
@@ -79,16 +82,3 @@ private[identify] object LeastSquares:
       sum += a(i) * b(i)
       i += 1
     sum
-
-  /** Solves a small linear system by Gaussian elimination with pivoting. */
-  def solveLinear(matrix: Array[Array[Double]], right: Array[Double]): Array[Double] =
-    val n = right.length
-    val m = Array.tabulate(n)(i => matrix(i) :+ right(i))
-    for column <- 0 until n do
-      val pivot = (column until n).maxBy(row => math.abs(m(row)(column)))
-      val kept  = m(pivot)
-      m(pivot) = m(column); m(column) = kept
-      for row <- 0 until n if row != column do
-        val factor = m(row)(column) / kept(column)
-        for k <- column to n do m(row)(k) -= factor * kept(k)
-    Array.tabulate(n)(i => m(i)(n) / m(i)(i))

@@ -8,11 +8,15 @@ import skein.vehicle.Setpoint
   * 2 ms, one with four rotors' controls back. Nobody waits for the other, so what is late is left out, not made up for.
   *
   * Betaflight takes the rate of its clock from the difference of two states' times over that of when they come, which for
-  * two that come close together is a hundredfold. Where its time does not pass, it keeps the real clock. So at the real
-  * clock's speed all states are told of one time.
+  * two that come close together is a hundredfold (`updateState` in its `sitl.c`). Where their times are equal it keeps the
+  * rate that it has, at first the real clock's. So all states are told of one time. At another speed than the real clock's,
+  * the rate is told once, by two states far apart, as soon as Betaflight is heard.
   *
   * Gyroscope, accelerometer and barometer have their errors; the attitude is the truth, which Betaflight takes from the
   * simulator.
+  *
+  * @param speed
+  *   of the simulator's clock against the real one
   */
 final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1) extends AutopilotInterface:
   import AutopilotInterface.Step
@@ -23,11 +27,21 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   private var sensed   = from
   private var notRead  = 0L
 
+  private val silence  = Span.ofSeconds(SilenceS * speed)
+  private val apart    = Span.ofMillis(math.max(1, math.min(ApartMs, (MostApartRealMs * speed).toInt)))
+  private var heardAt  = Option.empty[Span]
+  private var told     = Span.Zero
+  private var rateDue  = false
+  private var rateFrom = Option.empty[Span]
+
   def hear(bytes: Array[Byte], up: Span): Vector[Array[Byte]] =
     if bytes.length != ServoLength then notRead += 1
     else
       val values = ByteBuffer.wrap(bytes).order(ByteOrder.LITTLE_ENDIAN)
       controls = AutopilotInterface.rotors(Vector.fill(4)(values.getFloat().toDouble))
+      // It may have been started anew.
+      if speed != 1 && heardAt.forall(before => up - before > silence) then rateDue = true
+      heardAt = Some(up)
     Vector.empty
 
   def rotors: Setpoint        = controls
@@ -38,24 +52,36 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   def damaged: Long           = notRead
 
   def sense(truth: SensorTruth): Vector[Array[Byte]] =
+    due = truth.up + nextAfter(truth.up)
     val inertial = sensors.inertial(truth, (truth.up - sensed).max(Step).toSeconds)
+    sensed = truth.up
     val force    = inertial.specificForceFrd
     val rates    = inertial.angularVelocityFrd
     val turn     = truth.kinematics.orientation
     val velocity = truth.kinematics.velocityNed
     val packet   = ByteBuffer.allocate(StateLength).order(ByteOrder.LITTLE_ENDIAN)
-    packet.putDouble(if speed == 1 then 0 else truth.up.toSeconds)
+    packet.putDouble(told.toSeconds)
     put(packet, rates.x, rates.y, rates.z)
     // What it measures, with x to the front, y to the left and z up, and then the sign turned.
     put(packet, -force.x, force.y, force.z)
-    // Of that body in a world with x to the north, y to the west and z up.
-    put(packet, turn.w, turn.x, -turn.y, -turn.z)
+    // Betaflight's own axes are others, but for the SITL it turns the signs (`imuComputeRotationMatrix`).
+    put(packet, turn.w, turn.x, turn.y, turn.z)
     put(packet, velocity.y, velocity.x, -velocity.z)
     put(packet, truth.place.longitudeDeg, truth.place.latitudeDeg, truth.place.altitude.value)
     put(packet, sensors.pressurePa(truth))
-    sensed = truth.up
-    due = truth.up + Period
     Vector(packet.array)
+
+  /** When the state after that of `up` is due, where need be with the clock's rate. */
+  private def nextAfter(up: Span): Span =
+    for first <- rateFrom do
+      rateFrom = None
+      if up - first < TooFarApart then
+        told = told + (up - first)
+        rateDue = false
+    if rateDue then
+      rateFrom = Some(up)
+      apart
+    else Period
 
   private def put(to: ByteBuffer, values: Double*): Unit = values.foreach(to.putDouble)
 
@@ -67,6 +93,18 @@ object BetaflightInterface:
   val StatePort = 9003
 
   private val Period = Span.ofMillis(2)
+
+  /** Of real time. */
+  private val SilenceS = 0.25
+
+  /** Two states that tell the clock's rate: the farther apart, the less it matters that they come a little late. */
+  private val ApartMs = 15
+
+  /** Betaflight takes no rate from states that are so far apart. */
+  private val TooFarApart = Span.ofMillis(20)
+
+  /** Nor from a state that comes half a second of real time after the last. */
+  private val MostApartRealMs = 400
 
   private val ServoLength = 4 * 4
   private val StateLength = 18 * 8

@@ -2,28 +2,17 @@ package skein.mujoco
 
 import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
 import java.lang.foreign.{Arena, MemorySegment}
-import java.lang.ref.Cleaner
 
 /** So many simulations of one model: MuJoCo's `mjBatch`, stepped by the thread that asks. A row of numbers is the state of
   * one. Its memory is freed when nobody refers to it any more. Not thread-safe.
   */
-private[mujoco] final class MujocoBatch(model: MemorySegment, count: Int, threads: Int = 1):
+private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: Int, arena: Arena):
   import MujocoBatch.*
-
-  private val arena                = Arena.ofAuto()
-  private val batch: MemorySegment =
-    val config = arena.allocate(8, 4)
-    config.set(JAVA_INT, 0, threads)
-    val error = arena.allocate(ErrorSize)
-    val made  = MujocoCalls.makeBatch(model, count, config, error, ErrorSize.toInt)
-    require(made.address != 0, error.getString(0))
-    made
-  cleaner.register(this, Freeing(batch))
 
   /** Numbers of a row. */
   val row: Int = MujocoCalls.rowSize(batch)
 
-  private val rows = MujocoCalls.state(batch).reinterpret(count.toLong * row * 8)
+  private val rows = MujocoCalls.state(batch).reinterpret(count.toLong * row * 8, arena, null)
   private val ids  = arena.allocate(JAVA_INT, count)
   private var due  = 0
 
@@ -85,9 +74,29 @@ private[mujoco] final class MujocoBatch(model: MemorySegment, count: Int, thread
       val reasons = (0 until count).map(place =>
         MujocoCalls.error(batch, place).reinterpret(ErrorSize).getString(0)
       )
-      throw IllegalStateException(s"MuJoCo: ${reasons.find(_.nonEmpty).getOrElse("failed")}")
+      throw MujocoFailed(s"MuJoCo: ${reasons.find(_.nonEmpty).getOrElse("failed")}")
+
+/** MuJoCo could not step a model. */
+private[mujoco] final class MujocoFailed(reason: String) extends IllegalStateException(reason)
 
 private[mujoco] object MujocoBatch:
+  /** MuJoCo copies the model.
+    *
+    * @return
+    *   or why MuJoCo makes none of it
+    */
+  def of(model: MemorySegment, count: Int, threads: Int = 1): Either[String, MujocoBatch] =
+    val arena  = Arena.ofAuto()
+    val config = arena.allocate(8, 4)
+    config.set(JAVA_INT, 0, threads)
+    val error = arena.allocate(ErrorSize)
+    val made  = MujocoCalls.makeBatch(model, count, config, error, ErrorSize.toInt)
+    Either.cond(
+      made.address != 0,
+      new MujocoBatch(NativeMemory.owned(made, arena)(MujocoCalls.deleteBatch(_)), count, arena),
+      error.getString(0).trim
+    )
+
   /** Parts of the state (`mjtState`). */
   val Time        = 1 << 0
   val Positions   = 1 << 1
@@ -98,9 +107,3 @@ private[mujoco] object MujocoBatch:
   final case class Part(at: Int, size: Int)
 
   private val ErrorSize = 1000L
-
-  private val cleaner = Cleaner.create()
-
-  // Refers to nothing but what it frees.
-  private final class Freeing(batch: MemorySegment) extends Runnable:
-    def run(): Unit = MujocoCalls.deleteBatch(batch)

@@ -10,23 +10,24 @@ import skein.vehicle.{Environment, FlightController, HorizontalMode, Quadrotor, 
   * world that moves: MuJoCo is given velocities relative to the air, whose density the model states.
   */
 private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
-  private val batch                   = MujocoBatch(model.compiled, count)
+  private val body                    = model.body
+  private val batch                   = model.batch(count)
   private val reference               = Quadrotor(stepS = model.stepS)
   private val before                  = Array.fill(count)(QuadrotorState())
   private val isDirect                = Array.ofDim[Boolean](count)
-  private val controls                = MujocoControls(model)
-  private val (place0, speed0, told0) = (model.positionAt, model.velocityAt, model.controlAt)
+  private val controls                = MujocoControls(body.actuators)
+  private val (place0, speed0, told0) = (body.place.at, body.velocity.at, body.controls.at)
   private val stepS                   = model.stepS
 
   /** As [[skein.vehicle.Rotorcraft.hover]] says. */
   def hover(place: Int, state: QuadrotorState, goalNed: Vector3, yawRad: Double): Unit =
     state.copyFrom(reference.hovering(goalNed, yawRad, seaLevelAt(goalNed.z)))
-    batch.setRow(place, model.hoveringRow)
+    batch.setRow(place, body.hoveringRow)
     isDirect(place) = false
 
   def land(place: Int, state: QuadrotorState, yawRad: Double): Unit =
     state.copyFrom(reference.landed(Vector3.Zero, yawRad))
-    batch.setRow(place, model.standingRow)
+    batch.setRow(place, body.standingRow)
     isDirect(place) = false
 
   def hoverSagM(downM: Double): Double = reference.hoverSagM(downM, seaLevelAt(downM))
@@ -51,13 +52,13 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
       batch(place, speed0 + 4) = -state.wy
       batch(place, speed0 + 5) = -state.wz
       // MuJoCo begins anew where a state diverges; its time shows that.
-      batch(place, model.timeAt) = Running
+      batch(place, body.time.at) = Running
       var i = 0
       while i < told.length do
         batch(place, told0 + i) = told(i)
         i += 1
       batch.mark(place)
-    else if model.lifts(told) then state.grounded = false
+    else if body.actuators.lifts(told) then state.grounded = false
 
   /** Steps those in the air. */
   def step(): Unit = batch.step()
@@ -72,7 +73,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
   ): Unit =
     val was = before(place)
     if !was.grounded then
-      if batch(place, model.timeAt) < Running then
+      if batch(place, body.time.at) < Running then
         throw IllegalStateException(s"${model.text}: its motion has diverged; expected a shorter timestep")
       val wind = environment.windNed
       state.x = batch(place, place0) + wind.x * stepS
@@ -103,7 +104,7 @@ private[mujoco] final class MujocoBodies(model: MujocoModel, count: Int):
 
   /** Between the down coordinate and the model's height, either way. */
   private def heightM(down: Double, environment: Environment) =
-    model.standsAtM + environment.groundDownM - down
+    body.standsAtM + environment.groundDownM - down
 
   private def seaLevelAt(downM: Double) = Environment(originAltitudeM = downM)
 

@@ -1,7 +1,6 @@
 package skein.mujoco
 
 import java.nio.file.Files
-import scala.concurrent.duration.*
 import scala.util.Random
 import skein.testing.Waiting
 import skein.units.{Quaternion, Vector3}
@@ -15,9 +14,8 @@ import skein.vehicle.*
   * So accelerations act half a step late, and its error is of the first order: it falls to a half with half the step. Where
   * both lead, for steps that become ever smaller, is where MuJoCo is.
   */
-class MujocoOracleLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
+class MujocoOracleLiveSuite extends MujocoHere, Waiting:
   import MujocoOracleLiveSuite.*
-  override val munitTimeout: Duration = 5.minutes
 
   private def beside(name: String, fall: Fall, stepS: Double = 0.003): Unit = test(name):
     assumeMujoco()
@@ -75,7 +73,7 @@ private object MujocoOracleLiveSuite:
       val file = Files.createTempFile("model", ".xml")
       try
         Files.writeString(file, xml)
-        MujocoBatch(MujocoModel.load(file).fold(sys.error, identity), 1)
+        MujocoModel.load(file).flatMap(MujocoBatch.of(_, 1)).fold(sys.error, identity)
       finally Files.delete(file)
 
     def advance(): Unit =

@@ -1,12 +1,13 @@
 package skein.mujoco
 
 import java.nio.file.{Files, Path}
+import scala.collection.concurrent.TrieMap
 import skein.testing.Waiting
 import skein.units.Vector3
 import skein.vehicle.*
 
 /** Models of MuJoCo's as bodies, flown by AirSim's flight controller. */
-class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
+class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
   import MujocoRotorcraftLiveSuite.*
 
   private def flying(name: String)(body: => Unit): Unit = test(name):
@@ -29,7 +30,7 @@ class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
     assert(apart < 0.8, s"$apart m apart")
 
   flying("a vehicle that has long held its place stays there"):
-    for (name, steps) <- Seq("quadrotor" -> 10000, "slung-load" -> 15000) do
+    for (name, steps) <- Seq("quadrotor" -> 3000, "slung-load" -> 4000) do
       val craft = MujocoRotorcraft(example(name))
       val state = QuadrotorState()
       craft.hover(state, Vector3(3, -4, -20), 0.5, Environment.Calm)
@@ -107,6 +108,20 @@ class MujocoRotorcraftLiveSuite extends munit.FunSuite, MujocoHere, Waiting:
     assert(state.wx < -0.3, state.angularVelocityFrd)
     assertEqualsDouble(state.wy, 0, 0.05)
 
+  flying("MuJoCo's memory of models that nobody has any more is freed"):
+    val before = NativeMemory.freed
+    for _ <- 1 to 3 do
+      val craft = MujocoRotorcraft(read(path("quadrotor")))
+      val state = QuadrotorState()
+      craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+      craft.step(state, Setpoint.hold(Vector3(0, 0, -20)), Environment.Calm)
+    // Each has a model, what it was measured by, and what it flies by.
+    val until = System.nanoTime + 60_000_000_000L
+    while NativeMemory.freed < before + 9 && System.nanoTime < until do
+      System.gc()
+      Thread.sleep(100)
+    assert(NativeMemory.freed >= before + 9, s"${NativeMemory.freed - before} are freed")
+
   flying("what cannot be flown is refused with its reason"):
     assert(MujocoModel.read(Path.of("nowhere.xml")).left.exists(_.contains("there is no nowhere.xml")))
     val last = "<general site=\"rear right\" gear=\"0 0 4.179 0 0 0.0556\"/>"
@@ -138,7 +153,9 @@ private object MujocoRotorcraftLiveSuite:
 
   def text(name: String): String = Files.readString(path(name))
 
-  def example(name: String): MujocoModel = read(path(name))
+  private val examples = TrieMap.empty[String, MujocoModel]
+
+  def example(name: String): MujocoModel = examples.getOrElseUpdate(name, read(path(name)))
 
   def changed(from: String, to: String): MujocoModel = read(write(text("quadrotor").replace(from, to)))
 
@@ -147,4 +164,4 @@ private object MujocoRotorcraftLiveSuite:
     file.toFile.deleteOnExit()
     Files.writeString(file, xml)
 
-  private def read(file: Path) = MujocoModel.read(file).fold(sys.error, identity)
+  def read(file: Path): MujocoModel = MujocoModel.read(file).fold(sys.error, identity)

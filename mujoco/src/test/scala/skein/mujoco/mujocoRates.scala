@@ -17,13 +17,14 @@ import skein.units.Decimals.fixed
 @main def mujocoRates(file: String, vehicles: Int, steps: Int, rounds: Int): Unit =
   val model = MujocoModel.read(Path.of(file)).fold(sys.error, identity)
   val ours  = MujocoVehicles(model, vehicles)
-  val batch = MujocoBatch(model.compiled, vehicles)
-  val hover = model.hoveringRow
+  val batch = model.batch(vehicles)
+  val hover = model.body.hoveringRow
   val arena = Arena.ofConfined()
-  val told  = arena.allocate(JAVA_DOUBLE, vehicles.toLong * steps * model.actuators)
-  for index <- 0L until vehicles.toLong * steps * model.actuators do
-    val wobble = 1 + 0.05 * math.sin(index * 0.37)
-    told.setAtIndex(JAVA_DOUBLE, index, hover(model.controlAt + (index % model.actuators).toInt) * wobble)
+  val told  = arena.allocate(JAVA_DOUBLE, vehicles.toLong * steps * model.body.actuators.count)
+  for index <- 0L until vehicles.toLong * steps * model.body.actuators.count do
+    val wobble  = 1 + 0.05 * math.sin(index * 0.37)
+    val control = model.body.controls.at + (index % model.body.actuators.count).toInt
+    told.setAtIndex(JAVA_DOUBLE, index, hover(control) * wobble)
   val turnEvery = (0.1 / model.stepS).round.toInt.max(1)
 
   def rate(work: => Unit): Double =
@@ -49,5 +50,5 @@ import skein.units.Decimals.fixed
   println(
     s"$file, $vehicles vehicles, $steps steps, best of $rounds: bodies with controllers ${best._1.round} /s, " +
       s"mjb_rollout ${best._2.round} /s, ${(100 * best._1 / best._2).fixed(1)} %; " +
-      s"witness ${ours.x(0)}, ${batch(0, model.positionAt + 2)}"
+      s"witness ${ours.x(0)}, ${batch(0, model.body.place.at + 2)}"
   )

@@ -4,6 +4,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.mutable
 import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** What viewers show of a flight, as messages of Foxglove's schemas, made from the rows in their order. Frames: `world` is
   * east, north, up, as viewers draw; `world_ned` north, east, down, as all else of a flight; each vehicle's own is its
@@ -24,16 +25,17 @@ private[record] final class FoxgloveViews(
   private val downs   = mutable.Map.empty[String, Double]
   private val decided = mutable.Map.empty[String, Instant]
   private val errors  = mutable.Map.empty[String, Metres]
+  private val cars    = mutable.Set.empty[String]
+  private var opened  = Instant.Epoch
   private val lenses  = mutable.Map.empty[ImagingSensor, (Long, Long, Option[Radians])]
 
   /** Before the first row. */
   def opening(at: Instant): Vector[View] =
+    opened = at
     def world    = transform(at, "world", "world_ned", Vector3(0, 0, 0), NedInWorld)
     val standing = Option.when(stands.objects.nonEmpty)(View.text(Standing)(scene(obstacles(at))))
-    val bodies   = vehicles.map: name =>
-      def drawn = entity(at, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
-      View.text(bodyOf(name))(scene(drawn))
-    Vector(View.text(FixedFrames)(Json.obj("transforms" -> Json.array(Vector(world))))) ++ bodies ++ standing
+    Vector(View.text(FixedFrames)(Json.obj("transforms" -> Json.array(Vector(world))))) ++
+      vehicles.map(drawn) ++ standing
 
   def of(record: Record): Vector[View] = record match
     case reading: ReadingRow =>
@@ -91,6 +93,9 @@ private[record] final class FoxgloveViews(
         cloudOf(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true)),
         () => ImageEncoding.cloud(cloud, at, form.mostPoints)
       ))
+    case Parameter(s"kind.$name", Car) if colours.contains(name) =>
+      cars += name
+      Vector(drawn(name))
     case _ => Vector.empty
 
   /** The controller's clock ahead of the simulator's: as known, or as if this had taken no time. */
@@ -209,14 +214,22 @@ private[record] final class FoxgloveViews(
     "indices"         -> "[]"
   )
 
-  private def body(name: String) = Json.obj(
-    "pose"  -> placed(Vector3(0, 0, 0), Quaternion(1, 0, 0, 0)),
-    "size"  -> xyz(Vector3(0.8, 0.8, 0.25)),
-    "color" -> colours(name)
-  )
+  private def drawn(name: String): View =
+    def all = entity(opened, name, name, cubes = Vector(body(name)), texts = Vector(label(name)))
+    View.text(bodyOf(name))(scene(all))
+
+  /** A car's origin is on the ground. */
+  private def body(name: String) =
+    val (size, middle) =
+      if cars(name) then (CarM, Vector3(0, 0, -CarM.z / 2)) else (MultirotorM, Vector3.Zero)
+    Json.obj(
+      "pose"  -> placed(middle, Quaternion(1, 0, 0, 0)),
+      "size"  -> xyz(size),
+      "color" -> colours(name)
+    )
 
   private def label(name: String) = Json.obj(
-    "pose"            -> placed(Vector3(0, 0, -1), Quaternion(1, 0, 0, 0)),
+    "pose"            -> placed(Vector3(0, 0, if cars(name) then -2.2 else -1), Quaternion(1, 0, 0, 0)),
     "billboard"       -> "true",
     "font_size"       -> "14",
     "scale_invariant" -> "true",
@@ -241,6 +254,12 @@ private[record] object FoxgloveViews:
   private def predictionOf(name: String) = s"/vehicles/$name/prediction"
   private def planOf(name: String)       = s"/vehicles/$name/plan"
   private val Standing                   = "/scene"
+
+  private val Car         = VehicleKind.Car.toString
+  private val MultirotorM = Vector3(0.8, 0.8, 0.25)
+
+  /** A BMW 320i's, as the built-in simulator's. */
+  private val CarM = Vector3(4.508, 1.61, 1.42)
 
   def imageOf(sensor: ImagingSensor): String       = s"/vehicles/${sensor.vehicle}/${sensor.name}/image"
   def calibrationOf(sensor: ImagingSensor): String = s"/vehicles/${sensor.vehicle}/${sensor.name}/calibration"

@@ -3,6 +3,7 @@ package skein.record
 import skein.policy.{Action, Agent}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** One row of a recording; each case class below is one table. Column names are the field names with the unit behind
   * them: `Ns` (an instant, nanoseconds, BIGINT), `Ms` (a length of time, milliseconds, DOUBLE), `M`, `Mps`, `Rad`,
@@ -73,6 +74,10 @@ final case class Vehicle(name: String, role: String, speed: MetresPerSecond, sta
 object Vehicle:
   def of(agent: Agent): Vehicle =
     Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+
+  /** The parameter that says what a vehicle is, where it is no multirotor. */
+  def kind(name: String, kind: VehicleKind): Option[Parameter] =
+    Option.when(kind != VehicleKind.Multirotor)(Parameter(s"kind.$name", kind.toString))
 
 /** One answer of the simulator.
   *

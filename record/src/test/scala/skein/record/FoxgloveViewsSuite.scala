@@ -3,6 +3,7 @@ package skein.record
 import skein.mcap.Bytes
 import skein.scene.SceneFile
 import skein.units.*
+import skein.vehicle.VehicleKind
 
 /** Scenes by the definitions of Foxglove's schemas: a line strip is type 0, a lifetime of 0 is for ever, colours lie
   * between 0 and 1, and the quaternion that turns nothing is 1 in `w` and 0 else.
@@ -29,6 +30,22 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     val at = label("pose")("position")
     // Down is positive.
     assert(at("x").num == 0 && at("y").num == 0 && at("z").num < 0, at.toString)
+
+  test("a car is as long as it is wide twice over, and stands on the ground where its frame is"):
+    val seen    = FoxgloveViews(names, Some(Span.Zero))
+    val _       = seen.opening(Samples.at(0))
+    val told    = Vehicle.kind("Evader", VehicleKind.Car).get
+    val Seq(as) = seen.of(told): @unchecked
+    assertEquals(as.topic, drawn(2).topic)
+    val (body, before) = (entity(as)("cubes")(0), entity(drawn(2))("cubes")(0))
+    assertEquals((entity(as)("id"), body("color")), (entity(drawn(2))("id"), before("color")))
+    assert(body("size")("x").num > 2 * body("size")("y").num)
+    // Down is positive.
+    assertEqualsDouble(body("pose")("position")("z").num, -body("size")("z").num / 2, 1e-9)
+    assertEquals(Vehicle.kind("Evader", VehicleKind.Multirotor), None)
+    for other <- Seq(Parameter("kind.Nobody", "Car"), Parameter("kind.Evader", "Boat"), Parameter("car", ""))
+    do
+      assertEquals(seen.of(other).size, 0)
 
   test("five vehicles have colours that differ, and the sixth has the first one's again"):
     val colours = drawn.tail.take(6).map(entity(_)("cubes")(0)("color"))

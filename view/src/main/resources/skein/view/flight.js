@@ -31,6 +31,8 @@ export class Flight {
     switch (table) {
       case "flight": this.heading = row; break;
       case "vehicle": Object.assign(this.vehicle(row.name), { role: row.role }); break;
+      // Vehicles come before parameters.
+      case "parameter": if (row.name.startsWith("kind.")) this.vehicle(row.name.slice(5)).kind = row.value; break;
       case "reading": {
         if (vehicle.at !== undefined && at < vehicle.at) break;
         vehicle.at = at;

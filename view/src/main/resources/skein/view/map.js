@@ -159,12 +159,16 @@ export class FlightMap {
   body(vehicle, px, py) {
     const { pen } = this;
     const fast = Math.hypot(vehicle.velocityNorth, vehicle.velocityEast) > 0.3;
+    if (fast) vehicle.course = Math.atan2(vehicle.velocityEast, vehicle.velocityNorth);
+    const car = vehicle.kind === "Car";
     pen.save();
     pen.translate(px, py);
-    pen.rotate(fast ? Math.atan2(vehicle.velocityEast, vehicle.velocityNorth) : 0);
+    pen.rotate(fast || car ? vehicle.course ?? 0 : 0);
     pen.fillStyle = vehicle.colour;
     pen.beginPath();
-    if (fast) { pen.moveTo(0, -9); pen.lineTo(6, 7); pen.lineTo(0, 3); pen.lineTo(-6, 7); }
+    // A car from above: its windscreen is left open.
+    if (car) { pen.rect(-5, -10, 10, 6); pen.rect(-5, -1, 10, 11); }
+    else if (fast) { pen.moveTo(0, -9); pen.lineTo(6, 7); pen.lineTo(0, 3); pen.lineTo(-6, 7); }
     else pen.arc(0, 0, 6, 0, 7);
     pen.fill();
     pen.restore();

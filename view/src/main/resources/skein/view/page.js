@@ -16,7 +16,7 @@ if (/none|swiftshader|llvmpipe|software/i.test(card)) {
 gl?.getExtension("WEBGL_lose_context")?.loseContext();
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph", "progress", "curve", "landscape"];
+const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "graph", "progress", "curve", "landscape"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));

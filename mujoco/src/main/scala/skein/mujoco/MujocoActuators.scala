@@ -1,0 +1,50 @@
+package skein.mujoco
+
+/** A model's actuators, and what was measured of them.
+  *
+  * @param lowest
+  *   of each control; −∞ where it is not limited
+  * @param highest
+  *   likewise; ∞
+  * @param resting
+  *   the control of each that is closest to none
+  * @param effects
+  *   of each, what one more of its control adds: upwards, m/s², about front, right and down, rad/s²
+  * @param weightMps2
+  *   what it falls with while they rest
+  */
+private[mujoco] final class MujocoActuators(
+    val lowest: Array[Double],
+    val highest: Array[Double],
+    val resting: Array[Double],
+    effects: Vector[Array[Double]],
+    val weightMps2: Double,
+    val allocation: Allocation
+):
+  val count: Int = resting.length
+
+  private val lifting = effects.map(_(0)).toArray
+
+  /** The rotors front right, rear left, front left, rear right, where these four are all there are. */
+  val rotors: Option[Array[Int]] =
+    val corners = effects.map(effect => (math.signum(effect(1)), math.signum(effect(2))))
+    val found   = MujocoActuators.Corners.map(corners.indexOf)
+    Option.when(count == 4 && found.forall(_ >= 0) && lifting.forall(_ > 0))(found.toArray)
+
+  /** The controls by which it hovers. */
+  val hovering: Array[Double] =
+    Array.tabulate(count)(i => resting(i) + allocation.control(i, weightMps2, 0, 0, 0))
+
+  /** What full control is, where it is not limited, too. */
+  def full(actuator: Int): Double =
+    if highest(actuator).isInfinite then resting(actuator) + 1 else highest(actuator)
+
+  /** Whether what they are told lifts it off the ground. */
+  def lifts(controls: Array[Double]): Boolean =
+    var lift = 0.0
+    for i <- controls.indices do lift += lifting(i) * (controls(i) - resting(i))
+    lift >= weightMps2
+
+private object MujocoActuators:
+  /** Signs of what each rotor does about the front and the right axis: front right, rear left, front left, rear right. */
+  private val Corners = Vector((-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, -1.0))

@@ -1,0 +1,148 @@
+package skein.mujoco
+
+/** What a model's body is, as it was measured.
+  *
+  * @param stepS
+  *   of a step, s
+  * @param place
+  *   where a row has the body's position and attitude; likewise the next ones
+  * @param standsAtM
+  *   the body's height in the model, m: where it stands on the ground
+  * @param hoveringRow
+  *   of one that has long hovered
+  * @param standingRow
+  *   of one that stands
+  */
+private[mujoco] final class MujocoBody(
+    val stepS: Double,
+    val place: MujocoBatch.Part,
+    val velocity: MujocoBatch.Part,
+    val controls: MujocoBatch.Part,
+    val time: MujocoBatch.Part,
+    val standsAtM: Double,
+    val actuators: MujocoActuators,
+    val hoveringRow: Array[Double],
+    val standingRow: Array[Double]
+)
+
+/** Finds out whether a model can be flown. What its actuators do is measured: each is held at a control until it has
+  * settled, and the accelerations are read.
+  *
+  * @param one
+  *   a simulation of it
+  */
+private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
+  import MujocoBatch.*
+  import MujocoMeasuring.*
+
+  private val place    = one.part(Positions)
+  private val velocity = one.part(Velocities)
+  private val controls = one.part(Controls)
+  private val time     = one.part(Time)
+  private val count    = controls.size
+  private val stepS    = one.doubles("opt.timestep").head
+
+  private val initial: Vector[Double] =
+    one.reset()
+    one.rowOf(0).toVector
+
+  /** The body's height. */
+  private def standsAtM = initial(place.at + 2)
+
+  private val limited = one.flags("actuator_ctrllimited")
+  private val ranges  = one.doubles("actuator_ctrlrange")
+  private val lowest  =
+    Array.tabulate(count)(i => if limited(i) then ranges(2 * i) else Double.NegativeInfinity)
+  private val highest =
+    Array.tabulate(count)(i => if limited(i) then ranges(2 * i + 1) else Double.PositiveInfinity)
+  private val resting = Array.tabulate(count)(i => 0.0.max(lowest(i)).min(highest(i)))
+
+  /** Or why it cannot be flown. */
+  def body: Either[String, MujocoBody] =
+    for
+      _ <- expect(place.size >= 7 && one.ints("jnt_type").head == FreeJoint)(
+        "the vehicle's free joint to be the first joint"
+      )
+      _ <- expect(count >= 4)(s"at least 4 actuators, came $count")
+      falling = accelerations(resting)
+      effects    <- all(count)(effectOf(_, falling))
+      _          <- expect(falling(0) < 0)("gravity along −z")
+      allocation <- Allocation.of(Array.tabulate(4, count)((axis, actuator) => effects(actuator)(axis)))
+      actuators = MujocoActuators(lowest, highest, resting, effects, -falling(0), allocation)
+      hovering  = actuators.hovering
+      _ <- all(count): i =>
+        expect(hovering(i) >= lowest(i) && hovering(i) <= highest(i))(
+          s"a control range with ${hovering(i)}, by which it hovers, came ${lowest(i)} to ${highest(i)}"
+        ).left.map(named(i))
+    yield MujocoBody(
+      stepS,
+      place,
+      velocity,
+      controls,
+      time,
+      standsAtM,
+      actuators,
+      settled(hovering),
+      settled(resting)
+    )
+
+  private def named(actuator: Int)(reason: String) = s"actuator $actuator: $reason"
+
+  /** What one more of its control adds to the accelerations. */
+  private def effectOf(actuator: Int, falling: Array[Double]): Either[String, Array[Double]] =
+    val rest              = resting(actuator)
+    val full              = if highest(actuator).isInfinite then rest + 1 else highest(actuator)
+    val way               = full - rest
+    def at(share: Double) =
+      accelerations(resting.updated(actuator, rest + share * way)).zip(falling).map((a, b) =>
+        (a - b) / (share * way)
+      )
+    (for
+      _ <- expect(way > 0)(s"a control range above $rest")
+      (half, whole) = (at(0.5), at(1))
+      greatest      = whole.map(math.abs).max
+      _ <- expect(half.zip(whole).forall((a, b) => !(math.abs(a - b) > NotInProportion * greatest)))(
+        "a force in proportion to its control"
+      )
+    yield whole).left.map(named(actuator))
+
+  /** At rest, level, well above everything: upwards, m/s², about front, right and down, rad/s². */
+  private def accelerations(told: Array[Double]): Array[Double] =
+    one.setRow(0, settled(told))
+    for i <- 0 until velocity.size do one(0, velocity.at + i) = 0
+    one(0, place.at + 2) = HighM
+    one.mark(0)
+    one.step()
+    def change(index: Int) = one(0, velocity.at + index) / stepS
+    Array(change(2), change(3), -change(4), -change(5))
+
+  /** The row of one that was held at its initial place until its actuators had settled. */
+  private def settled(told: Array[Double]): Array[Double] =
+    one.reset()
+    val held = initial.toArray
+    held(place.at + 2) = HighM
+    for i <- told.indices do held(controls.at + i) = told(i)
+    one.setRow(0, held)
+    for _ <- 0 until (SettlingS / stepS).ceil.toInt do
+      one.mark(0)
+      one.step()
+      for part <- Seq(place, velocity); i <- part.at until part.at + part.size do one(0, i) = held(i)
+    one(0, place.at + 2) = standsAtM
+    one(0, time.at) = 0
+    one.rowOf(0)
+
+private object MujocoMeasuring:
+  private def expect(holds: Boolean)(what: => String): Either[String, Unit] =
+    Either.cond(holds, (), s"expected $what")
+
+  /** Of each, or why the first one has none. */
+  private def all[A](count: Int)(of: Int => Either[String, A]): Either[String, Vector[A]] =
+    (0 until count).foldLeft[Either[String, Vector[A]]](Right(Vector.empty)): (sofar, i) =>
+      sofar.flatMap(before => of(i).map(before :+ _))
+
+  /** `mjJNT_FREE` */
+  private val FreeJoint = 0
+
+  private val HighM           = 1000.0
+  private val SettlingS       = 2.0
+  private val NotInProportion = 0.02

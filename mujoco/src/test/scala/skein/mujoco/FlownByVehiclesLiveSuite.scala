@@ -1,0 +1,55 @@
+package skein.mujoco
+
+import skein.forward.*
+import skein.lanes.*
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.scenario.{OffRing, Reduction, Surround}
+import skein.simd.WorldRandom
+
+/** What ARCHITECTURE.md says of MuJoCo's bodies beside its table of what flies by lanes: they fly as vehicles in duels, and
+  * by the scalar engine in teams. `FlownByLanesSuite` holds the plants that need nothing installed to that table.
+  */
+class FlownByVehiclesLiveSuite extends MujocoHere:
+  private lazy val model = MujocoResponse(MujocoRotorcraftLiveSuite.example("quadrotor"))
+
+  private def loops = Vector[LoopTiming](
+    LoopTiming.Paused(),
+    LoopTiming.Sequential(),
+    LoopTiming.Futures(),
+    LoopTiming.Stream(),
+    LoopTiming.Predictive(predictor = model.predictor)
+  )
+
+  test("duels fly vehicle by vehicle under every loop, and as the scalar engine flies them, to the bit"):
+    assumeMujoco()
+    val duel = Duel.paper.copy(durationS = 2)
+    for timing <- loops; shared <- Seq(true, false) do
+      val told  = s"${timing.productPrefix}, shared delays: $shared"
+      val batch = DuelBatch(duel, timing, model, threads = 1)
+      val all   = new DuelWorlds:
+        def size: Int                       = 3
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.04 * world)
+        def evader(world: Int): Policy      = PaperEvader(7 + 0.1 * world)
+      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn))
+      assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
+      val flown = batch.fly(all)
+      for world <- 0 until all.size do
+        val own = Duel(
+          duel.pursuer.copy(policy = all.pursuer(world)),
+          duel.evader.copy(policy = all.evader(world)),
+          duel.durationS
+        )
+        val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
+        assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
+
+  test("teams fly by the scalar engine under every loop"):
+    assumeMujoco()
+    val surround = Surround(6)
+    val judged   = Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
+    val team     = TeamCandidate(Engagement.of(surround.fleet, 3), judged)
+    for timing <- loops do
+      val engine = TeamBatch(timing, model, threads = 1).engine(team)
+      assert(engine.startsWith("scalar: "), s"${timing.productPrefix}: $engine")
