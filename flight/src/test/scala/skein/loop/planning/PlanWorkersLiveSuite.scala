@@ -31,7 +31,10 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   private def warm(problem: PlanProblem): JointPlan = JointPlanner().resumed(problem, None)
 
   private val workers =
-    FunFixture[ThreadedPlanWorkers](_ => ThreadedPlanWorkers(2, BackgroundThread.factory("skein-plan")), _.close())
+    FunFixture[ThreadedPlanWorkers](
+      _ => ThreadedPlanWorkers(2, BackgroundThread.factory("skein-plan")),
+      _.close()
+    )
 
   /** Polls until all searches have come so far. */
   private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
