@@ -77,13 +77,14 @@ private object BetaflightFlight:
         during(0.5)((_, _) => control.move(0, 0, 0, 0, arms = false))
         during(0.5)((_, _) => control.move(0, 0, 0, 0, arms = true))
         control.isArmed
-      during(RisesS)(hold)
+      if isArmed then during(RisesS)(hold)
       val before = control.updates
       control.longestPauseNanos = 0
-      var worst = 0.0
-      during(holdsS): (seen, dtS) =>
-        worst = worst.max((seen.positionNed - goal).norm)
-        hold(seen, dtS)
+      var worst = if isArmed then 0.0 else goal.norm
+      if isArmed then
+        during(holdsS): (seen, dtS) =>
+          worst = worst.max((seen.positionNed - goal).norm)
+          hold(seen, dtS)
       BetaflightFlight(
         isArmed,
         worst,

@@ -23,16 +23,20 @@ class BetaflightLiveSuite extends munit.FunSuite, Waiting:
     val firmware = Betaflight.firmware()
     assume(firmware.isRight, s"Betaflight's SITL cannot be built here: ${firmware.swap.getOrElse("")}")
     assume(Betaflight.arePortsFree, "another program has Betaflight's ports")
-    val flight  = BetaflightFlight.fly(firmware.toOption.get, holdsS = 10, speed = 0.5)
-    val hovered = flight.isArmed && flight.worstM < 0.3
-    val isCalm  = flight.updatesPerS >= CalmUpdatesPerS && flight.longestPauseS <= CalmPauseS
-    println(flight)
-    if !hovered && !isCalm then
-      // .ci/run counts such lines.
-      println("INCONCLUSIVE: the machine is too busy for Betaflight's loop")
-    assume(hovered || isCalm, "inconclusive")
-    assert(hovered, s"$flight\n${flight.track}")
+    def fly() =
+      val flight = BetaflightFlight.fly(firmware.toOption.get, holdsS = 10, speed = 0.5)
+      println(flight)
+      flight
+    def hovered(flight: BetaflightFlight) = flight.isArmed && flight.worstM < 0.3
+    def isCalm(flight: BetaflightFlight)  =
+      flight.updatesPerS >= CalmUpdatesPerS && flight.longestPauseS <= CalmPauseS
+    // A machine may be busy, or Betaflight hang; it is not so each time.
+    val telling = Iterator.continually(fly()).take(3).find(flight => hovered(flight) || isCalm(flight))
+    // .ci/run counts such lines.
+    if telling.isEmpty then println("INCONCLUSIVE: the machine is too busy for Betaflight's loop")
+    assume(telling.isDefined, "inconclusive")
+    assert(telling.exists(hovered), telling.map(_.track).mkString)
 
   /** Of 500. With a quarter of them missing it swings by a metre. */
-  private val CalmUpdatesPerS = 425
-  private val CalmPauseS      = 0.05
+  private val CalmUpdatesPerS = 400
+  private val CalmPauseS      = 0.2
