@@ -43,9 +43,13 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders:
     // With a pip of its own it would take twice the time.
     val made = ran("python3", "-m", "venv", "--without-pip", home.toString)
     assume(made.isRight, made.left.getOrElse(""))
-    val pip       = "python3 -m pip --python PLACE install --quiet --disable-pip-version-check --no-compile".split(' ')
+    val pip =
+      "python3 -m pip --python PLACE install --quiet --disable-pip-version-check --no-compile".split(' ')
     val installed = ran(
-      pip.updated(pip.indexOf("PLACE"), home.toString).toSeq :+ s"skein-uav[learn] @ ${wheel.toOption.get.toUri}"*
+      pip.updated(
+        pip.indexOf("PLACE"),
+        home.toString
+      ).toSeq :+ s"skein-uav[learn] @ ${wheel.toOption.get.toUri}"*
     )
     assert(installed.isRight, installed.left.getOrElse(""))
 
