@@ -1,5 +1,6 @@
 package skein.flight
 
+import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{EventKind, Recording}
 import skein.scenario.{Convoy, Result, Tracks}
@@ -12,6 +13,9 @@ import skein.vehicle.VehicleKind
 
 /** Two cars and three drones, in virtual time. */
 class ConvoySimulation extends munit.FunSuite, Optimised:
+  // On a busy machine.
+  override val munitTimeout: Duration = 3.minutes
+
   private def flown(loop: LoopKind, link: LatencyProfile): (Recording, Result) =
     val settings =
       FlySettings(List(loop), List(link), Span.ofSeconds(25), Span.ofMillis(100), 1, Convoy())

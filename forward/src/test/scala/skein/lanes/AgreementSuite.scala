@@ -37,7 +37,7 @@ class AgreementSuite extends munit.FunSuite:
     timing                 <-
       Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = model.predictor))
   do
-    test(s"$pursuer against $evader, ${timing.productPrefix}: the same decisions in every world"):
+    test(s"$pursuer against $evader, ${timing.productPrefix}: the same decisions in each world compared"):
       val seed     = 19L
       val random   = SplitMix64(seed)
       val hunters  = Vector.fill(worlds)(drawPursuer(random))

@@ -50,7 +50,7 @@ class SightAgreementSuite extends munit.FunSuite:
     )
     episode <- 0 until 3
   do
-    test(s"${timing.productPrefix}, episode $episode: the same is found and decided in every world"):
+    test(s"${timing.productPrefix}, episode $episode: the same is found and decided in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)
       val forms    = EyeLanes.of(camera).fold(fail(_), identity)
       val eye      = LoggedEye(forms, duel.pursuer, duel.evader)

@@ -37,7 +37,7 @@ class TeamAgreementSuite extends munit.FunSuite:
     (name, draw) <- scenarios
     timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
   do
-    test(s"$name, ${timing.productPrefix}: the same decisions in every world, 6 s"):
+    test(s"$name, ${timing.productPrefix}: the same decisions in each world compared, 6 s"):
       val seed    = 23L
       val random  = SplitMix64(seed)
       val drawn   = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
