@@ -2,7 +2,6 @@ package skein.link
 
 import java.util.concurrent.ThreadFactory
 import java.util.concurrent.atomic.AtomicInteger
-import scala.util.Try
 
 /** Threads that give way to all others of the user's session.
   *
@@ -33,7 +32,7 @@ object BackgroundThread:
     *   how many the system made do so
     */
   def compilersGiveWay(): Int =
-    Try(SchedulingPolicy.threadsNamed(CompilerNames*).count(SchedulingPolicy.Idle.schedule)).getOrElse(0)
+    SchedulingPolicy.threadsNamed(CompilerNames*).count(SchedulingPolicy.Idle.schedule)
 
   /** As HotSpot calls its compiler threads. */
   private val CompilerNames = Vector("C1 Comp", "C2 Comp")

@@ -1,6 +1,7 @@
 package skein.link
 
 import java.lang.foreign.{Arena, FunctionDescriptor, Linker, ValueLayout}
+import java.lang.invoke.MethodHandle
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.{Try, Using}
@@ -34,20 +35,11 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
     *   whether the system did so
     */
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
-    val linker = Linker.nativeLinker()
-    val call   = linker.downcallHandle(
-      linker.defaultLookup().findOrThrow("sched_setscheduler"),
-      FunctionDescriptor.of(
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.JAVA_INT,
-        ValueLayout.ADDRESS
-      )
-    )
     Using.resource(Arena.ofConfined()): arena =>
       val parameter      = arena.allocateFrom(ValueLayout.JAVA_INT, priority)
       val flags          = if this == RealTime then SchedulingPolicy.ResetOnFork else 0
-      val result: AnyRef = call.invokeWithArguments(Int.box(thread), Int.box(number | flags), parameter)
+      val result: AnyRef =
+        SchedulingPolicy.setScheduler.invokeWithArguments(Int.box(thread), Int.box(number | flags), parameter)
       result == Int.box(0)
   .getOrElse(false)
 
@@ -57,14 +49,30 @@ object SchedulingPolicy:
   /** `SCHED_RESET_ON_FORK` in linux/sched.h. */
   private val ResetOnFork = 0x40000000
 
+  /** sched_setscheduler(2); to link it takes milliseconds, which no thread of control should spend twice. */
+  private lazy val setScheduler: MethodHandle =
+    val linker = Linker.nativeLinker()
+    linker.downcallHandle(
+      linker.defaultLookup().findOrThrow("sched_setscheduler"),
+      FunctionDescriptor.of(
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.JAVA_INT,
+        ValueLayout.ADDRESS
+      )
+    )
+
   /** The calling thread's number; none where the system tells none. */
   def thisThread: Option[Int] =
-    Option.when(isLinux)(Files.readSymbolicLink(Path.of("/proc/thread-self")).getFileName.toString.toInt)
+    if isLinux then
+      Try(Files.readSymbolicLink(Path.of("/proc/thread-self")).getFileName.toString.toInt).toOption
+    else None
 
-  /** This process's threads whose names begin so; the system knows 15 characters of a name. */
+  /** This process's threads whose names begin so; the system knows 15 characters of a name. None where it tells none. */
   def threadsNamed(beginnings: String*): Vector[Int] =
     if isLinux then
-      Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector)
+      Try(Using.resource(Files.list(Path.of("/proc/self/task")))(_.iterator.asScala.toVector))
+        .getOrElse(Vector.empty)
         .filter(task => beginnings.exists(nameOf(task).startsWith))
         .map(_.getFileName.toString.toInt)
     else Vector.empty

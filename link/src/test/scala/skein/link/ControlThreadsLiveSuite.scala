@@ -1,6 +1,6 @@
 package skein.link
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Path
 import java.util.concurrent.ConcurrentHashMap
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
@@ -42,19 +42,21 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
       assert(policiesOf("control-threads").contains(roundRobin))
 
   private def policyOnControl(using ExecutionContext): Future[Int] =
-    Future(policyOf(Path.of("/proc/thread-self")))
+    Future(ThreadPolicy.of(Path.of("/proc/thread-self")))
 
   /** Of the thread that timers run on. */
   private def onTimer(): Future[Int] =
     val found = Promise[Int]()
-    system.scheduler.scheduleOnce(1.milli)(found.success(policyOf(Path.of("/proc/thread-self"))): Unit)(using
+    system.scheduler.scheduleOnce(1.milli)(
+      found.success(ThreadPolicy.of(Path.of("/proc/thread-self"))): Unit
+    )(using
       ExecutionContext.parasitic
     )
     found.future
 
   private def childsPolicy(): Int =
     val found  = ConcurrentHashMap.newKeySet[Int]()
-    val thread = Thread(() => found.add(policyOf(Path.of("/proc/thread-self"))): Unit)
+    val thread = Thread(() => found.add(ThreadPolicy.of(Path.of("/proc/thread-self"))): Unit)
     thread.start()
     thread.join()
     found.asScala.head
@@ -73,9 +75,6 @@ class ControlThreadsLiveSuite extends munit.FunSuite:
       back
 
   private def policiesOf(beginning: String): Vector[Int] =
-    SchedulingPolicy.threadsNamed(beginning).map(thread => policyOf(Path.of(s"/proc/self/task/$thread")))
-
-  /** The 41st field of proc_pid_stat(5); the second may hold spaces, but ends with the last parenthesis. */
-  private def policyOf(thread: Path): Int =
-    val stat = Files.readString(thread.resolve("stat"))
-    stat.substring(stat.lastIndexOf(')') + 2).split(' ')(41 - 3).toInt
+    SchedulingPolicy.threadsNamed(beginning).map(thread =>
+      ThreadPolicy.of(Path.of(s"/proc/self/task/$thread"))
+    )
