@@ -19,15 +19,7 @@ class SightSuite extends munit.FunSuite:
     rangeSd = 1e-6,
     takes = LatencyDistribution.Constant(Span.Zero)
   )
-  private val camera = exact.copy(
-    everyS = 0.1,
-    fovRad = StrictMath.toRadians(100),
-    farthestM = 40,
-    detection = 0.95,
-    bearingSdRad = 0.002,
-    rangeSd = 0.03,
-    takes = LatencyDistribution.Uniform(Span.ofMillis(15), Span.ofMillis(120))
-  )
+  private val camera = GuideCamera.model
 
   private def duel(eye: Option[SensorModel]) =
     val paper = Duel.paper

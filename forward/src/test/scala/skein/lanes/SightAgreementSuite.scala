@@ -3,11 +3,10 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node, Trace}
 import skein.forward.*
-import skein.fusion.{Exposure, SensorModel}
+import skein.fusion.Exposure
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
-import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
-import skein.units.{Instant, Span}
+import skein.units.Instant
 
 /** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader in the same
   * pictures of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
@@ -19,16 +18,7 @@ class SightAgreementSuite extends munit.FunSuite:
 
   private val worlds = DuelKernel.WORLDS
   private val model  = Reduced.AirSim
-  private val camera = SensorModel(
-    everyS = 0.1,
-    fovRad = StrictMath.toRadians(100),
-    farthestM = 40,
-    detection = 0.95,
-    bearingSdRad = 0.002,
-    rangeBias = 1,
-    rangeSd = 0.03,
-    takes = LatencyDistribution.Uniform(Span.ofMillis(15), Span.ofMillis(120))
-  )
+  private val camera = GuideCamera.model
 
   // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
   private val duel = Duel.paper.copy(

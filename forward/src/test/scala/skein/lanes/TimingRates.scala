@@ -1,11 +1,8 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.fusion.SensorModel
 import skein.policy.*
-import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
-import skein.units.Span
 import skein.vehicle.ReducedModel
 
 /** How fast does each loop fly by lanes, beside the scalar engine? `forward/Test/runMain skein.lanes.timingRates [text]`:
@@ -20,17 +17,7 @@ import skein.vehicle.ReducedModel
     "quadrotor" -> VelocityResponses.quadrotor(),
     "bicycle"   -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))
   )
-  // As docs/guides/cameras.md has one.
-  val eye = SensorModel(
-    everyS = 0.1,
-    fovRad = StrictMath.toRadians(100),
-    farthestM = 40,
-    detection = 0.95,
-    bearingSdRad = 0.002,
-    rangeBias = 1,
-    rangeSd = 0.03,
-    takes = LatencyDistribution.Uniform(Span.ofMillis(15), Span.ofMillis(120))
-  )
+  val eye = GuideCamera.model
   for
     shared        <- Seq(true, false)
     (name, model) <- models
