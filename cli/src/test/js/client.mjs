@@ -1,6 +1,6 @@
 // Foxglove's own client: subscribes to every topic, holds every message to its topic's schema, and says what it saw.
 // node client.mjs FOLDER-OF-PACKAGES WEBSOCKET-URL SUBPROTOCOL READINGS TOPIC…, until it has seen so many readings and
-// something of each of these topics, or the connection or standard input ends
+// something of each of these topics, or 90 s have passed, or the connection or standard input ends
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
@@ -62,3 +62,4 @@ const tell = () => {
 };
 client.on("close", tell);
 process.stdin.on("end", tell).resume();
+setTimeout(tell, 90_000);

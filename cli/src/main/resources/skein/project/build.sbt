@@ -24,7 +24,7 @@ lazy val root = project
 val launch = taskKey[Unit]("writes what ./skein starts")
 
 lazy val options = Seq("--enable-native-access=ALL-UNNAMED", "--sun-misc-unsafe-memory-access=allow", "-Xlog:disable") ++
-  Seq("-XX:+UseParallelGC", "-Xms384m", "-Xmn256m")
+  Seq("-XX:+UseParallelGC", "-Xms384m", "-Xmn256m", "-XX:MaxTenuringThreshold=1")
 
 def agent(classpath: Def.Classpath): String =
   "-javaagent:" + classpath.files.find(_.getName.startsWith("skein-vtime-agent")).get
