@@ -187,7 +187,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders:
     val panels = layout("configById").obj
     val plots  = panels.values.flatMap(_.obj.get("paths").toSeq.flatMap(_.arr)).map(_("value").str).toSeq
     val path   = """(/[\w/]+)(?:\{vehicle=="\w+"\})?\.(\w+)""".r
-    assertEquals(plots.size, 11)
+    assertEquals(plots.size, 12)
     plots.foreach:
       case path(topic, field) => assert(schemas(topic)("properties").obj.contains(field), s"$topic.$field")
       case other              => fail(other)
