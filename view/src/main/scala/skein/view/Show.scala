@@ -3,6 +3,7 @@ package skein.view
 import org.apache.pekko.util.ByteString
 import scala.collection.immutable.VectorMap
 import scala.collection.mutable
+import scala.util.control.NonFatal
 import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
@@ -39,6 +40,12 @@ abstract class Show private[view] (
 
   /** Looks what is new, and tells the viewers. To be called some forty times a second. */
   def turn(now: Instant): Unit
+
+  /** A turn that fails tells the viewers why, and is followed by the next. */
+  private[view] final def attempt(now: Instant): Unit =
+    try turn(now)
+    catch
+      case NonFatal(error) => notice("failed", ServerText(Protocol.warning("failed", s"not shown: $error")))
 
   def control(playback: ClientMessage.Playback, now: Instant): Either[String, Unit]
 

@@ -81,7 +81,7 @@ object ViewServer:
       .run()
       .map: binding =>
         val turns = system.scheduler.scheduleWithFixedDelay(TurnEvery, TurnEvery)(() =>
-          shows.all.foreach(_.turn(clock.now()))
+          shows.all.foreach(_.attempt(clock.now()))
         )
         ViewServer(binding, counts, () => turns.cancel(): Unit)
       .recoverWith { case error => system.terminate().transformWith(_ => Future.failed(error)) }

@@ -122,6 +122,20 @@ class ShowSuite extends munit.FunSuite:
     for turn <- 0 to 40 do show.turn(at(10) + Span.ofMillis(25) * turn)
     assertEquals(asked, 3)
 
+  test("a turn that fails is told, and the next one comes"):
+    var asked   = 0
+    def graph() =
+      asked += 1
+      if asked == 1 then throw IllegalStateException("no graph yet") else "{}"
+    val gauge  = Gauge(Topic("/skein/graph", "skein.graph", "{}"), Span.ofMillis(500), graph)
+    val show   = LiveShow(heading, Feed(), Vector(gauge))
+    val viewer = watching(show, "/skein/graph")
+    show.attempt(at(10))
+    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerText(text) => text }
+    assert(told.exists(_.contains("no graph yet")), told.toString)
+    show.attempt(at(11))
+    assertEquals(seen(show, viewer).map(_.topic), Vector("/skein/graph"))
+
   test("a recording stands at its start, plays at its speed, and ends"):
     val show   = replay
     val viewer = watching(show, "/skein/reading")
