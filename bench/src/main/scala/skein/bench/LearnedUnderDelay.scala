@@ -15,7 +15,7 @@ import skein.training.*
   * teaches two of each side, on the paused simulator and under `stream` over `vpn`; both fly over `vpn` under `stream` and
   * `predictive` in virtual time, and where the simulator waits, beside the paper's policy and the best that a search finds:
   * `./skein search --family lead-pursuit --link vpn`, and `--family chauffeur-evader`. Run:
-  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100"`; what stands in the folder already is
+  * `./sbtw "bench/runMain skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and by a seed; what stands in the folder already is
   * gone on with. The picture stands there too.
   */
 object LearnedUnderDelay:
@@ -40,8 +40,9 @@ object LearnedUnderDelay:
     val folder  = Path.of(args.headOption.getOrElse("learned/under-delay"))
     val flights = args.lift(1).fold(100)(_.toInt)
     val sides   = args.lift(2).fold(Seq("pursuer", "evader"))(Seq(_))
+    val seed    = args.lift(3).getOrElse("1")
     val panels  = sides.map: side =>
-      val rows = flownBy(side, folder, flights)
+      val rows = flownBy(side, folder, flights, seed)
       println(
         s"| $side | loop | link | distance over the last 10 s, m: mean ± sd | ± 95 % | nearer than $CaptureM m in | flights |"
       )
@@ -56,9 +57,9 @@ object LearnedUnderDelay:
       case Right(bytes) => println(s"wrote ${Files.write(folder.resolve("learned-under-delay.png"), bytes)}")
       case Left(reason) => println(s"no picture: $reason")
 
-  private def flownBy(side: String, folder: Path, flights: Int): Vector[Row] =
+  private def flownBy(side: String, folder: Path, flights: Int, seed: String): Vector[Row] =
     val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
-      s"taught under $loop over $link" -> learned(folder.resolve(s"$side-$loop-$link"), side, loop, link)
+      s"taught under $loop over $link" -> learned(folder.resolve(s"$side-$loop-$link"), question(side, loop, link, seed))
     val role     = PolicyFile.role(side).fold(sys.error, identity)
     val searched =
       if role == Role.Pursuer then
@@ -78,7 +79,7 @@ object LearnedUnderDelay:
       (loop, link)   <- flown
       (name, policy) <- policies
     yield
-      val flown = question(side, loop, link).setup
+      val flown = question(side, loop, link, seed).setup
         .flatMap(LearnCommand.summaries(_, policy, if loop == "paused" then 1 else flights))
         .fold(sys.error, identity)
         .flatMap(_.distance)
@@ -91,26 +92,28 @@ object LearnedUnderDelay:
         flown.count(_.closest._2 <= CaptureM)
       )
 
-  private def question(side: String, loop: String, link: String): LearnQuestion =
+  private def question(side: String, loop: String, link: String, seed: String): LearnQuestion =
     LearnCommand
       .question(
-        ParserForClass[LearnOptions].constructOrThrow(Seq("--side", side, "--loop", loop, "--link", link))
+        ParserForClass[LearnOptions].constructOrThrow(
+          Seq("--side", side, "--loop", loop, "--link", link, "--seed", seed)
+        )
       )
       .fold(sys.error, identity)
 
   /** Learns, or goes on with what is there. */
-  private def learned(folder: Path, side: String, loop: String, link: String): PolicyFile =
+  private def learned(folder: Path, wanted: LearnQuestion): PolicyFile =
     Files.createDirectories(folder): Unit
     val (asked, from) = LearnFile.read(folder) match
       case Right(file) => (file.question, file.state)
-      case Left(_)     => (question(side, loop, link), LearnState())
+      case Left(_)     => (wanted, LearnState())
     val setup = asked.setup.fold(sys.error, identity)
     val cpu   = ProcessHandle.current.info.totalCpuDuration
     val state = LearnRun(setup, setup.judges(2)(Judge.Candidates), Some(folder), () => System.nanoTime())
       .run(from, 2, () => false)(state =>
         if state.rounds % 10 == 0 then
           Console.err.println(
-            s"$side, $loop over $link: ${state.rounds} of ${setup.rounds} rounds, best ${state.best.fold(0.0)(_.mean)} m"
+            s"$folder: ${state.rounds} of ${setup.rounds} rounds, best ${state.best.fold(0.0)(_.mean)} m"
           )
       )
       .fold(sys.error, identity)
