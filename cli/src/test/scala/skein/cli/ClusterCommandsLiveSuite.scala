@@ -12,7 +12,6 @@ import skein.testing.{Optimised, TemporaryFolders}
 
 /** Searches by processes of this machine, over loopback. */
 class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 10.minutes
   private given ExecutionContext      = ExecutionContext.global
 
   private val question =

@@ -29,8 +29,6 @@ class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.
   * loopback.
   */
 abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
-
   private given system: ActorSystem = ActorSystem("documented-commands")
   private lazy val folder           = Files.createTempDirectory("documented")
   private lazy val server           = Edge.await(
@@ -88,9 +86,9 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     */
   private def shortened(words: Seq[String], out: Path, live: String = "2s"): Seq[String] =
     val more = words.head match
-      case "fly" if words.contains("virtual")       => Seq("--duration", "4s")
+      case "fly" if words.contains("virtual")       => Seq("--duration", "2s")
       case "fly"                                    => Seq("--duration", live, "--twins", "0")
-      case "spread"                                 => Seq("--seeds", "2", "--duration", "4s")
+      case "spread"                                 => Seq("--seeds", "2", "--duration", "2s")
       case "search" if words.contains("--scenario") => team
       case "search"                                 => forward
       case "learn"                                  => learn

@@ -4,16 +4,14 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.util.concurrent.{CountDownLatch, TimeUnit}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.Future
-import scala.concurrent.duration.*
 import skein.optimise.Evaluator
 import skein.scenario.Scenarios
 import skein.search.{ClusterEvaluator, BlockExecutor, Judge}
 import skein.settings.PolicyFile
+import skein.testing.Unhurried
 import skein.training.{LearnRun, LearnState}
 
-class LearnWorkSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
-
+class LearnWorkSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
   private val question = LearnCommand

@@ -14,8 +14,6 @@ import skein.testing.{Optimised, TemporaryFolders}
   * processes over loopback.
   */
 class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 10.minutes
-
   private lazy val parent = temporaryFolder()
 
   private val question =

@@ -1,15 +1,12 @@
 package skein.cli
 
 import java.nio.file.Files
-import scala.concurrent.duration.*
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Flights through faults by processes of this machine, over loopback. Like this JVM they spare optimising, which takes
   * more of the processor's time than such flights.
   */
-class TortureElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 10.minutes
-
+class TortureElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test(
     "flights are flown by two processes, each once, and not again by the same command, which starts nobody"
   ):

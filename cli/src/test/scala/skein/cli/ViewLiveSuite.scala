@@ -6,7 +6,7 @@ import java.net.http.HttpResponse.BodyHandlers
 import java.net.http.{HttpClient, HttpRequest}
 import java.nio.file.Path
 import java.util.concurrent.Executors
-import scala.concurrent.duration.{Duration, DurationInt}
+import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, ExecutionContext, Future}
 import scala.util.Using
 import skein.record.*
@@ -20,8 +20,6 @@ import skein.view.{RecordedShow, Shows, ViewServer}
 class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Timing:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
-
-  override val munitTimeout: Duration = 5.minutes
 
   private def needed[A](tool: Either[String, A]): A =
     tool.left.foreach(why => assume(false, why))

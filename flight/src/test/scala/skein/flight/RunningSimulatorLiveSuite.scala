@@ -19,7 +19,6 @@ import skein.units.*
 class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
   private given system: ActorSystem   = ActorSystem("RunningSimulatorLiveSuite")
   override def afterAll(): Unit       = { val _ = Await.result(system.terminate(), 10.seconds) }
-  override val munitTimeout: Duration = 3.minutes
 
   private val settings = FlySettings(
     List(LoopKind.Stream, LoopKind.Futures),

@@ -6,12 +6,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.vehicle.ReducedModel
 
-class TeamLanesSuite extends munit.FunSuite:
-  // Until it is compiled, much arithmetic takes its time.
-  override val munitTimeout: scala.concurrent.duration.Duration = scala.concurrent.duration.Duration(3, "min")
-
+class TeamLanesSuite extends munit.FunSuite, Unhurried:
   private val worlds = TimetableKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val links  = Seq("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)

@@ -13,7 +13,8 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders:
   /** Starts [[RecordUntilStopped]]; what the database unpacks goes into the file's folder. */
   private def child(file: Path): Process =
     val java    = Path.of(System.getProperty("java.home"), "bin", "java").toString
-    val command = List(java, "--enable-native-access=ALL-UNNAMED", s"-Djava.io.tmpdir=${file.getParent}") ++
+    val options = List("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "--enable-native-access=ALL-UNNAMED")
+    val command = (java +: options :+ s"-Djava.io.tmpdir=${file.getParent}") ++
       List("-cp", System.getProperty("java.class.path"), "skein.record.RecordUntilStopped", file.toString)
     ProcessBuilder(command.asJava).redirectError(ProcessBuilder.Redirect.INHERIT).start()
 
