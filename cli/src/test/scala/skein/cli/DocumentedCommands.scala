@@ -23,6 +23,9 @@ class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.K
 class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Alone,
       Optimised
 
+/** Forward simulation, by vectors. */
+class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Alone, Optimised
+
 class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone, Optimised
 
 /** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
@@ -263,7 +266,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
 
 object DocumentedCommands:
   enum Kind:
-    case Flight, Cluster, Other
+    case Flight, Cluster, Search, Other
 
   /** The guides' flights by the clock, where the clock is not what they are about: those of the README are flown live. */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
@@ -282,4 +285,5 @@ object DocumentedCommands:
     if words.head == "fly" && !words.contains("virtual") then Kind.Flight
     else if Set("cluster", "worker")(words.head) || words.exists(Set("--cluster", "--workers")) then
       Kind.Cluster
+    else if Set("search", "learn", "budget")(words.head) then Kind.Search
     else Kind.Other

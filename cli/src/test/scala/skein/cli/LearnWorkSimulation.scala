@@ -18,7 +18,7 @@ class LearnWorkSimulation extends munit.FunSuite, Unhurried:
     .question(
       mainargs
         .ParserForClass[LearnOptions]
-        .constructOrThrow("--network 4 --fresh 40 --duration 12s --seed 3".split(' ').toSeq)
+        .constructOrThrow("--network 4 --fresh 24 --duration 12s --seed 3".split(' ').toSeq)
     )
     .fold(fail(_), identity)
   private val setup  = question.setup.fold(fail(_), identity)
@@ -40,8 +40,8 @@ class LearnWorkSimulation extends munit.FunSuite, Unhurried:
     for judge <- Seq(Judge.Winner, Judge.Baseline) do
       val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
       val candidates = Vector(if judge == Judge.Baseline then setup.baseline.candidate else policy.parameters)
-      val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 40)
-      assertEquals(elsewhere.tallies(candidates, 0 until 40), here)
+      val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 24)
+      assertEquals(elsewhere.tallies(candidates, 0 until 24), here)
 
   test("so do flights in virtual time"):
     val here = LearnCommand.flown(setup, policy, 2).fold(fail(_), identity)

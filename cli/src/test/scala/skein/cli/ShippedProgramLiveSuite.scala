@@ -17,7 +17,7 @@ class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Optimise
   private lazy val parent = temporaryFolder()
 
   private val question =
-    "search --family doubting --method random --candidates 200 --episodes 4 --fresh 16 --duration 12s"
+    "search --family doubting --method random --candidates 64 --episodes 4 --fresh 16 --duration 12s"
       .split(' ')
       .toSeq
 

@@ -3,10 +3,10 @@ package skein.record
 import java.io.{BufferedReader, InputStreamReader}
 import java.nio.file.Path
 import scala.jdk.CollectionConverters.*
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Needs the real clock and processes of its own: what survives a kill is seen only in another process. */
-class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders:
+class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def read(file: Path): Recording = RecordingReader.read(file).fold(e => fail(e.message), identity)
 
