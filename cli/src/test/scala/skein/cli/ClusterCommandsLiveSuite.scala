@@ -12,7 +12,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 
 /** Searches by processes of this machine, over loopback. */
 class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  private given ExecutionContext      = ExecutionContext.global
+  private given ExecutionContext = ExecutionContext.global
 
   private val question =
     "search --family paper-pursuer --method random --candidates 1000 --episodes 10 --fresh 16 --duration 20s"

@@ -17,7 +17,11 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val agent =
       ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.filter(_.startsWith("-javaagent"))
     val java =
-      Seq(s"${sys.props("java.home")}/bin/java", "-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC") ++ agent ++ jvm
+      Seq(
+        s"${sys.props("java.home")}/bin/java",
+        "-XX:TieredStopAtLevel=1",
+        "-XX:+UseSerialGC"
+      ) ++ agent ++ jvm
     val words      = java ++ Seq("-cp", sys.props("java.class.path"), "skein.cli.Main") ++ arguments
     val (out, err) = (in.resolve("out.txt"), in.resolve("err.txt"))
     val shell      = ProcessBuilder((Seq("bash", "-c", s"$before exec \"$$@\"", "skein") ++ words)*)

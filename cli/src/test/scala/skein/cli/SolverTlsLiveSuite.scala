@@ -22,8 +22,8 @@ import skein.units.*
 
 /** Solvers that show certificates, and ask for them, on loopback. */
 class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given system: ActorSystem   = ActorSystem("SolverTlsLiveSuite")
-  private given Scenarios             = Scenarios.ours
+  private given system: ActorSystem = ActorSystem("SolverTlsLiveSuite")
+  private given Scenarios           = Scenarios.ours
   import system.dispatcher
 
   override def afterAll(): Unit =

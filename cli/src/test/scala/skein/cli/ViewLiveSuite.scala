@@ -60,7 +60,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
             ) ++ SeenTopics*
           )
         )(using threads)
-      val told = saids.map((protocol, said) => protocol -> Await.result(said, 4.minutes))
+      val told   = saids.map((protocol, said) => protocol -> Await.result(said, 4.minutes))
       val topics = FlightTopics.all(Vehicles).map(_.name).toSet ++ Sights + "/skein/graph"
       val seens  = told.map((protocol, said) => protocol -> ujson.read(said.fold(fail(_), identity)))
       // Before the flight is ended, which has ended by itself where something never came.

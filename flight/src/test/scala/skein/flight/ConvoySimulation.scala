@@ -18,7 +18,7 @@ class ConvoySimulation extends munit.FunSuite, Optimised:
   private def flown(loop: LoopKind, link: LatencyProfile): (Recording, Result) =
     val duration = Span.ofSeconds(if overtaxed(loop) then 20 else 25)
     val settings = FlySettings(List(loop), List(link), duration, Span.ofMillis(100), 1, Convoy())
-    val flight = VirtualFlights.fly(settings, settings.plans.head).fold(fail(_), identity)
+    val flight   = VirtualFlights.fly(settings, settings.plans.head).fold(fail(_), identity)
     assertEquals(flight.landed.outcome, Outcome.Completed)
     val recording = flight.recorder.recording
     (recording, Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get))

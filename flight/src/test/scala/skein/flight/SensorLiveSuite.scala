@@ -16,8 +16,8 @@ import skein.units.*
 
 /** Over real sockets and on the real clock, every loop side by side: AirSim's sensors in decisions. */
 class SensorLiveSuite extends munit.FunSuite, Unhurried:
-  private given system: ActorSystem   = ActorSystem("SensorLiveSuite")
-  override def afterAll(): Unit       = { val _ = Await.result(system.terminate(), 10.seconds) }
+  private given system: ActorSystem = ActorSystem("SensorLiveSuite")
+  override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 
   /** Keeps the altitude above sea level that it finds. */
   private object KeepAltitude extends AgentPolicy:

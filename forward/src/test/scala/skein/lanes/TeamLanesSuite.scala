@@ -78,8 +78,8 @@ class TeamLanesSuite extends munit.FunSuite, Unhurried:
     timing         <- loops
     (linked, link) <- links
   do
-    test(s"$name, $timing over $linked: every world flies as by the scalar reference, 10 s to 2 mm"):
-      agree(draw, timing, link, lag, 2e-3)
+    test(s"$name, $timing over $linked: every world flies as by the scalar reference, 6 s to 2 mm"):
+      agree(draw, timing, link, lag, 2e-3, 6)
 
   for
     (name, draw)   <- scenarios
@@ -98,7 +98,7 @@ class TeamLanesSuite extends munit.FunSuite, Unhurried:
       link: Delays,
       plant: VelocityResponse,
       mostM: Double,
-      durationS: Double = 10,
+      durationS: Double,
       every: Int = 13
   ): Unit =
     val random = SplitMix64(7)

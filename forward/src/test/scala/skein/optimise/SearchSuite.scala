@@ -118,7 +118,7 @@ class SearchSuite extends munit.FunSuite, Unhurried:
       assert(mistake.getMessage.contains("expected at most 16777216"), mistake.getMessage)
 
   private val lag   = Reduced(0.9, 0.8, 0.05)
-  private val short = Duel.paper.copy(durationS = 30)
+  private val short = Duel.paper.copy(durationS = 15)
 
   private def game(threads: Int): Evaluator = DuelEvaluator(
     DuelBatch(short, LoopTiming.Stream(), lag, threads),

@@ -26,7 +26,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Timing:
   private val settling              = 5
   private val messages              = 30
 
-  override def afterAll(): Unit       = system.terminate(): Unit
+  override def afterAll(): Unit = system.terminate(): Unit
 
   private def stamp(): ByteString = ByteStringBuilder().putLong(System.nanoTime()).result()
 

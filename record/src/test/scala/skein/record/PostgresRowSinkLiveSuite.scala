@@ -10,7 +10,7 @@ import skein.testing.{TemporaryFolders, Unhurried}
 
 /** A real Postgres, in a process of its own. */
 class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given system: ActorSystem   = ActorSystem("PostgresRowSinkLiveSuite")
+  private given system: ActorSystem = ActorSystem("PostgresRowSinkLiveSuite")
 
   private lazy val server: Try[EmbeddedPostgres] = Try(EmbeddedPostgres.builder().start())
 
