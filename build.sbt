@@ -68,7 +68,8 @@ lazy val core = project
 /** Forward simulation, search, identification, planning. No Pekko. */
 lazy val forward = project
   .settings(artifact("forward", "Forward simulation, search, identification, planning"))
-  .dependsOn(core).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
+  .dependsOn(core, testing % Test)
+  .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Bodies whose physics is MuJoCo's, by its C library, which is found where it is installed. No Pekko. */
 lazy val mujoco = project
@@ -99,7 +100,7 @@ lazy val underAgent = Seq(
 /** Any Pekko graph in virtual time. Depends on Pekko alone. */
 lazy val vtime = project
   .settings(artifact("vtime", "Any Pekko graph in virtual time"))
-  .dependsOn(vtimeAgent)
+  .dependsOn(vtimeAgent, testing % Test)
   .settings(underAgent, libraryDependencies ++= pekkoStream ++ munit ++ pekkoTyped.map(_ % Test))
 
 /** Transport, and the emulated network. */
@@ -208,7 +209,8 @@ lazy val environment = project
 /** Learners of policies. */
 lazy val learn = project
   .settings(artifact("learn", "SAC, DDPG and PPO for policies under a loop's timing"))
-  .dependsOn(environment).settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
+  .dependsOn(environment, testing % Test)
+  .settings(Jvm.vectorModule, testsCompute := true, libraryDependencies ++= munit)
 
 /** Solvers behind a Kafka broker, and such a broker for tests and for the first try. Its libraries are large. */
 lazy val kafka = project

@@ -36,18 +36,18 @@ object TestGroups extends AutoPlugin {
       def is(suite: TestDefinition, mark: String) =
         IO.read(classes / s"${suite.name.replace('.', '/')}.class").contains(s"skein/testing/$mark")
       val groups = (Test / definedTests).value.groupBy { suite =>
-        val name = if (is(suite, "Alone")) suite.name else Seq("Timing", "Waiting").find(is(suite, _)).getOrElse("")
-        (name, computes || is(suite, "Optimised"))
+        val alone = if (is(suite, "Alone")) suite.name else ""
+        (alone, Seq("Timing", "Waiting").find(is(suite, _)).getOrElse(""), computes || is(suite, "Optimised"))
       }
-      groups.toSeq.sortBy(_._1).map { case ((name, isOptimised), suites) =>
-        val (more, tags) = name match {
+      groups.toSeq.sortBy(_._1).reverse.map { case ((alone, kind, isOptimised), suites) =>
+        val (more, tags) = kind match {
           case "Timing"         => (Nil, Seq(Timing -> 1))
           case "Waiting"        => (Jvm.brief, Seq(Waiting -> 1))
           case _ if isOptimised => (Jvm.oneCollector, Nil)
           case _                => (Jvm.brief, Nil)
         }
         val jvm = Tests.SubProcess(options.withRunJVMOptions(options.runJVMOptions ++ more))
-        new Tests.Group(s"$name, optimised: $isOptimised", suites, jvm, tags)
+        new Tests.Group(s"$alone $kind, optimised: $isOptimised", suites, jvm, tags)
       }
     }
   )

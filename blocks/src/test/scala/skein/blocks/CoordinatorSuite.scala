@@ -87,13 +87,13 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
   do
     folder.test(s"every block counts once, and the answer is one process's to the bit: $name"): folder =>
       var restarts = 0
-      for seed <- 1L to 30L do
+      for seed <- 1L to 12L do
         val flown = CoordinatorSimulation(seed, workers = 5, blocks = 60, folder)
         flown.fly(deaths, cuts, restarts = if seed % 2 == 0 then Seq(10, 25) else Nil)()
         restarts += flown.restarts
         assertRight(flown, 60, s"seed $seed")
         Files.delete(flown.file)
-      assert(clue(restarts) > 25)
+      assert(clue(restarts) > 10)
 
   folder.test("a thousand workers of heavy-tailed speeds, of whom some die and many are cut off at once"):
     folder =>

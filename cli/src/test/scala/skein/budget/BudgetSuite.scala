@@ -1,6 +1,5 @@
 package skein.budget
 
-import scala.concurrent.duration.*
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
 import skein.plot.Shape
 import skein.policy.{PolicyFamily, Role}
@@ -10,8 +9,6 @@ import skein.settings.PolicyFile
 import skein.testing.Optimised
 
 class BudgetSuite extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 2.minutes
-
   private val paper = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
 
   private val axes = BudgetAxes.of(200, 5, 60, 3)

@@ -2,7 +2,6 @@ package skein.budget
 
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.Future
-import scala.concurrent.duration.*
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.Scenarios
 import skein.search.{Conditions, BlockExecutor}
@@ -12,8 +11,6 @@ import skein.testing.Optimised
 import skein.units.Span
 
 class ClusterSubjectSuite extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 2.minutes
-
   private given Scenarios = Scenarios.ours
 
   private val questions = Vector[BudgetQuestion](

@@ -1,6 +1,5 @@
 package skein.budget
 
-import scala.concurrent.duration.*
 import skein.scenario.*
 import skein.search.Conditions
 import skein.signal.LatencyDistribution
@@ -8,8 +7,6 @@ import skein.testing.Optimised
 import skein.units.*
 
 class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 2.minutes
-
   private val surround = Surround(vehicles = 4)
 
   private def question(scenario: Scenario, objective: Option[String], conditions: Conditions, threads: Int) =

@@ -12,16 +12,15 @@ import skein.testing.{Optimised, TemporaryFolders}
 
 /** Searches by processes of this machine, over loopback. */
 class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 10.minutes
-  private given ExecutionContext      = ExecutionContext.global
+  private given ExecutionContext = ExecutionContext.global
 
   private val question =
-    "search --family paper-pursuer --method random --candidates 2000 --episodes 10 --fresh 16 --duration 20s"
+    "search --family paper-pursuer --method random --candidates 1000 --episodes 10 --fresh 16 --duration 20s"
       .split(' ')
       .toSeq
 
   /** Half a second's blocks would be too few to be interrupted in. */
-  private def elsewhere(workers: Int) = Seq("--workers", workers.toString, "--block", "512")
+  private def elsewhere(workers: Int) = Seq("--workers", workers.toString, "--block", "256")
 
   private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)

@@ -23,14 +23,15 @@ class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.K
 class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Alone,
       Optimised
 
+/** Forward simulation, by vectors. */
+class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Alone, Optimised
+
 class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone, Optimised
 
 /** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
   * loopback.
   */
 abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
-
   private given system: ActorSystem = ActorSystem("documented-commands")
   private lazy val folder           = Files.createTempDirectory("documented")
   private lazy val server           = Edge.await(
@@ -88,9 +89,9 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     */
   private def shortened(words: Seq[String], out: Path, live: String = "2s"): Seq[String] =
     val more = words.head match
-      case "fly" if words.contains("virtual")       => Seq("--duration", "4s")
+      case "fly" if words.contains("virtual")       => Seq("--duration", "2s")
       case "fly"                                    => Seq("--duration", live, "--twins", "0")
-      case "spread"                                 => Seq("--seeds", "2", "--duration", "4s")
+      case "spread"                                 => Seq("--seeds", "2", "--duration", "2s")
       case "search" if words.contains("--scenario") => team
       case "search"                                 => forward
       case "learn"                                  => learn
@@ -265,7 +266,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
 
 object DocumentedCommands:
   enum Kind:
-    case Flight, Cluster, Other
+    case Flight, Cluster, Search, Other
 
   /** The guides' flights by the clock, where the clock is not what they are about: those of the README are flown live. */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
@@ -284,4 +285,5 @@ object DocumentedCommands:
     if words.head == "fly" && !words.contains("virtual") then Kind.Flight
     else if Set("cluster", "worker")(words.head) || words.exists(Set("--cluster", "--workers")) then
       Kind.Cluster
+    else if Set("search", "learn", "budget")(words.head) then Kind.Search
     else Kind.Other

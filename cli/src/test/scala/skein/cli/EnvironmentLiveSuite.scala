@@ -3,14 +3,11 @@ package skein.cli
 import java.lang.management.ManagementFactory
 import java.nio.charset.StandardCharsets.{ISO_8859_1, US_ASCII, UTF_8}
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Commands as users start them, each in a process of its own, in environments that are not ours. */
-class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 3.minutes
-
+class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private case class Ended(status: Int, out: String, err: String)
 
   /** @param before
@@ -20,7 +17,11 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders:
     val agent =
       ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.filter(_.startsWith("-javaagent"))
     val java =
-      Seq(s"${sys.props("java.home")}/bin/java", "-XX:TieredStopAtLevel=1", "-Xshare:auto") ++ agent ++ jvm
+      Seq(
+        s"${sys.props("java.home")}/bin/java",
+        "-XX:TieredStopAtLevel=1",
+        "-XX:+UseSerialGC"
+      ) ++ agent ++ jvm
     val words      = java ++ Seq("-cp", sys.props("java.class.path"), "skein.cli.Main") ++ arguments
     val (out, err) = (in.resolve("out.txt"), in.resolve("err.txt"))
     val shell      = ProcessBuilder((Seq("bash", "-c", s"$before exec \"$$@\"", "skein") ++ words)*)

@@ -1,7 +1,6 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import skein.scenario.Scenarios
 import skein.search.Judge
 import skein.settings.PolicyFile
@@ -10,8 +9,6 @@ import skein.training.*
 
 class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
-
-  override val munitTimeout: Duration = 5.minutes
 
   private val short =
     ("--steps 2000 --environments 16 --lesson 5s --network 8 --episodes 2 --fresh 4 --flights 1 " +

@@ -4,23 +4,21 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.util.concurrent.{CountDownLatch, TimeUnit}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.Future
-import scala.concurrent.duration.*
 import skein.optimise.Evaluator
 import skein.scenario.Scenarios
 import skein.search.{ClusterEvaluator, BlockExecutor, Judge}
 import skein.settings.PolicyFile
+import skein.testing.Unhurried
 import skein.training.{LearnRun, LearnState}
 
-class LearnWorkSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
-
+class LearnWorkSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
   private val question = LearnCommand
     .question(
       mainargs
         .ParserForClass[LearnOptions]
-        .constructOrThrow("--network 4 --fresh 40 --duration 12s --seed 3".split(' ').toSeq)
+        .constructOrThrow("--network 4 --fresh 24 --duration 12s --seed 3".split(' ').toSeq)
     )
     .fold(fail(_), identity)
   private val setup  = question.setup.fold(fail(_), identity)
@@ -42,8 +40,8 @@ class LearnWorkSimulation extends munit.FunSuite:
     for judge <- Seq(Judge.Winner, Judge.Baseline) do
       val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
       val candidates = Vector(if judge == Judge.Baseline then setup.baseline.candidate else policy.parameters)
-      val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 40)
-      assertEquals(elsewhere.tallies(candidates, 0 until 40), here)
+      val here       = setup.judges(threads = 2)(judge).tallies(candidates, 0 until 24)
+      assertEquals(elsewhere.tallies(candidates, 0 until 24), here)
 
   test("so do flights in virtual time"):
     val here = LearnCommand.flown(setup, policy, 2).fold(fail(_), identity)

@@ -3,14 +3,12 @@ package skein.cli
 import java.net.URI
 import java.net.http.{HttpClient, HttpRequest, HttpResponse}
 import mainargs.Flag
-import scala.concurrent.duration.*
 import scala.util.Using
 import skein.cluster.Endpoint
+import skein.testing.Unhurried
 
 /** Over loopback. */
-class MetricsServerSuite extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
-
+class MetricsServerSuite extends munit.FunSuite, Unhurried:
   private val anyPort = Endpoint("127.0.0.1", 0)
 
   test("tells how it goes each time anew, to whoever asks for it and is no page of another site"):

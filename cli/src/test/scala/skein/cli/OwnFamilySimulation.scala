@@ -1,7 +1,6 @@
 package skein.cli
 
 import java.nio.file.Files
-import scala.concurrent.duration.*
 import scala.util.Using
 import skein.policy.*
 import skein.scenario.Scenarios
@@ -30,8 +29,6 @@ object Doubters extends SkeinApp(Scenarios.ours.kinds*):
     )
 
 class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 2.minutes
-
   private def run(program: SkeinApp, words: String): (Int, String) =
     val ran = Ran.of(program.run(words.split(' ').toSeq))
     (ran.status, ran.said)

@@ -2,7 +2,6 @@ package skein.cli
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import scala.util.Using
 import skein.docs.Documentation
 import skein.flight.VirtualFlights
@@ -16,14 +15,12 @@ import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, ModelFile, PredictionModel}
 import skein.signal.LatencyProfile
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Span
 import skein.vehicle.ReducedModel
 
-class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders:
+class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
-
-  override val munitTimeout: Duration = 2.minutes
 
   private val recordings = FunFixture[Path](
     _ =>

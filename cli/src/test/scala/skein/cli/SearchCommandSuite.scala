@@ -1,11 +1,8 @@
 package skein.cli
 
-import scala.concurrent.duration.*
 import skein.testing.{Optimised, TemporaryFolders}
 
 class SearchCommandSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 2.minutes
-
   test("with --json a search prints its result as data, and all else to the error output"):
     val words =
       "search --family lead-pursuit --candidates 8 --episodes 1 --fresh 2 --duration 12s --json --out".split(

@@ -14,12 +14,10 @@ import skein.testing.{Optimised, TemporaryFolders}
   * processes over loopback.
   */
 class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 10.minutes
-
   private lazy val parent = temporaryFolder()
 
   private val question =
-    "search --family doubting --method random --candidates 200 --episodes 4 --fresh 16 --duration 12s"
+    "search --family doubting --method random --candidates 64 --episodes 4 --fresh 16 --duration 12s"
       .split(' ')
       .toSeq
 

@@ -17,14 +17,13 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.*
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 
 /** Solvers that show certificates, and ask for them, on loopback. */
-class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 2.minutes
-  private given system: ActorSystem   = ActorSystem("SolverTlsLiveSuite")
-  private given Scenarios             = Scenarios.ours
+class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+  private given system: ActorSystem = ActorSystem("SolverTlsLiveSuite")
+  private given Scenarios           = Scenarios.ours
   import system.dispatcher
 
   override def afterAll(): Unit =

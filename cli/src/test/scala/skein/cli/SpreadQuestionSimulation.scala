@@ -3,17 +3,15 @@ package skein.cli
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.Future
-import scala.concurrent.duration.*
 import mainargs.ParserForClass
 import skein.flight.NotFlown
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.report.{DuelReport, ReportSections, Section}
 import skein.scenario.Scenarios
 import skein.search.BlockExecutor
+import skein.testing.Unhurried
 
-class SpreadQuestionSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 4.minutes
-
+class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   private def options(words: String) =

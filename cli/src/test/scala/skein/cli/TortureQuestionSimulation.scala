@@ -1,14 +1,12 @@
 package skein.cli
 
-import scala.concurrent.duration.*
 import skein.policy.*
 import skein.scenario.*
+import skein.testing.Unhurried
 import skein.torture.Verdict
 import skein.units.*
 
-class TortureQuestionSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
-
+class TortureQuestionSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios(ScenarioKind(Failing()))
 
   private val duration = Span.ofSeconds(12)

@@ -1,6 +1,5 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.cli.OurScenarios
 import skein.forward.{DelayTable, Rollout}
 import skein.identify.SensorFit
@@ -12,13 +11,12 @@ import skein.search.Conditions
 import skein.settings.{FlySettings, SensorFile}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.torture.Torture
 import skein.units.*
 
 /** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in virtual time. */
-class BlindPursuitSimulation extends munit.FunSuite:
-  override def munitTimeout: Duration = 2.minutes
-
+class BlindPursuitSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = OurScenarios.all
 
   private def settings(

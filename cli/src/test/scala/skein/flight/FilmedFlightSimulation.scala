@@ -1,7 +1,6 @@
 package skein.flight
 
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import scala.util.Using
 import skein.cli.OurScenarios
 import skein.loop.{LoopKind, Outcome}
@@ -15,8 +14,6 @@ import skein.units.*
 
 /** Flights that record what their cameras and lidars see. */
 class FilmedFlightSimulation extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 2.minutes
-
   private given Scenarios = OurScenarios.all
 
   private val folder = FunFixture[Path](

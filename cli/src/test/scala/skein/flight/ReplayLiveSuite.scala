@@ -1,15 +1,13 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.loop.LoopKind
 import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenarios}
+import skein.testing.Unhurried
 
 /** Real sockets, real time and real threads, of which virtual time has one. */
-class ReplayLiveSuite extends munit.FunSuite:
+class ReplayLiveSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
-
-  override val munitTimeout: Duration = 5.minutes
 
   test("what live loops decided is decided again from their recordings, futures on several threads included"):
     val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)

@@ -1,7 +1,6 @@
 package skein.flight
 
 import java.nio.file.Files
-import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome, Replay}
 import skein.measure.FlightSummary
 import skein.record.{EventKind, Recording}
@@ -15,9 +14,6 @@ import skein.units.*
 /** Scenarios of teams in virtual time. */
 class TeamSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = DuelReport.scenarios
-
-  // Twenty vehicles in virtual time take a while where others work too.
-  override val munitTimeout: Duration = 2.minutes
 
   private def settings(
       scenario: Scenario,

@@ -1,6 +1,5 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.loop.LoopKind
 import skein.measure.Twin
 import skein.report.SummaryTables
@@ -15,8 +14,6 @@ import skein.testing.Timing
   * full flights to 2 % without allowance.
   */
 class TwinLiveSuite extends munit.FunSuite, Timing:
-
-  override val munitTimeout: Duration = 5.minutes
 
   private val mostExcessMs = 6.0
 

@@ -2,7 +2,6 @@ package skein.flight
 
 import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.ActorSystem
-import scala.concurrent.duration.*
 import skein.link.{MemoryNetwork, NetworkPlan}
 import skein.loop.LoopKind
 import skein.signal.LatencyProfile
@@ -11,8 +10,6 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 class WarmUpSimulation extends munit.FunSuite, Alone:
-  override def munitTimeout: Duration = 2.minutes
-
   private val settings =
     TwinFlights.settings(List(LoopKind.Paused, LoopKind.Stream), seconds = 60, LatencyProfile.vpn)
 

@@ -1,18 +1,16 @@
 package skein.report
 
-import scala.concurrent.duration.*
 import skein.flight.VirtualFlights
 import skein.loop.LoopKind
 import skein.measure.{Deviation, FlightSet, FlightSummary, PredictionErrors, PredictionGroup}
 import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
-class PredictionErrorsSuite extends munit.FunSuite:
+class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
-
-  override val munitTimeout: Duration = 2.minutes
 
   test("errors are sorted by age into bins around multiples of 20 ms, of which small ones are left out"):
     val samples = Vector.tabulate(40)(index => (91.0 + index % 18, index / 1000.0)) ++

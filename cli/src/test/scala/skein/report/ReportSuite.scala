@@ -3,17 +3,13 @@ package skein.report
 import java.nio.file.{Files, Path}
 import javax.imageio.ImageIO
 import javax.xml.parsers.DocumentBuilderFactory
-import scala.concurrent.duration.*
 import skein.record.{MemoryRecorder, RecordError, Recording}
 import skein.scenario.Scenarios
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Decimals.fixed
 
-class ReportSuite extends munit.FunSuite, TemporaryFolders:
+class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
-
-  // Drawing takes its time where others work too.
-  override val munitTimeout: Duration = 2.minutes
 
   private lazy val set = Report.of(
     Seq(

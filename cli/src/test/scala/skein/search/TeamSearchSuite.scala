@@ -1,15 +1,12 @@
 package skein.search
 
 import com.typesafe.config.ConfigFactory
-import scala.concurrent.duration.*
 import skein.optimise.{Evaluator, Search, SearchState}
 import skein.scenario.*
 import skein.settings.ScenarioSettings
 import skein.testing.Optimised
 
 class TeamSearchSuite extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 2.minutes
-
   private given Scenarios = Scenarios.ours
 
   private val question = TeamQuestion(

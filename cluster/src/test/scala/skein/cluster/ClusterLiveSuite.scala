@@ -10,11 +10,10 @@ import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
 import skein.cluster.jars.{Acceptance, Fetched, JarStore, Sha256, Shipment}
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Coordinator and workers as nodes of their own in one JVM, over loopback. */
-class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 3.minutes
+class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   import scala.concurrent.ExecutionContext.Implicits.global
 
   private val loopback = Endpoint("127.0.0.1", 0)

@@ -19,7 +19,7 @@ class FailureTellingSimulation extends munit.FunSuite:
   private def settings(loop: LoopKind) = FlySettings(
     List(loop),
     List(LatencyProfile.direct),
-    duration = Span.ofSeconds(20),
+    duration = Span.ofSeconds(12),
     period = Span.ofMillis(100),
     seed = 1
   )

@@ -1,6 +1,5 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.loop.{LoopKind, PlanSettings}
 import skein.policy.*
 import skein.scenario.*
@@ -11,8 +10,6 @@ import skein.units.*
 
 /** A scenario as a user would write it: its policies know nothing of its limits. */
 class KeptLimitsSimulation extends munit.FunSuite, Optimised:
-  override def munitTimeout: Duration = 4.minutes
-
   /** What is broken by some vehicles, theirs alone or with others. */
   private def violations(scenario: Scenario, loop: LoopKind, by: Int*) =
     val few      = PlanSettings(searches = 1, slices = 4, blocksPerSlice = 2)

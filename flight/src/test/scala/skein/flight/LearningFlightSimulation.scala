@@ -1,6 +1,5 @@
 package skein.flight
 
-import scala.concurrent.duration.{Duration, DurationInt}
 import skein.loop.{LoopKind, Outcome}
 import skein.loop.learning.{FlownLearner, Learning, Transition}
 import skein.policy.*
@@ -13,8 +12,6 @@ import skein.units.*
 
 /** Flights in virtual time whose pursuer's policy is another every now and then. */
 class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
-  override val munitTimeout: Duration = 5.minutes
-
   private given Scenarios = Scenarios(ScenarioKind(PaperDuel()))
 
   private val settings = FlySettings(

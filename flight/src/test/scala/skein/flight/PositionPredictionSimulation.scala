@@ -1,17 +1,15 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.loop.LoopKind
 import skein.policy.*
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Moves to positions, as the simulator flies them and as they are predicted. */
-class PositionPredictionSimulation extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
-
+class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
   private final case class Corners(places: Vector[Vector3], yaw: Yaw) extends AgentPolicy:
     type Memory = Int
     def start: Int                                            = 0

@@ -14,9 +14,6 @@ import skein.vehicle.ReducedModel
 class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
-  override val munitTimeout: scala.concurrent.duration.Duration =
-    scala.concurrent.duration.Duration(5, "min")
-
   private val settings = FlySettings(
     LoopKind.values.toList,
     List(LatencyProfile.vpn),

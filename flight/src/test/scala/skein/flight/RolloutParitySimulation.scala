@@ -1,21 +1,19 @@
 package skein.flight
 
 import scala.collection.mutable.ArrayBuffer
-import scala.concurrent.duration.*
 import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.record.ReadingRow
 import skein.scenario.{Crossing, Formation, PaperDuel, Scenario, Surround}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last bit: every vehicle
   * is read at the same nanoseconds at the same places, and is commanded the same headings.
   */
-class RolloutParitySimulation extends munit.FunSuite:
-  override val munitTimeout = 5.minutes
-
+class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   /** Until the pursuer has passed, turned and come near again. */
   private val once = Span.ofSeconds(15)
 

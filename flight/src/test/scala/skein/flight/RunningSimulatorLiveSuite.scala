@@ -17,9 +17,8 @@ import skein.units.*
   * since the ways to the starts are most of it.
   */
 class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting:
-  private given system: ActorSystem   = ActorSystem("RunningSimulatorLiveSuite")
-  override def afterAll(): Unit       = { val _ = Await.result(system.terminate(), 10.seconds) }
-  override val munitTimeout: Duration = 3.minutes
+  private given system: ActorSystem = ActorSystem("RunningSimulatorLiveSuite")
+  override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 
   private val settings = FlySettings(
     List(LoopKind.Stream, LoopKind.Futures),

@@ -1,17 +1,15 @@
 package skein.flight
 
-import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome, Replay}
 import skein.record.EventKind
 import skein.scenario.{Forest, PaperDuel, Scenarios}
 import skein.settings.{FlySettings, NamedScene, RecordedPlan}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Flights among things that can be touched. */
-class SceneFlightSimulation extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
-
+class SceneFlightSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
   private def settings(loop: LoopKind, duration: Span) =

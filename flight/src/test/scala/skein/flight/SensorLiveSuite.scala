@@ -11,13 +11,13 @@ import skein.record.{ClockKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
 import skein.scenario.Scenario
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Over real sockets and on the real clock, every loop side by side: AirSim's sensors in decisions. */
-class SensorLiveSuite extends munit.FunSuite:
-  private given system: ActorSystem   = ActorSystem("SensorLiveSuite")
-  override def afterAll(): Unit       = { val _ = Await.result(system.terminate(), 10.seconds) }
-  override val munitTimeout: Duration = 2.minutes
+class SensorLiveSuite extends munit.FunSuite, Unhurried:
+  private given system: ActorSystem = ActorSystem("SensorLiveSuite")
+  override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 
   /** Keeps the altitude above sea level that it finds. */
   private object KeepAltitude extends AgentPolicy:

@@ -1,15 +1,11 @@
 package skein.loop
 
-import scala.concurrent.duration.*
 import skein.record.EventKind
 import skein.signal.LatencyProfile
 import skein.testing.Optimised
 import skein.units.*
 
 class PlanLoopSimulation extends munit.FunSuite, Optimised:
-  // Each flight takes a second or two, on a machine that does nothing else.
-  override val munitTimeout: Duration = 3.minutes
-
   private val planning  = PlanSettings(behaviours = 1, searches = 1, slices = 3)
   private lazy val duel =
     VirtualDuel.fly(

@@ -2,7 +2,6 @@ package skein.loop
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.ExecutionContext
-import scala.concurrent.duration.*
 import skein.loop.planning.CountedPlanWorkers
 import skein.policy.*
 import skein.record.{DecisionRow, Difference, MemoryRecorder, Recording, Samples}
@@ -14,8 +13,6 @@ import skein.vtime.VirtualTime
 
 /** What a replay decides again, and what it finds where a recording was changed. */
 class ReplaySuite extends munit.FunSuite, Optimised:
-  override val munitTimeout: Duration = 3.minutes
-
   private val planning = PlanSettings(horizonSteps = 10, searches = 1, slices = 2, blocksPerSlice = 1)
 
   private def flown(kind: LoopKind, fleet: Fleet): Recording = VirtualTime

@@ -1,19 +1,17 @@
 package skein.torture
 
 import scala.concurrent.ExecutionContext
-import scala.concurrent.duration.*
 import skein.flight.CameraSensor
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{DecisionRow, Event, EventKind, RecordError, TrueAge}
 import skein.policy.*
 import skein.scenario.{PaperDuel, Scenario}
 import skein.signal.Stamped
+import skein.testing.Unhurried
 import skein.units.*
 
 /** The checks find what they are there to find: a clean flight's trace is forged in one thing at a time. */
-class ChecksSimulation extends munit.FunSuite:
-  override val munitTimeout: Duration = 3.minutes
-
+class ChecksSimulation extends munit.FunSuite, Unhurried:
   private val clean = undisturbed(LoopKind.Stream)
 
   private def undisturbed(loop: LoopKind, scenario: Scenario = PaperDuel()): FlightTrace = TortureFlight.fly(

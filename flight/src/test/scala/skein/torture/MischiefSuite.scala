@@ -1,15 +1,13 @@
 package skein.torture
 
-import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.EventKind
 import skein.scenario.PaperDuel
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Each mischief alone is really done, borne by the loop, and over when calm begins. */
-class MischiefSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 3.minutes
-
+class MischiefSuite extends munit.FunSuite, Unhurried:
   private def flown(messageFaults: MessageFaults): FlightTrace =
     val faultPlan = FaultPlan
       .of(11, Span.ofSeconds(8))

@@ -1,12 +1,10 @@
 package skein.torture
 
-import scala.concurrent.duration.*
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Seeds that once were violations, of the loop or of the checks. */
-class RestartSimulation extends munit.FunSuite:
-  override val munitTimeout: Duration = 3.minutes
-
+class RestartSimulation extends munit.FunSuite, Unhurried:
   test(
     "seeds whose simulator starts again before or between the readings of one step, or while an answer is under way"
   ):

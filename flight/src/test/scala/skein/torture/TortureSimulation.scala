@@ -1,19 +1,17 @@
 package skein.torture
 
-import scala.concurrent.duration.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.EventKind
 import skein.scenario.Forest
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Whole flights through seeded trouble, in virtual time. */
-class TortureSimulation extends munit.FunSuite:
-
-  override val munitTimeout: Duration = 5.minutes
+class TortureSimulation extends munit.FunSuite, Unhurried:
 
   private val duration = Span.ofSeconds(8)
-  private val seeds    = 40
+  private val seeds    = 24
 
   test(s"$seeds flights through faults of network, simulator, answers and disk break no rule"):
     var failed = Vector.empty[String]

@@ -1,16 +1,13 @@
 package skein.lanes
 
-import scala.concurrent.duration.*
 import skein.forward.*
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.vehicle.{DrivenCar, PlaneReading, Plant}
 
 /** Vehicles of a user's own, as they are written. */
-class PlantSuite extends munit.FunSuite:
-  // On a busy machine; kernels are slow until they are optimised.
-  override val munitTimeout: Duration = 3.minutes
-
+class PlantSuite extends munit.FunSuite, Unhurried:
   private val bicycle =
     PlantResponse(Bicycle(wheelbaseM = 1.2, steeringLagS = 0.3, mostMps2 = 4, antennaM = 0.4))
   private val short = Duel.paper.copy(

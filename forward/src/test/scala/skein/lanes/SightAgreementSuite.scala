@@ -38,7 +38,7 @@ class SightAgreementSuite extends munit.FunSuite:
       LoopTiming.stream(0.1),
       LoopTiming.Predictive(predictor = model.predictor)
     )
-    episode <- 0 until 3
+    episode <- 0 until 2
   do
     test(s"${timing.productPrefix}, episode $episode: the same is found and decided in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)

@@ -7,14 +7,12 @@ import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 
 /** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a policy compares
   * lies so near to another that rounding decides: that is told, with how near it was, by [[ErrorBound]].
   */
-class TeamAgreementSuite extends munit.FunSuite:
-  // Until it is compiled, much arithmetic takes its time.
-  override val munitTimeout: scala.concurrent.duration.Duration = scala.concurrent.duration.Duration(3, "min")
-
+class TeamAgreementSuite extends munit.FunSuite, Unhurried:
   import TeamAgreementSuite.*
 
   private val plant  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

@@ -6,12 +6,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.vehicle.ReducedModel
 
-class TeamLanesSuite extends munit.FunSuite:
-  // Until it is compiled, much arithmetic takes its time.
-  override val munitTimeout: scala.concurrent.duration.Duration = scala.concurrent.duration.Duration(3, "min")
-
+class TeamLanesSuite extends munit.FunSuite, Unhurried:
   private val worlds = TimetableKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val links  = Seq("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
@@ -80,8 +78,8 @@ class TeamLanesSuite extends munit.FunSuite:
     timing         <- loops
     (linked, link) <- links
   do
-    test(s"$name, $timing over $linked: every world flies as by the scalar reference, 10 s to 2 mm"):
-      agree(draw, timing, link, lag, 2e-3)
+    test(s"$name, $timing over $linked: every world flies as by the scalar reference, 6 s to 2 mm"):
+      agree(draw, timing, link, lag, 2e-3, 6)
 
   for
     (name, draw)   <- scenarios
@@ -100,7 +98,7 @@ class TeamLanesSuite extends munit.FunSuite:
       link: Delays,
       plant: VelocityResponse,
       mostM: Double,
-      durationS: Double = 10,
+      durationS: Double,
       every: Int = 13
   ): Unit =
     val random = SplitMix64(7)

@@ -1,16 +1,13 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import scala.concurrent.duration.*
 import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
 import skein.lanes.DuelBatch
 import skein.policy.{Axis, PaperEvader, PaperPursuer, PolicyFamily, Role, SearchSpace}
 import skein.signal.SplitMix64
+import skein.testing.Unhurried
 
-class SearchSuite extends munit.FunSuite:
-  // On a busy machine the lanes take long to be compiled.
-  override def munitTimeout: Duration = 3.minutes
-
+class SearchSuite extends munit.FunSuite, Unhurried:
   private val space = SearchSpace(Vector(Axis("a", -2, 4), Axis("b", -3, 3)))
 
   private def depth(c: Vector[Double]): Double = math.pow(c(0) - 1, 2) + 2 * math.pow(c(1) + 0.5, 2)
@@ -121,7 +118,7 @@ class SearchSuite extends munit.FunSuite:
       assert(mistake.getMessage.contains("expected at most 16777216"), mistake.getMessage)
 
   private val lag   = Reduced(0.9, 0.8, 0.05)
-  private val short = Duel.paper.copy(durationS = 30)
+  private val short = Duel.paper.copy(durationS = 15)
 
   private def game(threads: Int): Evaluator = DuelEvaluator(
     DuelBatch(short, LoopTiming.Stream(), lag, threads),

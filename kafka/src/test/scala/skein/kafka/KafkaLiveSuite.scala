@@ -14,12 +14,11 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.*
+import skein.testing.Unhurried
 import skein.units.*
 
 /** A solver behind Kafka's own broker, one for all tests, on loopback. */
-class KafkaLiveSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 4.minutes
-
+class KafkaLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("KafkaLiveSuite")
   private given Scenarios           = Scenarios.ours
   import system.dispatcher

@@ -1,11 +1,9 @@
 package skein.learn
 
 import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, DataOutputStream, IOException}
-import scala.concurrent.duration.*
+import skein.testing.Unhurried
 
-class LearnerSuite extends munit.FunSuite:
-  override val munitTimeout: Duration = 2.minutes
-
+class LearnerSuite extends munit.FunSuite, Unhurried:
   private val small = LearnerSettings(
     hidden = Vector(32, 32),
     discount = 0.9,

@@ -1,15 +1,12 @@
 package skein.mujoco
 
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.testing.PythonEnvironment
+import skein.testing.{PythonEnvironment, Unhurried}
 
 /** For tests with MuJoCo's library: the one that is found, or else PyPI's, installed for tests. */
-trait MujocoHere extends munit.FunSuite:
-  override val munitTimeout: Duration = 5.minutes
-
+trait MujocoHere extends munit.FunSuite, Unhurried:
   // No test's limit is for what may have to be fetched first.
   override def beforeAll(): Unit = MujocoHere.library: Unit
 

@@ -2,18 +2,15 @@ package skein.python
 
 import java.io.{File, IOException}
 import java.nio.file.{Files, Path}
-import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
 import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** The wheel as a user has it: installed into a fresh environment, it trains. Skipped where there is no Python, or where its
   * packages cannot be fetched. The package's own tests take longer, and run where Python has what they need.
   */
-class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 10.minutes
-
+class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private val root = Iterator
     .iterate(Path.of("").toAbsolutePath)(_.getParent)
     .find(at => Files.exists(at.resolve("sbtw")))

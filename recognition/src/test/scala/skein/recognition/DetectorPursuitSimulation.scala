@@ -1,18 +1,16 @@
 package skein.recognition
 
-import scala.concurrent.duration.*
 import skein.flight.VirtualFlights
 import skein.loop.{LoopKind, Outcome}
 import skein.measure.FlightSummary
 import skein.scenario.{ScenarioKind, Scenarios}
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** A whole flight whose pursuer knows of its evader by the shipped detector alone, in virtual time. */
-class DetectorPursuitSimulation extends munit.FunSuite:
-  override val munitTimeout: Duration = 3.minutes
-
+class DetectorPursuitSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios(Vector(ScenarioKind(BlindPursuit())))
 
   test("the detector finds an evader without tags, and the pursuer comes near"):

@@ -1,7 +1,6 @@
 package skein.recognition
 
 import java.nio.file.Path
-import scala.concurrent.duration.{Duration, DurationInt}
 import scala.util.Using
 import skein.flight.VirtualFlights
 import skein.loop.{LoopKind, Outcome}
@@ -10,12 +9,11 @@ import skein.onnx.OnnxGraph.*
 import skein.policy.*
 import skein.settings.{FlySettings, PolicyFile}
 import skein.signal.{LatencyProfile, SplitMix64}
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Policies of ONNX files beside onnxruntime's own evaluation, and those that only it runs. */
-class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles:
-  override val munitTimeout: Duration = 5.minutes
-
+class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
   for name <- Seq("learned:64x64", "learned:32tanhx32tanh:clip") do
     folder.test(s"$name: onnxruntime answers what our network does, within 2e-6"): folder =>
       val random = SplitMix64(seed)

@@ -2,13 +2,10 @@ package skein.recognition
 
 import java.nio.ByteBuffer
 import java.nio.file.Path
-import scala.concurrent.duration.*
 import skein.testing.Optimised
 
 /** The shipped detector on pictures of a seed that it was not taught by. `measureDetector` has more of them. */
 class VehicleDetectorSuite extends munit.FunSuite, Optimised:
-  override val munitTimeout: Duration = 3.minutes
-
   private val camera = DetectorAccuracy.Camera
 
   test("quadrotors at 2 to 15 m are found, hardly anything else is, and errors are as told"):

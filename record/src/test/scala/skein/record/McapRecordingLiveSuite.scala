@@ -1,18 +1,15 @@
 package skein.record
 
 import java.nio.file.Files
-import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
 import skein.mcap.{OfficialPythonLibrary, Told}
 import skein.mcap.file.McapFile
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** The proof that others read what is exported: the official library of PyPI, unmodified. Runs where Python can install
   * it.
   */
-class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 5.minutes
-
+class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   folder.test("the official library opens what is exported, and finds the same messages at the same times"):
     folder =>
       val recording = folder.resolve("flight.duckdb")

@@ -6,12 +6,11 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.util.{Try, Using}
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** A real Postgres, in a process of its own. */
-class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
-  override val munitTimeout: Duration = 3.minutes
-  private given system: ActorSystem   = ActorSystem("PostgresRowSinkLiveSuite")
+class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+  private given system: ActorSystem = ActorSystem("PostgresRowSinkLiveSuite")
 
   private lazy val server: Try[EmbeddedPostgres] = Try(EmbeddedPostgres.builder().start())
 

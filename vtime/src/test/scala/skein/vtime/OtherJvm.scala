@@ -18,7 +18,9 @@ private object OtherJvm:
     val agent =
       ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.find(_.startsWith("-javaagent:")).get
     val options = Option.when(withAgent)(agent + agentOption)
-    val command = Seq(java) ++ options ++ Seq("-cp", System.getProperty("java.class.path"), main) ++ arguments
+    val brief   = Seq("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC")
+    val command =
+      Seq(java) ++ brief ++ options ++ Seq("-cp", System.getProperty("java.class.path"), main) ++ arguments
     val process = ProcessBuilder(command.asJava).redirectErrorStream(true).start()
     val lines   = String(process.getInputStream.readAllBytes()).linesIterator.toSeq
     assert(process.waitFor() == 0, lines.mkString("\n"))
