@@ -121,9 +121,9 @@ private[airsim] object Images:
     val came = Vector.fill(in.array())(readOne(in))
     if came.size != shots.size then Left(s"expected ${shots.size} pictures, came ${came.size}")
     else
-      came.zip(shots).foldLeft[Either[String, Vector[Image]]](Right(Vector.empty)):
-        case (before, (one, shot)) => before.flatMap(images => one.image(shot, originNed).map(images :+ _))
-      .map((_, came.headOption.fold(Instant.Epoch)(_.at)))
+      Expect
+        .each(came.zip(shots))((one, shot) => one.image(shot, originNed))
+        .map((_, came.headOption.fold(Instant.Epoch)(_.at)))
 
   private final class Came:
     var bytes         = Bytes.empty

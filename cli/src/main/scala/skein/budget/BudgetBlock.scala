@@ -1,13 +1,12 @@
 package skein.budget
 
 import java.nio.ByteBuffer
-import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.optimise.RunningStats
-import skein.search.StatsBytes
+import skein.search.{JsonText, StatsBytes}
 import skein.signal.LatencyDistribution
 import skein.units.Span
-import upickle.default.{ReadWriter, read as readJson, readwriter, write as writeJson}
+import upickle.default.{ReadWriter, readwriter}
 
 /** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
   *
@@ -19,7 +18,7 @@ import upickle.default.{ReadWriter, read as readJson, readwriter, write as write
 final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int)
     derives ReadWriter:
 
-  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+  def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
   /** Of each link what it came to, as [[StatsBytes]].
     *
@@ -48,5 +47,4 @@ object BudgetBlock:
 
   /** @return or what was expected, and what came */
   def read(bytes: ArraySeq[Byte]): Either[String, BudgetBlock] =
-    try Right(readJson[BudgetBlock](String(bytes.toArray, UTF_8)))
-    catch case mistake: Exception => Left(s"expected a block of a budget, came: ${mistake.getMessage}")
+    JsonText.read[BudgetBlock](bytes, "a block of a budget")

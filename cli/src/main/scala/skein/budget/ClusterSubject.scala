@@ -1,13 +1,13 @@
 package skein.budget
 
-import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.cluster.Solvers
 import skein.optimise.RunningStats
 import skein.scenario.Scenarios
-import skein.search.{BlockExecutor, UntilWrong}
+import skein.search.{BlockExecutor, JsonText}
 import skein.signal.LatencyDistribution
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import skein.units.Expect
+import upickle.default.ReadWriter
 
 /** Flown elsewhere, in blocks of some cells each, to the same bits as here.
   *
@@ -47,7 +47,7 @@ final class ClusterSubject(
         cells.onProgress((total * share()).toLong)
       )
       answers <- answered.toRight(BudgetSubject.Stopped)
-      tallies <- UntilWrong.each(blocks.zip(answers))((block, answer) => block.tallies(answer)).map(_.flatten)
+      tallies <- Expect.each(blocks.zip(answers))((block, answer) => block.tallies(answer)).map(_.flatten)
     yield tallies
 
 object ClusterSubject:
@@ -67,27 +67,20 @@ object ClusterSubject:
       questions: Vector[BudgetQuestion],
       subjects: Vector[BudgetSubject]
   ): Either[String, ArraySeq[Byte]] =
-    probes(subjects).map(came =>
-      ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(questions, came)).getBytes(UTF_8))
-    )
+    probes(subjects).map(came => JsonText.bytes(ProbedQuestion(questions, came)))
 
   private def probes(subjects: Vector[BudgetSubject]): Either[String, Vector[Long]] =
-    UntilWrong.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(tallies =>
+    Expect.each(subjects)(_.tallies(BudgetCells(Vector(LatencyDistribution.Vpn), 1)).map(tallies =>
       java.lang.Double.doubleToLongBits(tallies.head.mean)
     ))
 
   /** Answers the questions of budgets whose scenarios are known here. */
   def solvers(using Scenarios): Solvers = asked =>
     for
-      posed <-
-        try Right(readJson[ProbedQuestion](String(asked.toArray, UTF_8)))
-        catch case mistake: Exception => Left(s"expected a budget's question, came: ${mistake.getMessage}")
-      came <- subjects(posed).flatMap(probes)
-      _    <- Either.cond(
-        came == posed.probes,
-        (),
+      posed <- JsonText.read[ProbedQuestion](asked, "a budget's question")
+      came  <- subjects(posed).flatMap(probes)
+      _     <- Expect.that(came == posed.probes):
         "one episode does not come to the same here and at the coordinator; has a file that --plant names another content here?"
-      )
     yield () =>
       val own = subjects(posed)
       block =>
@@ -100,4 +93,4 @@ object ClusterSubject:
         answer.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
   private def subjects(posed: ProbedQuestion)(using Scenarios) =
-    UntilWrong.each(posed.questions)(_.subject(threads = 1))
+    Expect.each(posed.questions)(_.subject(threads = 1))

@@ -7,7 +7,7 @@ import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective, WeightedSum}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
-import skein.search.{Conditions, UntilWrong}
+import skein.search.Conditions
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -108,7 +108,7 @@ final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Co
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = 10
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
-    UntilWrong.each(cells.links.zipWithIndex): (link, number) =>
+    Expect.each(cells.links.zipWithIndex): (link, number) =>
       cells.onProgress(number.toLong * cells.episodes)
       fly(flown.timing, DelayTable.of(link), cells.episodes, cells.isCancelled)
 

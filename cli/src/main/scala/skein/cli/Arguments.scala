@@ -5,6 +5,7 @@ import mainargs.Flag
 import skein.link.Address
 import skein.settings.{ConfigKeys, TextFile}
 import skein.signal.LatencyProfile
+import skein.units.Expect
 
 /** What several commands read from their options. */
 private[cli] object Arguments:
@@ -18,15 +19,10 @@ private[cli] object Arguments:
 
   /** Settings of a scenario, `NAME=VALUE` each, by their keys; or every mistake. */
   def settings(texts: Seq[String]): Either[String, Seq[(String, String)]] =
-    all(texts): text =>
+    Expect.all(texts): text =>
       text.split("=", 2) match
         case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
         case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
-
-  /** All, or every mistake. */
-  def all[A, B](each: Seq[A])(read: A => Either[String, B]): Either[String, Seq[B]] =
-    val (wrong, right) = each.map(read).partitionMap(identity)
-    Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
 
   /** Options that were given, also those of a group of options. One that has a value of its own is not told from it. */
   def told(options: Product): Set[String] =
@@ -44,11 +40,8 @@ private[cli] object Arguments:
   /** All but these is taken from the folder that is gone on with. */
   def resumed(options: Product, may: Set[String], what: String): Either[String, Unit] =
     val others = told(options) -- may - "--resume"
-    Either.cond(
-      others.isEmpty,
-      (),
+    Expect.that(others.isEmpty):
       s"--resume: everything but $what is taken from the folder; expected no other option, came ${others.toSeq.sorted.mkString(", ")}"
-    )
 
   def latency(text: String): Either[String, LatencyProfile] =
     LatencyProfile.parse(text, TextFile.read).left.map(_.message)

@@ -9,8 +9,8 @@ import skein.scenario.Scenarios
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.signal.LatencyDistribution
 import skein.units.Decimals.significant
-import skein.units.Span
-import skein.view.{Shows, TaskShow}
+import skein.units.{Expect, Span}
+import skein.view.TaskShow
 
 /** Options of `./skein budget`. */
 final case class BudgetOptions(
@@ -71,38 +71,23 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       tolerance  <- toleranceOf(options)
       atJitterMs <- milliseconds("--at-jitter", options.atJitter, 20, legs)
       axes       <- axesOf(options, legs)
-      _          <- Either.cond(
-        options.episodes.forall(count => count >= 1 && count <= MostEpisodes),
-        (),
+      _          <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
         s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
-      )
-      periods <- Arguments.all(if options.period.isEmpty then Seq("100ms") else options.period)(
+      periods <- Expect.all(if options.period.isEmpty then Seq("100ms") else options.period)(
         Span.parse(_).left.map("--period: " + _)
       )
       threads   <- options.forward.threadCount
       cluster   <- options.cluster.checked
-      questions <- Arguments.all(periods)(period =>
+      questions <- Expect.all(periods)(period =>
         scenario(options).fold(duel(options, period))(team(options, _, period))
       ).map(_.toVector)
-      subjects <- Arguments.all(questions)(_.subject(threads)).map(_.toVector)
-      _        <- Either.cond(
-        subjects.forall(_.loop != LoopKind.Paused.label),
-        (),
+      subjects <- Expect.all(questions)(_.subject(threads)).map(_.toVector)
+      _        <- Expect.that(subjects.forall(_.loop != LoopKind.Paused.label)):
         "--loop: the paused loop is the truth and feels no latency; expected another"
-      )
       folder <- OutFolder.made("--out", options.out)
-      shows = Shows()
-      task  = TaskShow("budget")
-      _     = shows.add(task)
-      maps <- options.view.serving(shows):
-        elsewhere(
-          cluster,
-          options,
-          questions,
-          subjects,
-          folder,
-          threads
-        )(fly(options, _, tolerance, axes, legs, task))
+      maps   <- options.view.serving("budget"): task =>
+        elsewhere(cluster, options, questions, subjects, folder, threads):
+          fly(options, _, tolerance, axes, legs, task)
       files <- write(maps, folder)
     yield
       val shown = Shown(options.json.value)
@@ -134,7 +119,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
   private def duel(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
     import options.forward
     for
-      _ <- Either.cond(options.set.isEmpty, (), "--set: expected with --scenario, whose settings they are")
+      _      <- Expect.that(options.set.isEmpty)("--set: expected with --scenario, whose settings they are")
       policy <- PolicyFile.named(options.policy.getOrElse("paper-pursuer"), None).left.map("--policy: " + _)
       other  <- forward.opponentOf(policy.role)
       named  <- forward.conditions(period)
@@ -198,16 +183,10 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       jitter <- milliseconds("--most-jitter", options.mostJitter, 100 / legs.perRoundTrip, legs)
       (means, jitters) = scenario(options).fold((40, 20))(_ => (10, 5)) match
         case (means, jitters) => (options.means.getOrElse(means), options.jitters.getOrElse(jitters))
-      _ <- Either.cond(
-        means >= 2 && jitters >= 2 && means.toLong * jitters <= MostCells,
-        (),
+      _ <- Expect.that(means >= 2 && jitters >= 2 && means.toLong * jitters <= MostCells):
         s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came $means and $jitters"
-      )
-      _ <- Either.cond(
-        mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500,
-        (),
+      _ <- Expect.that(mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500):
         s"--most-mean, --most-jitter: expected round trips of more than 0 and up to 500 ms, came $mean and $jitter ms"
-      )
     yield BudgetAxes.of(mean, means, jitter, jitters)
 
   private def fly(
@@ -221,23 +200,18 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     val shown             = Shown(options.json.value)
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
-      flown.foldLeft[Either[String, Vector[BudgetMap]]](Right(Vector.empty)): (before, subject) =>
+      Expect.each(flown): subject =>
+        val what  = s"${subject.loop} every ${subject.periodMs.significant(4)} ms"
+        val sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
+        shown.say(
+          s"$what, ${subject.vehicles}\n" +
+            s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
+        )
+        val startedAt = System.nanoTime()
+        val line      = ProgressLine(sweep.expected, Console.err)
+        val measured  = WeightedSum.withUnit(subject.formula, subject.unit)
+        val onShow    = BudgetOnShow(task, what, sweep.expected, axes, measured)
         for
-          maps <- before
-          sweep = BudgetSweep(subject, axes, tolerance, options.episodes)
-          _     = shown.say(
-            s"${subject.loop} every ${subject.periodMs.significant(4)} ms, ${subject.vehicles}\n" +
-              s"${sweep.episodes} episodes of ${subject.durationS.significant(4)} s in each of ${sweep.expected / sweep.episodes} cells; engine: ${sweep.engine}"
-          )
-          startedAt = System.nanoTime()
-          line      = ProgressLine(sweep.expected, Console.err)
-          onShow    = BudgetOnShow(
-            task,
-            s"${subject.loop} every ${subject.periodMs.significant(4)} ms",
-            sweep.expected,
-            axes,
-            WeightedSum.withUnit(subject.formula, subject.unit)
-          )
           budget <- sweep.map(
             done =>
               line.show(done, "")
@@ -249,9 +223,9 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           _ = line.end()
           _ = shown.say(f"${sweep.expected}%,d episodes in ${(System.nanoTime() - startedAt) * 1e-9}%.1f s")
           marks <-
-            Arguments.all(Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)):
+            Expect.all(Seq("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn)):
               (name, roundTrip) => sweep.over(roundTrip).map(BudgetMark(name, roundTrip, _))
-        yield maps :+ BudgetMap(
+        yield BudgetMap(
           subject.loop,
           subject.periodMs,
           subject.formula,

@@ -4,6 +4,7 @@ import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
 import skein.cluster.{Endpoint, Tls}
 import skein.search.SearchBlock
+import skein.units.Expect
 
 /** Whether other processes compute. */
 final case class ClusterOptions(
@@ -38,21 +39,12 @@ final case class ClusterOptions(
       )
     else
       for
-        _ <- Either.cond(
-          workers.forall(count => count >= 1 && count <= MostWorkers),
-          (),
+        _ <- Expect.that(workers.forall(count => count >= 1 && count <= MostWorkers)):
           s"--workers: expected 1 to $MostWorkers, came ${workers.getOrElse(0)}"
-        )
-        _ <- Either.cond(
-          block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes),
-          (),
+        _ <- Expect.that(block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes)):
           s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
-        )
-        _ <- Either.cond(
-          !ship.value || cluster.isDefined,
-          (),
+        _ <- Expect.that(!ship.value || cluster.isDefined):
           "--ship: expected with --cluster; workers on this machine have this program already"
-        )
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
         seen   <- metrics.fold(Right(None))(portOrEndpoint(_).map(Some(_)))

@@ -19,7 +19,7 @@ import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{Briefing, SolverDesk, SolverServer}
-import skein.units.Clock
+import skein.units.{Clock, Expect}
 
 /** Options of `./skein decide`. */
 final case class DecideOptions(
@@ -134,11 +134,8 @@ final class DecideCommand(using scenarios: Scenarios)
     for
       plan <- Briefing.plan(briefing)
       name = plan.settings.scenario.name
-      _ <- Either.cond(
-        only.forall(_ == name),
-        (),
+      _ <- Expect.that(only.forall(_ == name)):
         s"this solver decides for ${only.getOrElse("")} alone, the flight flies $name"
-      )
     yield
       // Whoever comes meanwhile waits for it, too.
       val _ = warm.computeIfAbsent(

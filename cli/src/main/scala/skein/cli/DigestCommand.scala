@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.Path
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.Digest
+import skein.units.Expect
 
 /** Options of `./skein digest`. */
 final case class DigestOptions(
@@ -23,6 +24,6 @@ object DigestCommand
       files.map(file => Digest.ofFile(Path.of(file)).map(digest => s"$digest  $file")).partitionMap(identity)
     digests.foreach(line => Console.out.println(line))
     for
-      _ <- Either.cond(files.nonEmpty, (), "expected recordings, came none: ./skein digest FILE…")
-      _ <- Either.cond(unread.isEmpty, (), unread.map(_.message).mkString("\n"))
+      _ <- Expect.that(files.nonEmpty)("expected recordings, came none: ./skein digest FILE…")
+      _ <- Expect.that(unread.isEmpty)(unread.map(_.message).mkString("\n"))
     yield ()

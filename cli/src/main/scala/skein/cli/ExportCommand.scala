@@ -3,6 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import mainargs.{Leftover, ParserForClass, arg}
 import skein.record.{Export, McapRecording}
+import skein.units.Expect
 
 /** Options of `./skein export`. */
 final case class ExportOptions(
@@ -27,11 +28,8 @@ object ExportCommand
       file <- options.file.value match
         case Seq(one) => Right(Path.of(one))
         case others   => Left(s"expected one recording, came ${others.size}: $usage")
-      _ <- Either.cond(
-        options.parquet.nonEmpty || options.mcap.nonEmpty,
-        (),
+      _ <- Expect.that(options.parquet.nonEmpty || options.mcap.nonEmpty):
         s"expected what to write, came nothing: $usage"
-      )
       _ <- options.parquet.fold(Right(()))(parquet(file, _))
       _ <- options.mcap.fold(Right(()))(mcap(file, _))
     yield ()
@@ -47,16 +45,10 @@ object ExportCommand
 
   private def mcap(file: Path, text: String): Either[String, Unit] =
     for
-      _ <- Either.cond(text.nonEmpty, (), "--mcap: expected a file, came ''")
-      _ <- Either.cond(
-        Files.isDirectory(Path.of(text).toAbsolutePath.getParent),
-        (),
+      _ <- Expect.that(text.nonEmpty)("--mcap: expected a file, came ''")
+      _ <- Expect.that(Files.isDirectory(Path.of(text).toAbsolutePath.getParent)):
         s"--mcap: expected a file in a folder that is there, came $text"
-      )
-      _ <- Either.cond(
-        !isSame(file, Path.of(text)),
-        (),
+      _ <- Expect.that(!isSame(file, Path.of(text))):
         s"--mcap: expected another file than the recording, came $text"
-      )
       _ <- McapRecording.write(file, Path.of(text), RecordOptions.sceneOf).left.map(_.message)
     yield Console.out.println(s"recording in $text")

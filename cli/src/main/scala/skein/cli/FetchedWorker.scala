@@ -5,6 +5,7 @@ import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicReference
 import skein.cluster.WorkerProcesses
 import skein.cluster.jars.Fetched
+import skein.units.Expect
 
 /** The worker of a program that a coordinator shipped: a process of its own, which ends with this one, however that ends.
   *
@@ -29,7 +30,7 @@ private[cli] final class FetchedWorker(words: Seq[String], archives: Path):
         .start()
       if !state.compareAndSet(State.Waiting, State.Running(process)) then process.getOutputStream.close()
       val status = process.waitFor()
-      Either.cond(status == 0, (), s"the coordinator's program ended with status $status")
+      Expect.that(status == 0)(s"the coordinator's program ended with status $status")
     catch case failed: IOException => Left(s"cannot start the coordinator's program: ${failed.getMessage}")
 
   /** From any thread. */

@@ -8,6 +8,7 @@ import skein.loop.{Fallback, LoopKind, OpponentModel}
 import skein.planning.Planner
 import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, FlySettings, HoconFile, ScenarioSettings, Wire}
+import skein.units.Expect
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
@@ -143,7 +144,7 @@ final case class FlightOptions(
       kind <- ScenarioSettings.kind(merged)
       told <- Arguments.settings(set).map(_.map((key, value) => ("--set", key, value)))
       keys = kind.settings.map(ConfigKeys.ofField)
-      known <- Arguments.all(short ++ told): (flag, key, value) =>
+      known <- Expect.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),
           s"${kind.name}.$key" -> value,

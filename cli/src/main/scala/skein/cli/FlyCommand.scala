@@ -11,7 +11,7 @@ import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.scene.Scene
 import skein.settings.{FlightPlan, FlySettings}
-import skein.units.Clock
+import skein.units.{Clock, Expect}
 import skein.view.Shows
 
 /** Options of `./skein fly`. */
@@ -54,38 +54,23 @@ final class FlyCommand(using Scenarios)
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
-      _         <- Either.cond(
-        simulator.isEmpty || settings.scene.isEmpty,
-        (),
+      _         <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
-      )
-      _ <- Either.cond(
-        simulator.isEmpty || settings.plant.isAirSim,
-        (),
+      _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is of the built-in simulator; what flies in --simulator is its own affair"
-      )
-      _     <- Either.cond(options.twins >= 0, (), s"--twins: expected 0 or more, came ${options.twins}")
+      _     <- Expect.that(options.twins >= 0)(s"--twins: expected 0 or more, came ${options.twins}")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- options.beside.checked(clock)
       _     <-
         if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
       secured <- options.secured.checked(settings.solver)
-      _       <- Either.cond(
-        settings.solver.isEmpty || learning.isEmpty,
-        (),
+      _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; it cannot be had with --solver"
-      )
-      _ <- Either.cond(
-        clock == ClockKind.Real || !options.view.view.value,
-        (),
+      _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
         "--view shows flights in real time; look at what flew by --clock virtual with ./skein replay --view FILE"
-      )
-      _ <- Either.cond(
-        clock == ClockKind.Real || simulator.isEmpty,
-        (),
+      _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
         "--clock virtual flies the built-in simulator; it cannot be had with --simulator"
-      )
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
       scene = if simulator.isEmpty then settings.world.scene else Scene.Empty
       sinks = RecordOptions.Sinks(options.beside, out, scene)
@@ -106,16 +91,12 @@ final class FlyCommand(using Scenarios)
           for
             _      <- nothingToOverwrite(plans, out)
             landed <- flyVirtual(settings, plans, out)
-            _      <- Arguments.all(landed)(one => options.beside.exported(one.plan, out))
+            _      <- Expect.all(landed)(one => options.beside.exported(one.plan, out))
           yield LiveCommand.Flown(landed, None)
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
         kept(out)(report(flown.landed, out, Shown(options.json.value))),
-        Either.cond(
-          unwritten.isEmpty && flown.grounded.isEmpty,
-          (),
-          (unwritten ++ flown.grounded).mkString("\n")
-        )
+        Expect.that(unwritten.isEmpty && flown.grounded.isEmpty)((unwritten ++ flown.grounded).mkString("\n"))
       )
     yield ()
 
@@ -184,8 +165,7 @@ final class FlyCommand(using Scenarios)
 
   /** Both mistakes, where there are two. */
   private def all(one: Either[String, Unit], other: Either[String, Unit]): Either[String, Unit] =
-    val mistakes = one.left.toSeq ++ other.left.toSeq
-    Either.cond(mistakes.isEmpty, (), mistakes.mkString("\n"))
+    Expect.all(Seq(one, other))(identity).map(_ => ())
 
   private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
@@ -195,7 +175,7 @@ final class FlyCommand(using Scenarios)
       ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
         s"${flight.plan.id} failed: $reason"
       )
-    Either.cond(failures.isEmpty, (), failures.mkString("\n"))
+    Expect.that(failures.isEmpty)(failures.mkString("\n"))
 
 private[cli] object FlyCommand:
   /** Loops that this process has compiled: its next command need not. */
@@ -210,8 +190,5 @@ private[cli] object FlyCommand:
     */
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =
     val idle = decisions.collect { case (id, 0) if !ended(id) => id }
-    Either.cond(
-      idle.isEmpty,
-      (),
+    Expect.that(idle.isEmpty):
       s"nothing was decided in ${idle.mkString(", ")}: are the answers later than the time-out of ${AirSimFleet.askTimeout.toMillis.round} ms?"
-    )

@@ -5,7 +5,7 @@ import skein.policy.Role
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.PolicyFile
-import skein.units.Span
+import skein.units.{Expect, Span}
 
 /** How forward simulation flies, for the commands that do nothing else. */
 final case class ForwardOptions(
@@ -76,11 +76,8 @@ object ForwardOptions:
       "--eye"      -> options.eye
     ))
       .collect { case (flag, Some(_)) => flag }
-    Either.cond(
-      told.isEmpty,
-      (),
+    Expect.that(told.isEmpty):
       s"--scenario: expected settings of the scenario, came ${told.mkString(", ")}, which is a duel's"
-    )
 
   /** A policy file, or a family with its defaults. */
   def policy(option: String, text: String, role: Role)(using Scenarios): Either[String, PolicyFile] =

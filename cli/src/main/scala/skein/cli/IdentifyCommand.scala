@@ -9,7 +9,7 @@ import skein.record.{Recording, RecordingReader}
 import skein.report.{Section, TextTable}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{Fit, ModelFile, SensorFile}
-import skein.units.Span
+import skein.units.{Expect, Span}
 
 /** Options of `./skein identify`. */
 final case class IdentifyOptions(
@@ -50,11 +50,8 @@ final class IdentifyCommand(using Scenarios)
         OutFolder.made("--out", options.out.getOrElse(OutFolder.of(Path.of(files.head))))
       use     <- Structure.parse(options.structure).left.map("--structure: " + _)
       horizon <- Span.parse(options.horizon).left.map("--horizon: " + _)
-      _       <- Either.cond(
-        horizon.toSeconds >= 0.2,
-        (),
+      _       <- Expect.that(horizon.toSeconds >= 0.2):
         s"--horizon: expected 200ms or more, came ${options.horizon}"
-      )
       recordings <- read(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
       fits       <- fit(flights, horizon.toSeconds)
@@ -83,11 +80,7 @@ final class IdentifyCommand(using Scenarios)
     )
 
   private def read(files: Vector[String]): Either[String, Vector[Recording]] =
-    files.foldLeft[Either[String, Vector[Recording]]](Right(Vector.empty)): (soFar, file) =>
-      for
-        before    <- soFar
-        recording <- RecordingReader.read(Path.of(file)).left.map(_.message)
-      yield before :+ recording
+    Expect.each(files)(file => RecordingReader.read(Path.of(file)).left.map(_.message))
 
   private def chosen(flights: Vector[Flown], vehicles: Seq[String]): Either[String, Vector[Flown]] =
     val wanted = if vehicles.isEmpty then flights
@@ -102,14 +95,13 @@ final class IdentifyCommand(using Scenarios)
 
   private def fit(flights: Vector[Flown], horizonS: Double): Either[String, Vector[Fit]] =
     val reflown = flights.map(HorizonErrors.reflown(_))
-    Structure.values.toVector.foldLeft[Either[String, Vector[Fit]]](Right(Vector.empty)):
-      (soFar, structure) =>
-        for
-          before <- soFar
-          found  <- Identification.of(flights, structure, horizonS)
-        yield
-          Console.err.println(s"fitted ${structure.label}: ${before.size + 1} of ${Structure.values.length}")
-          before :+ Fit(found, HorizonErrors.of(found.model, reflown), HorizonErrors.of(found.model, flights))
+    Expect.each(Structure.values): structure =>
+      for found <- Identification.of(flights, structure, horizonS)
+      yield
+        Console.err.println(
+          s"fitted ${structure.label}: ${structure.ordinal + 1} of ${Structure.values.length}"
+        )
+        Fit(found, HorizonErrors.of(found.model, reflown), HorizonErrors.of(found.model, flights))
 
   /** Of the eyes that the flights had, if any, and if they saw enough. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =

@@ -13,7 +13,7 @@ import skein.report.{Section, TextHistogram, TextTable}
 import skein.rpc.RpcClient
 import skein.signal.LatencyProfile
 import skein.units.Decimals.fixed
-import skein.units.{Clock, Span}
+import skein.units.{Clock, Expect, Span}
 
 /** Options of `./skein latency`. */
 final case class LatencyOptions(
@@ -46,8 +46,8 @@ object LatencyCommand
       simulator <- Arguments.address(options.simulator).left.map("--simulator: " + _)
       profile   <- Arguments.latency(options.link).left.map("--link: " + _)
       period    <- Span.parse(options.period).left.map("--period: " + _)
-      _ <- Either.cond(period > Span.Zero, (), s"--period: expected more than 0, came ${options.period}")
-      _ <- Either.cond(options.samples > 0, (), s"--samples: expected more than 0, came ${options.samples}")
+      _         <- Expect.that(period > Span.Zero)(s"--period: expected more than 0, came ${options.period}")
+      _      <- Expect.that(options.samples > 0)(s"--samples: expected more than 0, came ${options.samples}")
       folder <- OutFolder.made("--out", options.out)
       link = EmulatedLink(LinkProfile.symmetric(profile), options.seed, Clock.system)
       answers <- measure(simulator, link, period, options.samples)

@@ -13,8 +13,7 @@ import skein.search.{ClusterEvaluator, Conditions, Effort, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.training.*
 import skein.units.Decimals.significant
-import skein.units.Span
-import skein.view.{Shows, TaskShow}
+import skein.units.{Expect, Span}
 
 /** Options of `./skein learn`. */
 final case class LearnOptions(
@@ -87,24 +86,17 @@ final class LearnCommand(program: String)(using Scenarios)
     val flights = options.flights.getOrElse(20)
     for
       threads <- options.forward.threadCount
-      _       <- Either.cond(
-        flights >= 0 && flights <= 10_000,
-        (),
+      _       <- Expect.that(flights >= 0 && flights <= 10_000):
         s"--flights: expected 0 to 10000, came $flights"
-      )
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
       setup <- question.setup
-      shows  = Shows()
-      task   = TaskShow("learn")
-      _      = shows.add(task)
-      onShow = LearnOnShow(task, setup)
-      _ <- OutFolder.alone(folder):
+      _     <- OutFolder.alone(folder):
         val shown = Shown(options.json.value)
-        options.view.serving(shows):
+        options.view.serving("learn"): task =>
           measuring(setup, cluster, folder, threads, shown): measure =>
-            run(setup, folder, state, threads, flights, measure, shown, onShow)
+            run(setup, folder, state, threads, flights, measure, shown, LearnOnShow(task, setup))
     yield ()
 
   private type Begun = (Path, LearnQuestion, LearnState)
@@ -125,11 +117,8 @@ final class LearnCommand(program: String)(using Scenarios)
     for
       question <- LearnCommand.question(options)
       _        <- question.setup.flatMap(_.task)
-      _        <- Either.cond(
-        !Files.exists(folder.resolve(LearnFile.Name)),
-        (),
+      _        <- Expect.that(!Files.exists(folder.resolve(LearnFile.Name))):
         s"--out: $folder holds what was learned already; --resume $folder goes on with it"
-      )
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, LearnState())
 
@@ -352,5 +341,5 @@ object LearnCommand:
       flights <- LearnWork.flights(setup, policy, count)
       (settings, plans) = flights
       (missing, landed) = SpreadFlights.fly(settings, plans).partitionMap(identity)
-      _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
+      _ <- Expect.that(missing.isEmpty)(NotFlown.message(missing, plans.size))
     yield landed

@@ -9,6 +9,7 @@ import skein.scenario.Scenarios
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.training.LearnFile
 import skein.units.Decimals.significant
+import skein.units.Expect
 
 /** Whether a policy learns while it flies. */
 final case class LearnInFlight(
@@ -55,24 +56,15 @@ final case class LearnInFlight(
       _ <- within("--learn-updates", updates, 0.001, 1000)
       _ <- within("--learn-version", every, 1, 1_000_000)
       _ <- within("--learn-noise", noise, 0, 1)
-      _ <- Either.cond(
-        !settings.loops.contains(LoopKind.Plan),
-        (),
+      _ <- Expect.that(!settings.loops.contains(LoopKind.Plan)):
         "--learn: in the loop plan no policy decides; expected other loops"
-      )
-      _ <- Either.cond(
-        settings.policies.isEmpty,
-        (),
+      _ <- Expect.that(settings.policies.isEmpty):
         "--learn: expected no --policy beside it, came one; fly it apart"
-      )
       file  <- LearnFile.read(folder).left.map("--learn: " + _)
       setup <- file.question.setup.left.map(mistake => s"--learn: $folder: $mistake")
       count = settings.fleet.agents.count(_.role == setup.role)
-      _ <- Either.cond(
-        count == 1,
-        (),
+      _ <- Expect.that(count == 1):
         s"--learn: expected a scenario with one ${PolicyFile.name(setup.role)}, who learns, came $count"
-      )
       begun = (seed: Long) =>
         LearnerInFlight.of(
           setup.algorithm,
@@ -95,8 +87,5 @@ object LearnInFlight:
   given ParserForClass[LearnInFlight] = ParserForClass[LearnInFlight]
 
   private def within(option: String, value: Double, least: Double, most: Double): Either[String, Unit] =
-    Either.cond(
-      value >= least && value <= most,
-      (),
+    Expect.that(value >= least && value <= most):
       s"$option: expected ${least.significant(4)} to ${most.significant(4)}, came $value"
-    )

@@ -10,8 +10,8 @@ import skein.scenario.Scenarios
 import skein.search.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
-import skein.units.Span
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import skein.units.{Expect, Span}
+import upickle.default.ReadWriter
 
 /** What was learned, as workers measure it: on fresh episodes of forward simulation, and by flights in virtual time. */
 private[cli] object LearnWork:
@@ -29,21 +29,16 @@ private[cli] object LearnWork:
     setup.judges(threads = 1)(Judge.Baseline).tallies(Vector(setup.baseline.candidate), Probes)
 
   def question(setup: LearnSetup): ArraySeq[Byte] =
-    ArraySeq.unsafeWrapArray(writeJson(ProbedQuestion(setup.question, probe(setup))).getBytes(UTF_8))
+    JsonText.bytes(ProbedQuestion(setup.question, probe(setup)))
 
   def solvers(using Scenarios): Solvers = asked =>
     for
-      posed <-
-        try Right(readJson[ProbedQuestion](String(asked.toArray, UTF_8)))
-        catch case mistake: Exception => Left(s"expected learning's question, came: ${mistake.getMessage}")
+      posed <- JsonText.read[ProbedQuestion](asked, "learning's question")
       setup <- posed.question.setup
       came = probe(setup)
-      _ <- Either.cond(
-        came == posed.probe,
-        (),
+      _ <- Expect.that(came == posed.probe):
         s"the baseline comes to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link or --plant names another content here?"
-      )
     yield () =>
       val by = setup.judges(threads = 1)
       work => answer(setup, by, work)
@@ -104,7 +99,7 @@ private[cli] object LearnWork:
     run
       .computed(blocks)(onWait)
       .flatMap(_.toRight("no worker is left"))
-      .flatMap(UntilWrong.each(_)(distance))
+      .flatMap(Expect.each(_)(distance))
 
   private def flightAnswer(setup: LearnSetup, work: ArraySeq[Byte])(using
       Scenarios

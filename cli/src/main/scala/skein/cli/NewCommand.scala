@@ -5,6 +5,7 @@ import java.nio.file.attribute.PosixFilePermissions
 import java.nio.file.{FileSystems, Files, Path}
 import mainargs.{Leftover, ParserForClass, arg}
 import scala.util.Using
+import skein.units.Expect
 
 /** Options of `./skein new`. */
 final case class NewOptions(
@@ -24,15 +25,12 @@ object NewCommand
   protected def execute(options: NewOptions): Either[String, Unit] = options.name.value match
     case Seq(name) =>
       for
-        _ <- Either.cond(
-          name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*"),
-          (),
+        _ <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
           s"expected a name of small letters, digits and dashes that begins with a letter, came '$name'"
-        )
         _ <- taken(name).toLeft(())
         folder = Path.of(options.out.getOrElse(name))
         _ <-
-          Either.cond(!Files.exists(folder), (), s"expected a folder that is not there yet, came '$folder'")
+          Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, came '$folder'")
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")

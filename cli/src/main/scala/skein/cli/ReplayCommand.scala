@@ -6,6 +6,7 @@ import scala.concurrent.Promise
 import skein.flight.{FlownAgain, Replayed}
 import skein.record.{Difference, RecordingReader}
 import skein.scenario.Scenarios
+import skein.units.Expect
 import skein.view.{RecordedShow, Shows}
 
 /** Options of `./skein replay`. */
@@ -24,11 +25,7 @@ final class ReplayCommand(using Scenarios)
 
   protected def execute(options: ReplayOptions): Either[String, Unit] =
     for
-      _ <- Either.cond(
-        options.files.value.nonEmpty,
-        (),
-        "expected recordings, came none: ./skein replay FILE…"
-      )
+      _ <- Expect.that(options.files.value.nonEmpty)("expected recordings, came none: ./skein replay FILE…")
       _ <- options.view.mistake.toLeft(())
       _ <- if options.view.view.value then play(options) else replayAll(options.files.value)
     yield ()
@@ -37,10 +34,9 @@ final class ReplayCommand(using Scenarios)
   private def play(options: ReplayOptions): Either[String, Unit] =
     val shows = Shows()
     for
-      _ <- options.files.value.foldLeft[Either[String, Unit]](Right(())): (soFar, file) =>
-        soFar.flatMap(_ => RecordingReader.records(Path.of(file)).left.map(_.message)).map(rows =>
-          shows.add(RecordedShow.of(rows, RecordOptions.sceneOf))
-        )
+      _ <- Expect.each(options.files.value): file =>
+        for rows <- RecordingReader.records(Path.of(file)).left.map(_.message)
+        yield shows.add(RecordedShow.of(rows, RecordOptions.sceneOf))
       _ <- options.view.serving(shows):
         val ended = Promise[Either[String, Unit]]()
         Console.err.println("Ctrl-C ends it")
@@ -48,10 +44,7 @@ final class ReplayCommand(using Scenarios)
     yield ()
 
   private def replayAll(files: Seq[String]): Either[String, Unit] =
-    files
-      .foldLeft[Either[String, Boolean]](Right(true)): (soFar, file) =>
-        soFar.flatMap(same => replay(file).map(same && _))
-      .flatMap(Either.cond(_, (), "not the same"))
+    Expect.each(files)(replay).flatMap(same => Expect.that(same.forall(identity))("not the same"))
 
   private def replay(file: String): Either[String, Boolean] =
     Replayed

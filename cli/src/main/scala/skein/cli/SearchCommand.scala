@@ -8,8 +8,7 @@ import skein.scenario.Scenarios
 import skein.search.*
 import skein.settings.PolicyFile
 import skein.simd.LaneFunction
-import skein.units.Span
-import skein.view.{Shows, TaskShow}
+import skein.units.{Expect, Span}
 
 /** Options of `./skein search`. */
 final case class SearchOptions(
@@ -72,25 +71,15 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      shows                     = Shows()
-      task                      = TaskShow("search")
-      _                         = shows.add(task)
       ready <- question match
         case duel: SearchQuestion => duel.setup
         case team: TeamQuestion   => team.setup
       block = Effort.blockEpisodes(ready.byLanes, ready.conditions.vehicle)
       _ <- OutFolder.alone(folder):
-        options.view.serving(shows):
+        options.view.serving("search"): task =>
           EpisodeRunner.using(cluster, program, ready, question, folder, threads, block, shown): runner =>
-            SearchJob(
-              ready,
-              question,
-              folder,
-              threads,
-              runner,
-              shown,
-              task
-            ).run(state.getOrElse(ready.search.start))
+            SearchJob(ready, question, folder, threads, runner, shown, task)
+              .run(state.getOrElse(ready.search.start))
     yield ()
 
   private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
@@ -106,11 +95,8 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
       question <- options.scenario.orElse(scenarios.firstWithoutDuel).fold(duel(options))(team(options, _))
-      _        <- Either.cond(
-        !Files.exists(folder.resolve(SearchFile.Name)),
-        (),
+      _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
         s"--out: $folder holds a search already; --resume $folder goes on with it"
-      )
       _ <- OutFolder.made("--out", folder.toString)
     yield (folder, question, None)
 
@@ -124,7 +110,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       conditions <- forward.conditions(period)
       set        <- Arguments.settings(options.set)
-      vary       <- Arguments.all(options.vary)(Varied.parse(_).left.map("--vary: " + _))
+      vary       <- Expect.all(options.vary)(Varied.parse(_).left.map("--vary: " + _))
       candidates = options.candidates.getOrElse(1000)
       question   = TeamQuestion(
         scenario,
@@ -147,11 +133,8 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private def duel(options: SearchOptions): Either[String, SearchQuestion] =
     import options.forward
     for
-      _ <- Either.cond(
-        options.set.isEmpty && options.vary.isEmpty,
-        (),
+      _ <- Expect.that(options.set.isEmpty && options.vary.isEmpty):
         "--set, --vary: expected with --scenario, whose settings they are"
-      )
       family     <- scenarios.family(options.family.getOrElse("paper-pursuer")).left.map("--family: " + _)
       role       <- PolicyFile.roleOf(family, options.role).left.map("--role: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)

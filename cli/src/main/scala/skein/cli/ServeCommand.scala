@@ -10,7 +10,7 @@ import skein.link.{ControlThreads, TcpTransport, TransportError}
 import skein.settings.{NamedScene, SimulatedBody, TextFile}
 import skein.report.TextTable
 import skein.simulator.{HilSettings, MavlinkSettings, Overload, SimulatorServer, SimulatorSettings}
-import skein.units.Clock
+import skein.units.{Clock, Expect}
 import skein.view.Shows
 
 /** Options of `./skein serve`. */
@@ -58,29 +58,20 @@ object ServeCommand
     for
       address  <- Arguments.address(options.listen)
       overload <- overloadOf(options.workers)
-      _        <- Either.cond(
-        options.speed > 0 && options.speed <= MostSpeed,
-        (),
+      _        <- Expect.that(options.speed > 0 && options.speed <= MostSpeed):
         s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
-      )
       world     <- options.settings.fold(Right(WorldSettings.Default))(worldOf)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
       kind      <- plant.kind
       autopilot <-
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
-      _ <- Either.cond(
-        autopilot.isEmpty || !options.mavlink.value,
-        (),
+      _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
-      )
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       flies = if autopilot.isDefined then "--hil" else "--mavlink"
-      _ <- Either.cond(
-        autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar),
-        (),
+      _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar)):
         s"$flies: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
-      )
       mavlink = Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host))
       hil     = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
       shows   = Shows()

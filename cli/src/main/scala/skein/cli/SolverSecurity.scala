@@ -9,6 +9,7 @@ import scala.jdk.CollectionConverters.*
 import skein.cluster.{Endpoint, Tls}
 import skein.link.Address
 import skein.settings.SolverChoice
+import skein.units.Expect
 
 /** How a flight and a solver trust one another. */
 final case class SolverSecurity(
@@ -71,7 +72,7 @@ object SolverSecurity:
   private def isLoopback(at: Address) = Endpoint(at.host, at.port).isLoopback
 
   private def notOf(at: Address, option: (String, Option[String])): Either[String, Unit] =
-    Either.cond(option._2.isEmpty, (), s"${option._1}: is of another kind of solver than the one at $at")
+    Expect.that(option._2.isEmpty)(s"${option._1}: is of another kind of solver than the one at $at")
 
   private val Kinds = Seq("security.", "ssl.", "sasl.")
 

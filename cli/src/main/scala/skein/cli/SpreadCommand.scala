@@ -7,6 +7,7 @@ import skein.measure.FlightSummary
 import skein.report.{Report, ReportSections, Section}
 import skein.scenario.Scenarios
 import skein.settings.FlySettings
+import skein.units.Expect
 
 /** Options of `./skein spread`. */
 final case class SpreadOptions(
@@ -38,18 +39,12 @@ final class SpreadCommand(program: String)(using Scenarios)
     for
       settings <- options.flights.settings
       _        <- SolverOptions.virtual(settings)
-      _        <- Either.cond(
-        settings.images.isEmpty,
-        (),
+      _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
-      )
-      _       <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
+      _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
       cluster <- options.cluster.checked
-      _       <- Either.cond(
-        cluster.flatMap(_.block).forall(_ == 1),
-        (),
+      _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         s"--block: expected 1, since each flight is a block of its own, came ${options.cluster.block.getOrElse(0)}"
-      )
       out <- options.out
         .orElse(cluster.map(_ => OutFolder.dated("spread")))
         .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
@@ -67,7 +62,7 @@ final class SpreadCommand(program: String)(using Scenarios)
           .writeSpread(flown, folder)
           .map(output => shown.say(s"spread in ${output.page}"))
       )
-      _ <- Either.cond(missing.isEmpty, (), NotFlown.message(missing, plans.size))
+      _ <- Expect.that(missing.isEmpty)(NotFlown.message(missing, plans.size))
     yield ()
 
   private def elsewhere(

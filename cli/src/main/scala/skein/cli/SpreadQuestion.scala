@@ -9,10 +9,10 @@ import skein.cluster.{Solver, Solvers}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
-import skein.search.{BlockExecutor, UntilWrong}
+import skein.search.{BlockExecutor, JsonText}
 import skein.settings.{FlightPlan, FlySettings}
-import skein.units.Span
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import skein.units.{Expect, Span}
+import upickle.default.ReadWriter
 
 /** What is flown many times, as workers get it. A block is one flight: a plan's place among those of the settings, and a
   * seed.
@@ -23,7 +23,7 @@ import upickle.default.{ReadWriter, read as readJson, write as writeJson}
   *   digests of short flights: who flies them otherwise must not take part
   */
 private[cli] final case class SpreadQuestion(settings: String, probe: Vector[String]) derives ReadWriter:
-  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+  def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
 private[cli] object SpreadQuestion:
 
@@ -48,26 +48,21 @@ private[cli] object SpreadQuestion:
     val each  = (plans.distinctBy(_.link) ++ plans.distinctBy(_.policy)).distinct
     val short = settings.copy(duration = settings.duration.min(ProbeDuration))
     val flown = VirtualFlights.inParallel(short, each)(_.recorder.digest.toString)
-    UntilWrong.each(flown)(_.left.map(_.message))
+    Expect.each(flown)(_.left.map(_.message))
 
   private val ProbeDuration = Span.ofSeconds(1)
 
   /** Flies what was asked of scenarios that are known here. */
   def solvers(using Scenarios): Solvers = asked =>
     for
-      question <-
-        try Right(readJson[SpreadQuestion](String(asked.toArray, UTF_8)))
-        catch case mistake: Exception => Left(s"expected spread's question, came: ${mistake.getMessage}")
-      config <-
+      question <- JsonText.read[SpreadQuestion](asked, "spread's question")
+      config   <-
         try Right(ConfigFactory.parseString(question.settings))
         catch case mistake: ConfigException => Left(mistake.getMessage)
       settings <- FlySettings.read(config)
       came     <- probe(settings)
-      _        <- Either.cond(
-        came == question.probe,
-        (),
+      _        <- Expect.that(came == question.probe):
         "short flights are others here than at the coordinator; has a file that --link, --policy, --predictor or --scene names another content here?"
-      )
     yield () => (Ready(settings).answer(_)): Solver
 
   /** Flies, or has flown. */
@@ -93,7 +88,7 @@ private[cli] object SpreadQuestion:
           val large = answers.count(_.headOption.contains(TooLarge))
           if large > 0 then
             tell(s"$large of ${flown.size} flights are too large for a message and are flown here again")
-          UntilWrong.each(flown.zip(answers))(landed(_, _))
+          Expect.each(flown.zip(answers))(landed(_, _))
 
     private def blocks(seeds: Int): Vector[ArraySeq[Byte]] =
       for place <- plans.indices.toVector; number <- Vector.range(0, seeds)

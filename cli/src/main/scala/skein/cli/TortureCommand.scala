@@ -56,18 +56,12 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
         .left
         .map(mistake => s"--duration: $mistake")
       threads <- ForwardOptions.threadCount(options.threads)
-      _       <- Either.cond(options.seeds > 0, (), s"--seeds: expected 1 or more, came ${options.seeds}")
+      _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
       cluster <- options.cluster.checked
-      _       <- Either.cond(
-        cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds),
-        (),
+      _       <- Expect.that(cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds)):
         s"--block: expected 1 to ${TortureQuestion.MostSeeds} flights, came ${options.cluster.block.getOrElse(0)}"
-      )
-      _ <- Either.cond(
-        cluster.isDefined || options.out.isEmpty,
-        (),
+      _ <- Expect.that(cluster.isDefined || options.out.isEmpty):
         "--out: expected with --workers or --cluster, for what they computed"
-      )
       shown = Shown(options.json.value)
       scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
       task     = options.scenario.orElse(scenarios.firstWithoutDuel.map(_ => scenarios.kinds.head.name))
@@ -87,7 +81,7 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
           yield ()
       _      = count.end()
       failed = count.failed
-      _ <- Either.cond(failed.isEmpty, (), s"${failed.size} of ${options.seeds} flights broke a rule")
+      _ <- Expect.that(failed.isEmpty)(s"${failed.size} of ${options.seeds} flights broke a rule")
     yield ()
 
   private def elsewhere(

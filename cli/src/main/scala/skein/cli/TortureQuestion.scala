@@ -1,14 +1,14 @@
 package skein.cli
 
 import java.nio.ByteBuffer
-import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.scenario.{Scenario, Scenarios}
+import skein.search.JsonText
 import skein.settings.NamedScene
 import skein.torture.{Torture, Verdict}
-import skein.units.Span
+import skein.units.{Expect, Span}
 import skein.vehicle.VehicleKind
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import upickle.default.ReadWriter
 
 /** What flies through faults, as workers get it. A block is a range of seeds.
   *
@@ -22,17 +22,14 @@ private[cli] final case class TortureQuestion(
     scenario: Option[String],
     scene: Option[Map[String, String]]
 ) derives ReadWriter:
-  def bytes: ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(this).getBytes(UTF_8))
+  def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
   /** @return or what was expected, what came, and in which option */
   def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
     for
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
-      _    <- Either.cond(
-        task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor)),
-        (),
+      _    <- Expect.that(task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor))):
         s"--scenario ${scenario.getOrElse("")}: expected multirotors, came cars, whose commands torture does not follow"
-      )
       scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
 
@@ -49,10 +46,7 @@ private[cli] object TortureQuestion:
     scenarios.kind(name).map(_.standard).left.map("--scenario: " + _)
 
   def read(bytes: ArraySeq[Byte])(using Scenarios): Either[String, Ready] =
-    val question =
-      try Right(readJson[TortureQuestion](String(bytes.toArray, UTF_8)))
-      catch case mistake: Exception => Left(s"expected torture's question, came: ${mistake.getMessage}")
-    question.flatMap(_.ready)
+    JsonText.read[TortureQuestion](bytes, "torture's question").flatMap(_.ready)
 
   /** @param scenario
     *   absent where duels are flown, as many as the seed says
@@ -77,12 +71,15 @@ private[cli] object TortureQuestion:
       val broken         =
         for seed <- first until first + count
         yield seed -> TortureQuestion.short(Torture.of(seed, duration, scenario, scene).violations)
-      ArraySeq.unsafeWrapArray(writeJson(broken.toVector).getBytes(UTF_8))
+      JsonText.bytes(broken.toVector)
 
     /** What a block's answer says. */
     def verdicts(answer: ArraySeq[Byte]): Vector[Verdict] =
-      readJson[Vector[(Long, Vector[String])]](String(answer.toArray, UTF_8)).map: (seed, violations) =>
-        Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+      JsonText.read[Vector[(Long, Vector[String])]](answer, "torture's answer") match
+        case Left(wrong)   => throw IllegalArgumentException(wrong)
+        case Right(broken) =>
+          for (seed, violations) <- broken
+          yield Verdict(Torture.plan(seed, duration, scenario, scene), violations)
 
   /** What fits into a message with a block's others. */
   private def short(violations: Vector[String]): Vector[String] =

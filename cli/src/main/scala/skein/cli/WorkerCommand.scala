@@ -8,7 +8,7 @@ import scala.concurrent.duration.DurationLong
 import skein.cluster.jars.{Acceptance, JarStore, Sha256}
 import skein.cluster.{Tls, WorkerNode, WorkerProcesses}
 import skein.scenario.Scenarios
-import skein.units.Span
+import skein.units.{Expect, Span}
 
 /** Options of `./skein worker`. */
 final case class WorkerOptions(
@@ -51,16 +51,10 @@ final class WorkerCommand(using Scenarios)
       tls      <- options.tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
       threads  <- ForwardOptions.threadCount(options.threads)
       patience <- Span.parse(options.patience).left.map("--patience: " + _)
-      _        <- Either.cond(
-        patience <= LongestPatience,
-        (),
+      _        <- Expect.that(patience <= LongestPatience):
         s"--patience: expected a week at most, came ${options.patience}"
-      )
-      _ <- Either.cond(
-        join.isLoopback || options.listen.isDefined,
-        (),
+      _ <- Expect.that(join.isLoopback || options.listen.isDefined):
         s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
-      )
       programs <- accepted(options.acceptJars)
       node = WorkerNode(
         join,
@@ -94,7 +88,7 @@ final class WorkerCommand(using Scenarios)
   private def accepted(digests: Option[String]): Either[String, Acceptance] = digests match
     case None       => Right(Acceptance.none)
     case Some(text) =>
-      Arguments
+      Expect
         .all(text.split(',').toSeq)(Sha256.parse(_).left.map("--accept-jars: " + _))
         .map(accepted => Acceptance(accepted.toSet, JarStore.ofUser))
 

@@ -7,7 +7,7 @@ import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.scenario.PaperDuel
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
-import skein.units.Span
+import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
 import upickle.implicits.key
 
@@ -31,21 +31,12 @@ final case class Conditions(
   def checked: Either[String, LoopKind] =
     for
       kind <- LoopKind.parse(loop).left.map("--loop: " + _)
-      _    <- Either.cond(
-        altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM,
-        (),
+      _    <- Expect.that(altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM):
         s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, came $altitudeM"
-      )
-      _ <- Either.cond(
-        periodMs >= 1 && periodMs <= 10_000,
-        (),
+      _ <- Expect.that(periodMs >= 1 && periodMs <= 10_000):
         s"--period: expected 1 ms to 10 s, came $periodMs ms"
-      )
-      _ <- Either.cond(
-        durationS >= 10 && durationS <= 3600,
-        (),
+      _ <- Expect.that(durationS >= 10 && durationS <= 3600):
         s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
-      )
     yield kind
 
   /** @return or what was expected and came */

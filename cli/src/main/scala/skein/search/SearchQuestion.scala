@@ -14,6 +14,7 @@ import skein.optimise.{
 import skein.policy.{Policy, PolicyFamily, Role, SearchSpace}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.units.Expect
 import upickle.default.ReadWriter
 
 /** What a search is asked, in the words of the user; enough to go on with it, or to ask again.
@@ -56,11 +57,8 @@ final case class SearchQuestion(
         .parse(Role.opponentOf(role), opponent)
         .left
         .map("--opponent: " + _)
-      _ <- Either.cond(
-        fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode),
-        (),
+      _ <- Expect.that(fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode)):
         s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
-      )
       method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
     yield SearchSetup(this, family, role, objective, flown, delays, opponent, method)
 
@@ -78,17 +76,11 @@ object SearchQuestion:
       dimension: Int
   ): Either[String, SearchMethod] =
     for
-      _ <- Either.cond(candidates >= 4, (), s"--candidates: expected 4 or more, came $candidates")
-      _ <- Either.cond(
-        episodes >= 1 && episodes <= MostEpisode,
-        (),
+      _ <- Expect.that(candidates >= 4)(s"--candidates: expected 4 or more, came $candidates")
+      _ <- Expect.that(episodes >= 1 && episodes <= MostEpisode):
         s"--episodes: expected 1 to $MostEpisode, came $episodes"
-      )
-      _ <- Either.cond(
-        population >= 4 && population <= candidates,
-        (),
+      _ <- Expect.that(population >= 4 && population <= candidates):
         s"--population: expected 4 to the number of candidates, $candidates, came $population"
-      )
       generations = (candidates / population).max(1)
       method <- name match
         case "grid" =>
@@ -104,18 +96,12 @@ object SearchQuestion:
         case "racing"        =>
           val race = SearchMethod.Racing(candidates, episodes)
           for
-            _ <- Either.cond(
-              candidates <= MostRacing,
-              (),
+            _ <- Expect.that(candidates <= MostRacing):
               s"--candidates: a race takes at most $MostRacing, came $candidates"
-            )
-            _ <- Either.cond(
-              race.mostOfOne <= Search.PlayOffFrom,
-              (),
+            _ <- Expect.that(race.mostOfOne <= Search.PlayOffFrom):
               s"--episodes: the last of $candidates candidates in a race may fly at most ${Search.PlayOffFrom} episodes, " +
                 s"and came to ${race.mostOfOne}, ${race.mostOfOne / episodes} times those of the first round: " +
                 s"expected at most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, came $episodes"
-            )
           yield race
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method

@@ -4,6 +4,7 @@ import java.io.{FileNotFoundException, IOException}
 import java.nio.channels.FileChannel
 import java.nio.file.{Files, NoSuchFileException, Path, StandardCopyOption, StandardOpenOption}
 import java.util.zip.CRC32C
+import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it: numbers that
   * were damaged or edited would still be numbers, and what goes on from them would end as no unbroken run does.
@@ -11,47 +12,44 @@ import java.util.zip.CRC32C
   * @param name
   *   of the file, in its folder
   * @param version
-  *   of the object, its first field
+  *   of the object, which its first field is
   * @param what
   *   it is the state of, in words, for example "a search"
   */
-private[skein] final class StateFile(val name: String, version: Int, what: String):
+private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
   import StateFile.*
 
-  /** @param json
-    *   an object whose first field is `version`
-    */
-  def sealing(json: String): String =
-    val text = json.stripSuffix("}")
+  /** With its checksum. */
+  def json(state: A): String =
+    val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"
 
   /** @return
-    *   `json` of what [[sealing]] made, or what was expected and came
+    *   what [[json]] was made of, or what was expected and came
     */
-  def opened(text: String): Either[String, String] =
+  def parse(text: String): Either[String, A] =
     val at = text.lastIndexOf(Seal)
     text match
       case Versioned(came) if came != version.toString   => Left(s"expected version $version, came $came")
       case Versioned(_) if at < 0 || !text.endsWith("}") =>
         Left(s"expected the state of $what with its checksum at the end, came a file that is cut off")
-      case Versioned(_) =>
-        Either.cond(
-          text.substring(at + Seal.length, text.length - 1) == sumOf(text.take(at)),
-          text.take(at) + "}",
+      case Versioned(_) if text.substring(at + Seal.length, text.length - 1) != sumOf(text.take(at)) =>
+        Left(
           s"expected the state of $what as it was written; its checksum says that it was damaged or edited since"
         )
-      case _ => Left(s"expected the state of $what, which begins with its version")
+      case Versioned(_) => JsonText.parse[A](text.take(at) + "}", s"the state of $what")
+      case _            => Left(s"expected the state of $what, which begins with its version")
 
-  /** The file's text, without its checksum.
+  /** Reads the file of a folder.
     *
     * @return
     *   or why it cannot be gone on with
     */
-  def read(folder: Path): Either[String, String] =
+  def read(folder: Path): Either[String, A] =
     val file = folder.resolve(name)
     try
       if Files.exists(file) && !Files.isRegularFile(file) then Left(s"$file: expected a file")
-      else opened(Files.readString(file)).left.map(mistake => s"$file: $mistake")
+      else parse(Files.readString(file)).left.map(mistake => s"$file: $mistake")
     catch
       case _: (NoSuchFileException | FileNotFoundException) =>
         Left(s"there is no $file; expected the folder of $what")
@@ -64,11 +62,11 @@ private[skein] final class StateFile(val name: String, version: Int, what: Strin
     * @return
     *   or why not
     */
-  def write(folder: Path, json: String): Either[String, Unit] =
+  def write(folder: Path, state: A): Either[String, Unit] =
     val target  = folder.resolve(name)
     val written = folder.resolve(s"$name.new")
     try
-      Files.writeString(written, sealing(json))
+      Files.writeString(written, json(state))
       force(written)
       Files.move(written, target, StandardCopyOption.ATOMIC_MOVE, StandardCopyOption.REPLACE_EXISTING)
       Right(())

@@ -15,6 +15,7 @@ import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Nearest, Scenario, ScenarioKind, Scenarios}
 import skein.settings.{ConfigKeys, ScenarioSettings}
 import skein.units.Decimals.significant
+import skein.units.Expect
 import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
 
@@ -71,36 +72,23 @@ final case class TeamQuestion(
   /** @return or what was expected, what came, and in which option */
   def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
-      kind <- scenarios.kind(scenario).left.map("--scenario: " + _)
-      _    <- Either.cond(vary.nonEmpty, (), "--vary: expected a setting to search, for example ring-m=4..12")
+      kind  <- scenarios.kind(scenario).left.map("--scenario: " + _)
+      _     <- Expect.that(vary.nonEmpty)("--vary: expected a setting to search, for example ring-m=4..12")
       plain <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
-      axes  <- UntilWrong.each(vary)(axis(kind, plain, _))
-      _     <- Either.cond(
-        axes.map(_.name).distinct.size == axes.size,
-        (),
+      axes  <- Expect.each(vary)(axis(kind, plain, _))
+      _     <- Expect.that(axes.map(_.name).distinct.size == axes.size):
         s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
-      )
       space = SearchSpace(axes)
       // A setting's bounds may be wrong together with another's.
       corners <-
-        UntilWrong.each(
+        Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
-      _ <- Either.cond(
-        corners.forall(corner => altitudesM(corner) == altitudesM(plain)),
-        (),
+      _ <- Expect.that(corners.forall(corner => altitudesM(corner) == altitudesM(plain))):
         "--vary: expected settings at which all fly as high, since a model of a vehicle holds at its altitude"
-      )
-      _ <- Either.cond(
-        fresh >= 2 && fresh <= MostFresh,
-        (),
-        s"--fresh: expected 2 to $MostFresh, came $fresh"
-      )
-      _ <- Either.cond(
-        plain.agents.forall(_.kind == VehicleKind.Multirotor),
-        (),
+      _ <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
+      _ <- Expect.that(plain.agents.forall(_.kind == VehicleKind.Multirotor)):
         s"--scenario: expected one of multirotors, came ${plain.name}, which has cars: fly and budget fly it"
-      )
       flown  <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
       by     <- TeamObjective.parse(objective, plain).left.map("--objective: " + _)
       delays <- Conditions.delays(link).left.map("--link: " + _)

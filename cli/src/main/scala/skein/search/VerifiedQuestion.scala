@@ -4,7 +4,8 @@ import scala.collection.immutable.ArraySeq
 import skein.cluster.Solvers
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import skein.units.Expect
+import upickle.default.ReadWriter
 
 /** A search's question as workers get it.
   *
@@ -24,23 +25,17 @@ object VerifiedQuestion:
     by(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
 
   def bytes(question: SearchFile.Question, ready: ReadySearch): ArraySeq[Byte] =
-    val posed = VerifiedQuestion(question, probe(ready, ready.judges(1)))
-    ArraySeq.unsafeWrapArray(writeJson(posed).getBytes("UTF-8"))
+    JsonText.bytes(VerifiedQuestion(question, probe(ready, ready.judges(1))))
 
   /** Answers the questions of searches whose scenarios are known here. */
   def solvers(using Scenarios): Solvers = asked =>
     for
-      posed <-
-        try Right(readJson[VerifiedQuestion](String(asked.toArray, "UTF-8")))
-        catch case mistake: Exception => Left(s"expected a search's question, came: ${mistake.getMessage}")
+      posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")
       ready <- setup(posed.question)
       came = probe(ready, ready.judges(1))
-      _ <- Either.cond(
-        came == posed.probe,
-        (),
+      _ <- Expect.that(came == posed.probe):
         s"the defaults come to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
           "has a file that --link, --plant or --opponent names another content here?"
-      )
     yield () =>
       val judges = ready.judges(1)
       work => SearchBlock.read(work).fold(wrong => throw IllegalArgumentException(wrong), _.answer(judges))

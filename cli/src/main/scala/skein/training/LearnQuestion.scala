@@ -10,6 +10,7 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
+import skein.units.Expect
 import upickle.default.ReadWriter
 
 /** What is to be learned, in the words of the user; enough to go on with it, or to learn it again.
@@ -76,11 +77,8 @@ final case class LearnQuestion(
       _      <- within("--episodes", episodes, 2, MostEpisodes)
       _      <- within("--fresh", fresh, 2, MostEpisodes)
       _      <- learner.mistake.map(asOption).toLeft(())
-      _      <- Either.cond(
-        algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments,
-        (),
+      _      <- Expect.that(algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments):
         s"--batch: expected at most the ${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
-      )
     yield LearnSetup(this, algorithm, role, game, flown, delays)
 
   private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
@@ -111,11 +109,8 @@ object LearnQuestion:
       most: Double,
       unit: String = ""
   ): Either[String, Unit] =
-    Either.cond(
-      value >= least && value <= most,
-      (),
+    Expect.that(value >= least && value <= most):
       s"$option: expected ${least.significant(4)} to ${most.significant(4)}$unit, came ${value.significant(4)}$unit"
-    )
 
   /** `learning rate: …` as `--learning-rate: …`. */
   private def asOption(mistake: String) =

@@ -13,7 +13,8 @@ import java.util.zip.{CRC32C, CheckedInputStream, CheckedOutputStream}
 import scala.util.Using
 import skein.learn.Learner
 import skein.search.StateFile
-import upickle.default.{ReadWriter, read as readJson, write as writeJson}
+import skein.units.Expect
+import upickle.default.ReadWriter
 
 /** How far learning has come.
   *
@@ -48,21 +49,10 @@ final case class LearnFile(version: Int, question: LearnQuestion, state: LearnSt
 object LearnFile:
   val Name           = "learn.json"
   val Version        = 2
-  private val onDisk = StateFile(Name, Version, "learning, of ./skein learn")
+  private val onDisk = StateFile[LearnFile](Name, Version, "learning, of ./skein learn")
+  export onDisk.read
 
   private def numbers(folder: Path, rounds: Int) = folder.resolve(s"learner-$rounds.bin")
-
-  /** Reads `learn.json` of a folder.
-    *
-    * @return
-    *   or why it cannot be gone on with
-    */
-  def read(folder: Path): Either[String, LearnFile] =
-    onDisk.read(folder).flatMap: json =>
-      try Right(readJson[LearnFile](json))
-      catch
-        case mistake: Exception =>
-          Left(s"${folder.resolve(Name)}: expected the state of learning, came: ${mistake.getMessage}")
 
   /** Fills a learner with the numbers that it had after these rounds. */
   def load(folder: Path, state: LearnState, learner: Learner): Either[String, Unit] =
@@ -74,11 +64,8 @@ object LearnFile:
         Using.resource(BufferedInputStream(Files.newInputStream(file), Buffer)): bytes =>
           learner.load(DataInputStream(CheckedInputStream(bytes, sum)))
           val isWhole = DataInputStream(bytes).readLong() == sum.getValue && bytes.read() < 0
-          Either.cond(
-            isWhole && learner.isFinite,
-            (),
+          Expect.that(isWhole && learner.isFinite):
             s"$file: expected the learner's numbers as they were written; their checksum says that they were damaged since"
-          )
       catch
         case _: NoSuchFileException =>
           Left(s"there is no $file; expected the learner's numbers there, beside $Name")
@@ -100,7 +87,7 @@ object LearnFile:
         learner.save(DataOutputStream(CheckedOutputStream(bytes, sum)))
         DataOutputStream(bytes).writeLong(sum.getValue)
       StateFile.force(file)
-      onDisk.write(folder, writeJson(LearnFile(Version, question, state))).map: _ =>
+      onDisk.write(folder, LearnFile(Version, question, state)).map: _ =>
         Using.resource(Files.newDirectoryStream(folder, "learner-*.bin")):
           _.forEach(other => if other != file then Files.delete(other))
     catch case failed: IOException => Left(s"cannot write $file: $failed")

@@ -126,11 +126,10 @@ private object LatencyText:
   private def samples(path: String, content: String): Either[LatencyError, Vector[Double]] =
     val lines = content.linesIterator.map(_.trim).zipWithIndex.filterNot: (line, _) =>
       line.isEmpty || line.startsWith("#")
-    val parsed = lines.map: (line, index) =>
-      line.toDoubleOption.filter(ms => ms >= 0 && ms <= 3_600_000).toRight(BadSample(path, index + 1, line))
-    parsed.foldLeft[Either[LatencyError, Vector[Double]]](Right(Vector.empty)): (before, next) =>
-      before.flatMap(ms => next.map(ms :+ _))
-    .filterOrElse(_.nonEmpty, NoSamples(path))
+    Expect
+      .each(lines): (line, index) =>
+        line.toDoubleOption.filter(ms => ms >= 0 && ms <= 3_600_000).toRight(BadSample(path, index + 1, line))
+      .filterOrElse(_.nonEmpty, NoSamples(path))
 
   private val time = """\s*(\d+(?:\.\d+)?)\s*(us|ms|s)\s*""".r
 

@@ -7,6 +7,7 @@ import skein.lanes.SteppedDuels.WORLDS
 import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.units.Expect
 
 /** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for from outside
   * ([[EnvironmentSettings]]), at the moments at which the loop decides, on readings as old as the link makes them.
@@ -114,7 +115,7 @@ object EnvironmentBatch:
   )(using Scenarios): Either[String, EnvironmentBatch] =
     for
       config <- if settings.isDuel then settings.resolvedAgainst(opponent) else ScenarioSide.of(settings)
-      _      <- Either.cond(count >= 1 && count <= Most, (), s"num_envs: expected 1 to $Most, came $count")
+      _      <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
       made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
 

@@ -9,7 +9,7 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
-import skein.units.Span
+import skein.units.{Expect, Span}
 
 /** What an environment is, as users name it.
   *
@@ -76,11 +76,8 @@ final case class EnvironmentSettings(
   private[environment] def resolvedAgainst(told: Option[PolicyFile]): Either[String, Resolved] =
     for
       roles <- roles
-      _     <- Either.cond(
-        objective.isEmpty,
-        (),
+      _     <- Expect.that(objective.isEmpty):
         s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'"
-      )
       flown <- flown(altitudeM)
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
@@ -197,4 +194,4 @@ object EnvironmentSettings:
             case _                       => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
-    Either.cond(value >= least && value <= most, (), s"$name: expected $least to $most, came $value")
+    Expect.that(value >= least && value <= most)(s"$name: expected $least to $most, came $value")

@@ -7,6 +7,7 @@ import skein.policy.{Agent, AgentPolicy, Fleet, PaperPursuer, Policy, Role, Team
 import skein.scenario.{Positions, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
+import skein.units.Expect
 import skein.vehicle.VehicleKind
 
 /** A side of a scenario that learns: some vehicle of its role is decided for from outside, the others of the role fly
@@ -88,11 +89,8 @@ private[environment] object ScenarioSide:
         learners.head,
         "learners: expected pursuer or evader, came 'both', which is the duel's"
       )
-      _ <- Either.cond(
-        settings.opponent.isEmpty,
-        (),
+      _ <- Expect.that(settings.opponent.isEmpty):
         s"opponent: expected none with scenario ${settings.scenario}, whose others fly their own policies, came '${settings.opponent}'"
-      )
       kind     <- scenarios.kind(settings.scenario).left.map("scenario: " + _)
       scenario <- ScenarioSettings.ofKeys(kind, settings.set).left.map("set: " + _)
       agents = scenario.agents
@@ -100,11 +98,8 @@ private[environment] object ScenarioSide:
         s"scenario: expected one of multirotors that are told of one another, came ${scenario.name}, $why"
       ).toLeft(())
       members = agents.indices.filter(agents(_).role == role).toVector
-      _ <- Either.cond(
-        members.nonEmpty && members.size < agents.size,
-        (),
+      _ <- Expect.that(members.nonEmpty && members.size < agents.size):
         s"scenario: expected one with a ${role.name.toLowerCase(java.util.Locale.ROOT)} and vehicles of another role, came ${scenario.name} of ${roles(agents)}"
-      )
       objective <-
         if settings.objective.isEmpty then Right(None)
         else

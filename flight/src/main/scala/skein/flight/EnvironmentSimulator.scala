@@ -167,5 +167,5 @@ object EnvironmentSimulator:
     for
       begun <- process.reset()
       _     <-
-        Either.cond(begun.step > Span.Zero, (), s"stepS: expected more than 0, came ${begun.step.toSeconds}")
+        Expect.that(begun.step > Span.Zero)(s"stepS: expected more than 0, came ${begun.step.toSeconds}")
     yield new EnvironmentSimulator(process, begun, names, clock, recorder, on)

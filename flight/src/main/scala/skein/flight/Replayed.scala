@@ -5,6 +5,7 @@ import skein.loop.Replay
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.settings.RecordedPlan
+import skein.units.Expect
 
 /** What came of replaying a recording.
   *
@@ -35,7 +36,7 @@ object Replayed:
   def of(file: Path)(using Scenarios): Either[String, Replayed] =
     for
       recording <- RecordingReader.read(file).left.map(_.message)
-      _ <- Either.cond(recording.heading.vehicles.nonEmpty, (), "it has no vehicles, so nothing was decided")
+      _     <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
       flown <- RecordedPlan.of(recording)
       decided = Replay(flown.fleet, recording, flown.settings.planningByModel).firstDifference
       again <- Option.when(recording.flight.isVirtual)(flyAgain(file, recording, flown)) match

@@ -4,6 +4,7 @@ import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, Da
 import java.util.zip.{DeflaterOutputStream, InflaterInputStream}
 import scala.collection.immutable.ArraySeq
 import scala.util.Using
+import skein.bytes.Codec
 import skein.record.{EventKind, FlightRow}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
@@ -11,7 +12,7 @@ import skein.units.*
 /** A flight's summary as bytes, and back: every number to the bit. What follows from the rest (distance, result) is
   * computed again, and the scenario is who reads' own.
   *
-  * Fields in their order, big-endian; numbers of one kind by their bytes, all first bytes first, since these repeat; then
+  * As [[Codec]] writes it, but numbers of one kind by their bytes, all first bytes first, since these repeat; then
   * deflated.
   */
 object SummaryBytes:
@@ -20,7 +21,10 @@ object SummaryBytes:
 
   def write(summary: FlightSummary): ArraySeq[Byte] =
     val bytes = ByteArrayOutputStream()
-    Using.resource(DataOutputStream(DeflaterOutputStream(bytes)))(Writer(_).summary(summary))
+    Using.resource(DataOutputStream(DeflaterOutputStream(bytes)))(Codecs(summary.scenario).all.write(
+      summary,
+      _
+    ))
     ArraySeq.unsafeWrapArray(bytes.toByteArray)
 
   /** @param scenario
@@ -29,7 +33,7 @@ object SummaryBytes:
     *   or why these bytes are none
     */
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =
-    try Right(Reader(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))).summary(scenario))
+    try Right(Codecs(scenario).all.read(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))))
     catch
       case wrong @ (_: IOException | _: IllegalArgumentException | _: NoSuchElementException) =>
         Left(s"expected a flight's summary, came ${bytes.length} bytes that are none: $wrong")
@@ -39,241 +43,61 @@ object SummaryBytes:
     if all.length > MostBytes then throw IOException(s"they come to more than $MostBytes")
     all
 
-  private final class Writer(out: DataOutputStream):
-    def summary(of: FlightSummary): Unit =
-      flight(of.flight)
-      each(of.tracks)(track)
-      each(of.roles)(role)
-      option(of.roundTripsMs)(distribution)
-      Seq(of.readings, of.decisions, of.commands).foreach(out.writeInt)
-      each(of.events.toVector.sortBy(_._1.ordinal)): (kind, count) =>
-        text(kind.toString)
-        out.writeInt(count)
-      option(of.cutShort)(text)
-      option(of.policy)(text)
-      option(of.planning)(planning)
-      option(of.predictions): errors =>
-        predictions(errors.own)
-        predictions(errors.others)
-      option(of.paused)(span => out.writeLong(span.toNanos))
-      each(of.seeing)(seeing(_, of.scenario))
-      option(of.solver)(solver)
-      option(of.commandAgesMs)(distribution)
+  private final class Codecs(scenario: Option[Scenario]):
+    private val eyes = scenario.toVector.flatMap(_.eyes)
 
-    private def flight(of: FlightRow): Unit =
-      Seq(of.id, of.loop, of.link, of.clock, of.simulator, of.scenario, of.version).foreach(text)
-      Seq(of.seed, of.period.toNanos, of.duration.toNanos, of.startedAt.toNanos).foreach(out.writeLong)
+    private given longs: Codec[Vector[Long]] = new Codec[Vector[Long]]:
+      def write(value: Vector[Long], out: DataOutputStream): Unit =
+        out.writeInt(value.size)
+        for place <- 7 to 0 by -1; number <- value do out.writeByte((number >> (8 * place)).toInt)
+      def read(in: DataInputStream): Vector[Long] =
+        val values = new Array[Long](Codec.length(in))
+        for _ <- 0 until 8; index <- values.indices do
+          values(index) = values(index) << 8 | in.readUnsignedByte().toLong
+        values.toVector
 
-    private def track(of: Track): Unit =
-      text(of.vehicle)
-      text(of.role)
-      val times = of.times.map(_.toNanos)
-      longs(times.zip(0L +: times).map(_ - _))
-      vectors(of.positionsNed)
-      vectors(of.velocitiesNed)
+    private given doubles: Codec[Vector[Double]] =
+      longs.imap(_.map(java.lang.Double.longBitsToDouble))(_.map(java.lang.Double.doubleToRawLongBits))
+    private given vectors: Codec[Vector[Vector3]] = Codec
+      .derived[(Vector[Double], Vector[Double], Vector[Double])]
+      .imap((x, y, z) => x.lazyZip(y).lazyZip(z).map(Vector3(_, _, _)).toVector)(of =>
+        (of.map(_.x), of.map(_.y), of.map(_.z))
+      )
+    private given pairs: Codec[Vector[(Double, Double)]] =
+      Codec.derived[(Vector[Double], Vector[Double])].imap((first, second) => first.zip(second))(_.unzip)
 
-    private def role(of: RoleSummary): Unit =
-      text(of.role)
-      each(of.observedMs.toVector.sortBy(_._1.ordinal)): (kind, observed) =>
-        out.writeByte(kind.ordinal)
-        distribution(observed)
-      option(of.ownTrueAgeMs)(distribution)
-      option(of.opponentTrueAgeMs)(distribution)
-
-    private def planning(of: PlanningSummary): Unit =
-      Seq(of.candidates, of.slices, of.tookMs).foreach(distribution)
-      Seq(of.missed, of.breached).foreach(out.writeInt)
-
-    private def predictions(of: PredictionErrors): Unit =
-      out.writeInt(of.made)
-      doubles(of.samples.map(_._1))
-      doubles(of.samples.map(_._2))
-
-    private def seeing(of: SeeingSummary, scenario: Option[Scenario]): Unit =
-      out.writeInt(scenario.fold(-1)(_.eyes.indexOf(of.eye)))
-      each(of.detections): detection =>
-        out.writeLong(detection.at.toNanos)
-        Seq(detection.cameraNed, detection.believedNed, detection.trueNed).foreach(vector)
-        Seq(detection.orientation, detection.trueOrientation).foreach: turned =>
-          Seq(turned.w, turned.x, turned.y, turned.z).foreach(out.writeDouble)
-        Seq(
-          detection.sinceStartS,
-          detection.azimuthRad,
-          detection.elevationRad,
-          detection.rangeM,
-          detection.tookMs
-        )
-          .foreach(out.writeDouble)
-        option(detection.firstUsedMs)(out.writeDouble)
-      out.writeInt(of.pictures)
-      option(of.agesMs)(distribution)
-
-    private def solver(of: SolverSummary): Unit =
-      text(of.at)
-      out.writeInt(of.answers)
-      Seq(of.roundTripsMs, of.thinkingMs).foreach(option(_)(distribution))
-      Seq(of.missed, of.late, of.repeated, of.left, of.lost, of.restarted).foreach(out.writeInt)
-
-    private def text(value: String): Unit =
-      val bytes = value.getBytes("UTF-8")
-      out.writeInt(bytes.length)
-      out.write(bytes)
-
-    private def distribution(of: Distribution): Unit = doubles(of.sorted)
-
-    private def vector(of: Vector3): Unit = Seq(of.x, of.y, of.z).foreach(out.writeDouble)
-
-    private def vectors(of: Vector[Vector3]): Unit =
-      doubles(of.map(_.x))
-      doubles(of.map(_.y))
-      doubles(of.map(_.z))
-
-    private def doubles(of: Vector[Double]): Unit = longs(of.map(java.lang.Double.doubleToRawLongBits))
-
-    private def longs(of: Vector[Long]): Unit =
-      out.writeInt(of.size)
-      for place <- 7 to 0 by -1; value <- of do out.writeByte((value >> (8 * place)).toInt)
-
-    private def each[A](of: Seq[A])(one: A => Unit): Unit =
-      out.writeInt(of.size)
-      of.foreach(one)
-
-    private def option[A](of: Option[A])(one: A => Unit): Unit =
-      out.writeBoolean(of.isDefined)
-      of.foreach(one)
-
-  private final class Reader(in: DataInputStream):
-    def summary(scenario: Option[Scenario]): FlightSummary =
-      val flown                              = flight()
-      val tracks                             = each(track())
-      val roles                              = each(role())
-      val trips                              = option(distribution())
-      val Seq(readings, decisions, commands) = Seq.fill(3)(in.readInt())
-      val events                             = each(EventKind.valueOf(text()) -> in.readInt()).toMap
-      FlightSummary(
-        flown,
-        tracks,
-        scenario,
-        roles,
-        trips,
-        readings,
-        decisions,
-        commands,
-        events,
-        cutShort = option(text()),
-        policy = option(text()),
-        planning = option(planning()),
-        predictions = option((own = predictions(), others = predictions())),
-        paused = option(Span.ofNanos(in.readLong())),
-        seeing = each(seeing(scenario)).flatten,
-        solver = option(solver()),
-        commandAgesMs = option(distribution())
+    private given Codec[Track] = Codec
+      .derived[(String, String, Vector[Long], Vector[Vector3], Vector[Vector3])]
+      .imap((vehicle, role, steps, positions, velocities) =>
+        val times = steps.scanLeft(0L)(_ + _).drop(1).map(Instant.ofNanos)
+        Track.of(vehicle, role, times.lazyZip(positions).lazyZip(velocities).toVector)
+      )(of =>
+        val times = of.times.map(_.toNanos)
+        (of.vehicle, of.role, times.zip(0L +: times).map(_ - _), of.positionsNed, of.velocitiesNed)
       )
 
-    private def flight(): FlightRow =
-      val Seq(id, loop, link, clock, simulator, scenario, version) = Seq.fill(7)(text())
-      val Seq(seed, period, duration, startedAt)                   = Seq.fill(4)(in.readLong())
-      FlightRow(
-        id,
-        loop,
-        link,
-        seed,
-        Span.ofNanos(period),
-        Span.ofNanos(duration),
-        clock,
-        simulator,
-        scenario,
-        version,
-        Instant.ofNanos(startedAt)
-      )
+    private given Codec[Distribution]      = doubles.imap(Distribution.of(_).get)(_.sorted)
+    private given Codec[EventKind]         = Codec[String].imap(EventKind.valueOf)(_.toString)
+    private given Codec[TimingObservation] = Codec[Int].imap(TimingObservation.fromOrdinal)(_.ordinal)
+    private given events: Codec[Map[EventKind, Int]]                    = byKind
+    private given observed: Codec[Map[TimingObservation, Distribution]] = byKind
 
-    private def track(): Track =
-      val (vehicle, role) = (text(), text())
-      val times           = longs().scanLeft(0L)(_ + _).drop(1).map(Instant.ofNanos)
-      val positions       = vectors()
-      val velocities      = vectors()
-      Track.of(vehicle, role, times.lazyZip(positions).lazyZip(velocities).toVector)
+    private given Codec[FlightRow]        = Codec.derived
+    private given Codec[RoleSummary]      = Codec.derived
+    private given Codec[PlanningSummary]  = Codec.derived
+    private given Codec[PredictionErrors] = Codec.derived
+    private given Codec[SolverSummary]    = Codec.derived
+    private given Codec[Detection]        = Codec.derived
+    private given Codec[Option[Scenario]] = Codec.of[Option[Scenario]]((_, _) => ())(_ => scenario)
 
-    private def role(): RoleSummary =
-      RoleSummary(
-        text(),
-        each(TimingObservation.fromOrdinal(in.readByte()) -> distribution()).toMap,
-        option(distribution()),
-        option(distribution())
-      )
+    /** Of eyes that are not known here, nothing is. */
+    private given seeing: Codec[Vector[SeeingSummary]] = Codec
+      .vector(using Codec.derived[(Int, Vector[Detection], Int, Option[Distribution])])
+      .imap(_.flatMap((eye, detections, pictures, ages) =>
+        eyes.lift(eye).map(SeeingSummary(_, detections, pictures, ages))
+      ))(_.map(of => (eyes.indexOf(of.eye), of.detections, of.pictures, of.agesMs)))
 
-    private def planning(): PlanningSummary =
-      PlanningSummary(distribution(), distribution(), distribution(), in.readInt(), in.readInt())
+    val all: Codec[FlightSummary] = Codec.derived
 
-    private def predictions(): PredictionErrors =
-      PredictionErrors(in.readInt(), doubles().zip(doubles()))
-
-    private def seeing(scenario: Option[Scenario]): Option[SeeingSummary] =
-      val eye        = in.readInt()
-      val detections = each:
-        val at                                          = Instant.ofNanos(in.readLong())
-        val Seq(camera, believed, truth)                = Seq.fill(3)(vector())
-        val Seq(turned, trueTurned)                     = Seq.fill(2)(quaternion())
-        val Seq(since, azimuth, elevation, range, took) = Seq.fill(5)(in.readDouble())
-        Detection(
-          at,
-          since,
-          camera,
-          turned,
-          azimuth,
-          elevation,
-          range,
-          took,
-          believed,
-          truth,
-          trueTurned,
-          option(in.readDouble())
-        )
-      val pictures = in.readInt()
-      val ages     = option(distribution())
-      scenario.flatMap(_.eyes.lift(eye)).map(SeeingSummary(_, detections, pictures, ages))
-
-    private def solver(): SolverSummary =
-      SolverSummary(
-        text(),
-        in.readInt(),
-        option(distribution()),
-        option(distribution()),
-        in.readInt(),
-        in.readInt(),
-        in.readInt(),
-        in.readInt(),
-        in.readInt(),
-        in.readInt()
-      )
-
-    private def quaternion() = Quaternion(in.readDouble(), in.readDouble(), in.readDouble(), in.readDouble())
-
-    private def vector() = Vector3(in.readDouble(), in.readDouble(), in.readDouble())
-
-    private def vectors(): Vector[Vector3] =
-      doubles().lazyZip(doubles()).lazyZip(doubles()).map(Vector3(_, _, _)).toVector
-
-    private def distribution(): Distribution = Distribution.of(doubles()).get
-
-    private def doubles(): Vector[Double] = longs().map(java.lang.Double.longBitsToDouble)
-
-    private def longs(): Vector[Long] =
-      val size   = count()
-      val values = new Array[Long](size)
-      for _ <- 0 until 8; index <- 0 until size do
-        values(index) = values(index) << 8 | in.readUnsignedByte().toLong
-      values.toVector
-
-    private def text(): String = String(in.readNBytes(count()), "UTF-8")
-
-    private def each[A](one: => A): Vector[A] = Vector.fill(count())(one)
-
-    private def option[A](one: => A): Option[A] = Option.when(in.readBoolean())(one)
-
-    /** No more than there are bytes left. */
-    private def count(): Int =
-      val came = in.readInt()
-      if came < 0 || came > in.available then
-        throw IOException(s"expected a number of at most ${in.available}, came $came")
-      came
+    private def byKind[K <: reflect.Enum: Codec, V: Codec]: Codec[Map[K, V]] =
+      Codec[Vector[(K, V)]].imap(_.toMap)(_.toVector.sortBy(_._1.ordinal))

@@ -8,6 +8,7 @@ import java.util.{HexFormat, ServiceLoader}
 import scala.jdk.CollectionConverters.*
 import skein.onnx.OnnxGraph.{Float32, Port}
 import skein.policy.*
+import skein.units.Expect
 
 /** A policy of an ONNX file. It is shown [[PlanarObservation.fromOwnHeading]], as environments show it, and its one number
   * says how to turn: as a share, −1 to 1, of the most that it turns until the next decision (pursuer) or at once (evader).
@@ -111,9 +112,9 @@ object OnnxPolicy:
 
   private def contents(file: Path): Either[String, Array[Byte]] =
     for
-      _    <- Either.cond(Files.isRegularFile(file), (), "expected an ONNX model, there is no such file")
+      _    <- Expect.that(Files.isRegularFile(file))("expected an ONNX model, there is no such file")
       size <- attempted(Files.size(file))
-      _    <- Either.cond(size <= MostBytes, (), s"expected at most $MostBytes bytes, came $size")
+      _    <- Expect.that(size <= MostBytes)(s"expected at most $MostBytes bytes, came $size")
       all  <- attempted(Files.readAllBytes(file))
     yield all
 
@@ -140,12 +141,9 @@ object OnnxPolicy:
         else shape.sizeIs <= 2 && last.forall(_ == numbers) && (shape.sizeIs < 2 || shape.head.forall(_ == 1))
     val isRight = graph.inputs.sizeIs == 1 && graph.outputs.sizeIs == 1 &&
       fits(graph.inputs.head, LearnedPolicy.Inputs) && fits(graph.outputs.head, 1)
-    Either.cond(
-      isRight,
-      (),
+    Expect.that(isRight):
       s"expected one input of shape (batch, ${LearnedPolicy.Inputs}) and one output of shape (batch, 1), " +
         s"came ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
-    )
 
   private def told(what: String, ports: Vector[Port]): String =
     if ports.isEmpty then s"no $what" else s"$what ${ports.map(_.text).mkString(", ")}"
@@ -182,11 +180,8 @@ object OnnxPolicy:
     for
       runner <-
         runners.headOption.toRight(s"it is no dense network ($why), and nothing here runs other models")
-      _ <- Either.cond(
-        input.element == Float32,
-        (),
+      _ <- Expect.that(input.element == Float32):
         s"it is no dense network ($why), and runs on 32-bit floats alone: came input of type ${input.element}"
-      )
       model <- runner.load(bytes).left.map(reason => s"it is no dense network ($why): $reason")
       rank  = input.shape.fold(2)(_.size)
       asked = (seen: Array[Float]) => model(seen, Vector(LearnedPolicy.Inputs).reverse.padTo(rank, 1).reverse)

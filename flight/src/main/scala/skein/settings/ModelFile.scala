@@ -3,6 +3,7 @@ package skein.settings
 import com.typesafe.config.{Config, ConfigException}
 import skein.forward.Reduced
 import skein.identify.*
+import skein.units.Expect
 import skein.vehicle.ReducedModel
 
 /** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how well.
@@ -109,11 +110,8 @@ object ModelFile:
         use <- Structure.parse(section.getString("use")).left.map(wrong => s"$path: use: $wrong")
         models = Structure.values.filter(found => section.hasPath(found.label)).map: structure =>
           structure -> structure.model(values(section.getConfig(structure.label), structure))
-        _ <- Either.cond(
-          models.exists(_._1 == use),
-          (),
+        _ <- Expect.that(models.exists(_._1 == use)):
           s"$path: use = ${use.label}, but there is no section ${use.label}"
-        )
       yield ModelFile(
         use,
         models.toMap,

@@ -8,6 +8,7 @@ import skein.onnx.OnnxPolicy
 import skein.policy.{Fleet, Policy, PolicyFamily, Role}
 import skein.scenario.Scenarios
 import skein.units.Decimals.significant
+import skein.units.Expect
 
 /** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the objective,
   * how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
@@ -152,23 +153,22 @@ object PolicyFile:
       family <-
         summon[Scenarios].family(name).left.map(mistake => s"${at(file.getValue("family"))}: $mistake")
       role <- roleOf(family, optional("role")).left.map(mistake => s"$path: role: $mistake")
-      _    <- Either.cond(file.hasPath("parameters"), (), s"$path: expected 'parameters', which is missing")
+      _    <- Expect.that(file.hasPath("parameters"))(s"$path: expected 'parameters', which is missing")
       given_ = file.getObject("parameters").asScala.toMap
       names  = family.space.axes.map(_.name)
       _ <- given_.find((key, _) => !names.contains(key)) match
         case Some((key, value)) =>
           Left(s"${at(value)}: family ${family.name} has the parameters ${names.mkString(", ")}, came '$key'")
         case None => Right(())
-      parameters <- names.foldLeft[Either[String, Vector[Double]]](Right(Vector.empty)): (before, name) =>
+      parameters <- Expect.each(names): name =>
         for
-          values <- before
-          value  <- given_
+          value <- given_
             .get(name)
             .toRight(s"$path: parameters: expected ${names.mkString(", ")}; '$name' is missing")
           number <- value.unwrapped match
             case number: Number if number.doubleValue.isFinite => Right(number.doubleValue)
             case other => Left(s"${at(value)}: $name: expected a finite number, came '$other'")
-        yield values :+ number
+        yield number
       chosen = PolicyFile(role, family, parameters)
       _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${mistake.getMessage}")
     yield chosen
@@ -184,9 +184,6 @@ object PolicyFile:
         word.split('=') match
           case Array(name, value) => value.toDoubleOption.filter(_.isFinite).map(name -> _)
           case _                  => None
-      _ <- Either.cond(
-        values.map(_._1) == family.space.axes.map(_.name),
-        (),
+      _ <- Expect.that(values.map(_._1) == family.space.axes.map(_.name)):
         s"expected ${family.space.axes.map(axis => s"${axis.name}=NUMBER").mkString(" ")} after ${family.name}, came '$text'"
-      )
     yield PolicyFile(role, family, values.map(_._2))

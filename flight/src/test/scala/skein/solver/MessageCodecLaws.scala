@@ -165,7 +165,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = MessageCodec.bytes(Message.Welcome(1, 2))
     assertEquals(
       MessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 1 of the solver's protocol, came version 9")
+      Left("expected messages of version 2 of the solver's protocol, came version 9")
     )
     assertEquals(
       MessageCodec.message(welcome.updated(1, 42.toByte)),

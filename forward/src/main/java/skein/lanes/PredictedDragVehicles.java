@@ -23,18 +23,17 @@ final class PredictedDragVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Courses courses,
-      int course,
+      Course course,
       boolean withVelocity) {
     System.arraycopy(seenX, reading, flight.x, 0, WORLDS);
     System.arraycopy(seenY, reading, flight.y, 0, WORLDS);
     System.arraycopy(seenVx, reading, flight.vx, 0, WORLDS);
     System.arraycopy(seenVy, reading, flight.vy, 0, WORLDS);
-    for (int part = courses.start(course); part < courses.end(course); part++) {
-      int place = courses.place(part);
-      if (place == Courses.Rest()) flight.rest();
-      else flight.act(sent, place * WORLDS);
-      flight.fly((int) courses.span(part), courses.rest(part));
+    for (int i = 0; i < course.parts().size(); i++) {
+      Course.Part part = course.parts().apply(i);
+      if (part.command() == Course.Rest()) flight.rest();
+      else flight.act(sent, part.command() * WORLDS);
+      flight.fly((int) part.span(), (float) part.rest());
     }
     System.arraycopy(flight.x, 0, seenX, into, WORLDS);
     System.arraycopy(flight.y, 0, seenY, into, WORLDS);

@@ -31,20 +31,20 @@ final class PredictedLagVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Courses courses,
-      int course,
+      Course course,
       boolean withVelocity) {
-    float carried = courses.first(course), kept = courses.second(course);
+    float carried = (float) course.first(), kept = (float) course.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);
     if (withVelocity) {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (int part = courses.start(course); part < courses.end(course); part++) {
-      int place = courses.place(part);
-      if (place != Courses.Rest()) {
-        float moved = courses.span(part) * speed, faster = courses.rest(part) * speed;
+    for (int i = 0; i < course.parts().size(); i++) {
+      Course.Part part = course.parts().apply(i);
+      int place = part.command();
+      if (place != Course.Rest()) {
+        float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;
         add(sent.cos, place * WORLDS, moved, seenX, into);
         add(sent.sin, place * WORLDS, moved, seenY, into);
         if (withVelocity) {

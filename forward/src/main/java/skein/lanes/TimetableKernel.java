@@ -23,7 +23,7 @@ final class TimetableKernel {
   // Of the episode's timetable.
   private int[] operations, views;
   private float[] times;
-  private Courses courses;
+  private Course[] courses;
   private boolean readsVelocity;
 
   /**
@@ -61,7 +61,7 @@ final class TimetableKernel {
     times = timetable.times();
     courses = timetable.courses();
     // Predictions start from velocities, whoever looks at them.
-    readsVelocity = withVelocity || !courses.isEmpty();
+    readsVelocity = withVelocity || courses.length > 0;
   }
 
   /** Does the timetable's next operation. */
@@ -89,8 +89,7 @@ final class TimetableKernel {
               agent.headings,
               first * WORLDS,
               operations[field + 3] * WORLDS,
-              courses,
-              operations[field + 4],
+              courses[operations[field + 4]],
               withVelocity);
       default ->
           agent.decide(

@@ -26,7 +26,7 @@ import skein.vehicle.ReducedModel;
  * not depend on the lane count. Nothing is allocated after {@link #situate}; one instance per
  * thread.
  */
-final class PlanKernel implements CandidateBlock {
+final class PlanKernel extends CandidateBlock {
   private static final float SIN_3 = -1f / 6, SIN_5 = 1f / 120, SIN_7 = -1f / 5040;
   private static final float COS_2 = -0.5f, COS_4 = 1f / 24, COS_6 = -1f / 720;
 
@@ -49,10 +49,7 @@ final class PlanKernel implements CandidateBlock {
   private static final int SIZE = CandidateBlock.Size();
 
   private final int steps;
-  private final float[] turnRates, speeds;
-  private final float[] costs = new float[SIZE];
   private final float[] weights = new float[SIZE];
-  private final float[] turnSums, speedSums, weightSums = new float[SIZE];
   private final int[] bits = new int[SIZE];
   private final float[] turnNoise = new float[SIZE], speedNoise = new float[SIZE];
 
@@ -74,45 +71,12 @@ final class PlanKernel implements CandidateBlock {
   private float[] othersX, othersY;
 
   PlanKernel(int steps) {
+    super(steps);
     this.steps = steps;
-    turnRates = new float[steps * SIZE];
-    speeds = new float[steps * SIZE];
-    turnSums = new float[steps * SIZE];
-    speedSums = new float[steps * SIZE];
     own = new BlockWay(steps);
     target = new BlockWay(steps);
     cos = new float[steps * SIZE];
     sin = new float[steps * SIZE];
-  }
-
-  @Override
-  public float[] turnRates() {
-    return turnRates;
-  }
-
-  @Override
-  public float[] speeds() {
-    return speeds;
-  }
-
-  @Override
-  public float[] costs() {
-    return costs;
-  }
-
-  @Override
-  public float[] turnSums() {
-    return turnSums;
-  }
-
-  @Override
-  public float[] speedSums() {
-    return speedSums;
-  }
-
-  @Override
-  public float[] weightSums() {
-    return weightSums;
   }
 
   @Override
@@ -176,6 +140,7 @@ final class PlanKernel implements CandidateBlock {
   }
 
   private void perturb(int step, Search search) {
+    float[] turnRates = turnRates(), speeds = speeds();
     Limits limits = objective.limits();
     FloatVector slowest = FloatVector.broadcast(SPECIES, (float) limits.minSpeed());
     FloatVector fastest = FloatVector.broadcast(SPECIES, (float) limits.maxSpeed());
@@ -250,6 +215,7 @@ final class PlanKernel implements CandidateBlock {
         glide5 = FloatVector.broadcast(SPECIES, Glide.GLIDE_5),
         zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f);
+    float[] turnRates = turnRates(), speeds = speeds();
     float[] x = own.x, y = own.y, north = own.vx, east = own.vy;
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector px = zero, py = zero, vx = startVx, vy = startVy, c = startCos, s = startSin;
@@ -292,6 +258,7 @@ final class PlanKernel implements CandidateBlock {
 
   /** What the manoeuvre costs by itself: its effort. */
   private void exert() {
+    float[] turnRates = turnRates(), speeds = speeds(), costs = costs();
     FloatVector turning = FloatVector.broadcast(SPECIES, (float) objective.turning() * dtS);
     FloatVector hurry = FloatVector.broadcast(SPECIES, (float) objective.speedChange() * dtS);
     FloatVector cruise = FloatVector.broadcast(SPECIES, (float) objective.cruiseSpeed());
@@ -310,6 +277,7 @@ final class PlanKernel implements CandidateBlock {
 
   /** What it costs to leave a geofence. */
   private void stayInside(Geofence geofence) {
+    float[] costs = costs();
     float guard = GUARD + (float) geofence.marginM();
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
         one = FloatVector.broadcast(SPECIES, 1f),
@@ -375,6 +343,7 @@ final class PlanKernel implements CandidateBlock {
 
   /** What it costs to come near the other vehicles. */
   private void keepApart() {
+    float[] costs = costs();
     Separation separation = objective.separation();
     FloatVector least =
         FloatVector.broadcast(SPECIES, (float) (separation.minimum() + ManoeuvreRollout.Guard()));
@@ -430,7 +399,7 @@ final class PlanKernel implements CandidateBlock {
         FloatVector.broadcast(SPECIES, (float) (softness * softness + ManoeuvreRollout.Tiny()));
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f),
         far = FloatVector.broadcast(SPECIES, FAR);
-    float[] x = own.x, y = own.y, theirX = target.x, theirY = target.y;
+    float[] costs = costs(), x = own.x, y = own.y, theirX = target.x, theirY = target.y;
     int last = steps * SIZE;
     for (int i = 0; i < SIZE; i += LANES) {
       FloatVector sum = zero, least = far, dx = zero, dy = zero;
@@ -459,14 +428,9 @@ final class PlanKernel implements CandidateBlock {
   }
 
   @Override
-  public void forget() {
-    Arrays.fill(turnSums, 0f);
-    Arrays.fill(speedSums, 0f);
-    Arrays.fill(weightSums, 0f);
-  }
-
-  @Override
   public void weigh(float base, float temperature) {
+    float[] turnRates = turnRates(), speeds = speeds(), costs = costs();
+    float[] turnSums = turnSums(), speedSums = speedSums(), weightSums = weightSums();
     float coldness = -1 / temperature;
     for (int i = 0; i < SIZE; i += LANES)
       FloatVector.fromArray(SPECIES, costs, i)

@@ -32,14 +32,12 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   )
   for agent <- sights.indices do world.views(agent) = sights(agent)
 
-  private val loop                       = LoopRuns.of(timing, world)
-  private val periodNs                   = Nanos.of(timing.periodS)
-  private val scores                     = (engagement.durationS / timing.periodS).round.toInt
-  private val judged                     = engagement.judged.toArray
-  private val against                    = judged.map(engagement.against(_).toArray)
-  private var tallies                    = judged.map(_ => Score())
-  private var watching                   = LoopObserver.Nobody
-  private var listener: Rollout.Listener = Rollout.NoListener
+  private val loop     = LoopRuns.of(timing, world)
+  private val periodNs = Nanos.of(timing.periodS)
+  private val scores   = (engagement.durationS / timing.periodS).round.toInt
+  private val judged   = engagement.judged.toArray
+  private val against  = judged.map(engagement.against(_).toArray)
+  private var tallies  = judged.map(_ => Score())
 
   /** Flies one episode.
     *
@@ -49,10 +47,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   def fly(
       worldKey: Int,
       captureRadiusM: Double = 0.0,
-      onScore: Rollout.Listener = Rollout.NoListener,
       observer: LoopObserver = LoopObserver.Nobody
   ): Outcome =
-    start(worldKey, captureRadiusM, onScore, observer)
+    start(worldKey, captureRadiusM, observer)
     while !isOver do handle(world.next())
     outcome
 
@@ -60,12 +57,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private[skein] def start(
       worldKey: Int,
       captureRadiusM: Double,
-      onScore: Rollout.Listener = Rollout.NoListener,
       observer: LoopObserver = LoopObserver.Nobody
   ): Unit =
-    listener = onScore
     tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
-    watching = observer
     world.start(worldKey, observer)
     for sight <- sights; eye <- sight do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
@@ -129,7 +123,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
     for index <- world.vehicles.indices do
-      watching.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
+      world.observer.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
     for index <- judged.indices do
       val evader  = world.vehicles(judged(index))
       var nearest = Double.PositiveInfinity
@@ -137,17 +131,9 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
         val pursuer = world.vehicles(agent)
         nearest = math.min(nearest, StrictMath.hypot(evader.x - pursuer.x, evader.y - pursuer.y))
       tallies(index).add(world.nowS, nearest)
-    val (evader, pursuer) = (world.vehicles(judged(0)), world.vehicles(against(0)(0)))
-    listener.scored(world.nowS, evader.x, evader.y, pursuer.x, pursuer.y)
     world.schedule((number + 1) * periodNs, ScoreNow, 0, number + 1)
 
 object Rollout:
-
-  /** Is told of every score: the positions of the first evader and pursuer, or of the first two vehicles of
-    * a team without sides, m, at one time, s.
-    */
-  trait Listener:
-    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit
 
   /** Whether what is scored at this time of an episode counts for the mean of its last 10 s. */
   private[skein] def isLast10s(timeS: Double, durationS: Double): Boolean = timeS > durationS - 10 + 1e-9
@@ -160,8 +146,6 @@ object Rollout:
     case DuelWorld.Exposed    => sight.exposed(number)
     case DuelWorld.Pictured   => sight.pictured(number)
     case DuelWorld.Recognised => sight.recognised(number)
-
-  private val NoListener: Listener = (_, _, _, _, _) => ()
 
   /** Places of the random sequence that belong to one step; the kernels use the same. */
   private[skein] val Places: Int       = Delays.Lines

@@ -11,6 +11,7 @@ import skein.forward.{
   ReducedResponse,
   VelocityResponse
 }
+import skein.units.Expect
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** How a kind of vehicle flies by lanes: by [[Timetable]]s and, if it [[fliesAlone]], where every world has delays of its
@@ -75,16 +76,10 @@ private[skein] object LaneDynamics:
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
       for
-        _ <- Either.cond(
-          quadrotor.quadrotor eq Quadrotor.AirSim,
-          (),
+        _ <- Expect.that(quadrotor.quadrotor eq Quadrotor.AirSim):
           "the lanes fly AirSim's own quadrotor alone"
-        )
-        _ <- Either.cond(
-          lowest >= LeastAltitudeM,
-          (),
+        _ <- Expect.that(lowest >= LeastAltitudeM):
           s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
-        )
       yield QuadrotorDynamics(quadrotor)
     case PlantResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
     case _                    => Left("the lanes do not know the vehicle")

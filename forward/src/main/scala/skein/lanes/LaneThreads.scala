@@ -1,15 +1,15 @@
 package skein.lanes
 
 import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
+import skein.units.Expect
 
 /** Whether this Java can compute by lanes. */
 private[lanes] object LaneSupport:
   /** A class with vectors is not touched where their module is missing. */
-  val present: Either[String, Unit] = Either.cond(
-    ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent,
-    (),
+  val present: Either[String, Unit] = Expect.that(
+    ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent
+  ):
     "the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
-  )
 
 /** Hands batches of worlds out to workers, each on a thread of its own. */
 private[lanes] object LaneThreads:

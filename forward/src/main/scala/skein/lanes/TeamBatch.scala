@@ -7,6 +7,7 @@ import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityRespons
 import skein.policy.TeamPolicy
 import skein.scenario.{Positions, Reduction}
 import skein.simd.LaneMath
+import skein.units.Expect
 
 /** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and quantities are
   * formulas fly by lanes ([[TimetableKernel]]), all of an episode by one [[Timetable]], which is made once; others by the
@@ -39,14 +40,11 @@ final class TeamBatch(
     val engagement = candidate.engagement
     val policies   = engagement.agents.map(_.policy).collect { case team: TeamPolicy => team }
     for
-      _        <- Either.cond(areShared, (), "every world has delays of its own")
+      _        <- Expect.that(areShared)("every world has delays of its own")
       _        <- LaneSupport.present
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
-      _        <- Either.cond(
-        policies.size == engagement.agents.size,
-        (),
+      _        <- Expect.that(policies.size == engagement.agents.size):
         "a policy plays against one opponent; the lanes fly such policies in duels alone"
-      )
       team <- TeamLanes.of(policies).left.map(refused => s"a policy is no formula: ${refused.getMessage}")
       quantities <- QuantityLanes
         .of(candidate.judged.map(_.quantity), policies.size)

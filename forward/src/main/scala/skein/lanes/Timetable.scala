@@ -35,14 +35,14 @@ private[skein] final class Timetable private[lanes] (
     val operations: Array[Int],
     val times: Array[Float],
     val views: Array[Int],
-    val courses: Courses,
+    val courses: Array[Course],
     val readings: Int,
     val headings: Int
 ):
   def size: Int = operations.length / Timetable.Fields
 
   /** About so much memory is held, bytes. */
-  def bytes: Long = 4L * (operations.length + times.length + views.length) + courses.bytes
+  def bytes: Long = 4L * (operations.length + times.length + views.length) + courses.iterator.map(_.bytes).sum
 
 private[skein] object Timetable:
   val Fields: Int  = 6
@@ -104,9 +104,13 @@ private final class TimetableCompiler(
 ):
   import Timetable.{Fields, Numbers}
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
-  private val order    = inOrder
-  private val scores   = notes.kind.iterator.take(notes.size).count(_ == SCORE)
-  private val end      = endOf(scores)
+
+  /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
+  private val order = notes.all.sortBy(_.atS).toArray
+
+  /** Behind the last score. */
+  private val end = order.lastIndexWhere(_.kind == SCORE) + 1
+
   private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
   private val clocks   = Array.fill(vehicles)(model.clock())
@@ -117,7 +121,8 @@ private final class TimetableCompiler(
 
   /** The number of each view among those that are told, or −1. */
   private val told    = Array.fill(notes.views.size)(-1)
-  private val courses = Course.Builder()
+  private val courses = Array.newBuilder[Course]
+  private var placed  = 0
   private val views   = Array.newBuilder[Int]
   private var count   = 0
 
@@ -130,7 +135,7 @@ private final class TimetableCompiler(
     for heading <- headings do heading.take(0)
     for i <- 0 until end do
       val event = order(i)
-      notes.kind(event) match
+      event.kind match
         case LOOK    => look(event)
         case DECIDE  => decide(event, i)
         case ACT     => act(event, i)
@@ -148,44 +153,24 @@ private final class TimetableCompiler(
       headings.map(_.size).max
     )
 
-  /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
-  private def inOrder: Array[Int] =
-    val sorted = Array.range(0, notes.size)
-    for i <- 1 until sorted.length do
-      val event = sorted(i)
-      var hole  = i
-      while hole > 0 && notes.atS(sorted(hole - 1)) > notes.atS(event) do
-        sorted(hole) = sorted(hole - 1)
-        hole -= 1
-      sorted(hole) = event
-    sorted
-
-  /** Behind the last score. */
-  private def endOf(count: Int): Int =
-    var (i, seen) = (0, 0)
-    while seen < count do
-      if notes.kind(order(i)) == SCORE then seen += 1
-      i += 1
-    i
-
-  private def findLastUses(event: Int, at: Int): Unit =
-    val agent = notes.agent(event)
-    notes.kind(event) match
+  private def findLastUses(event: Note, at: Int): Unit =
+    val agent = event.agent
+    event.kind match
       case DECIDE =>
-        usedAt(notes.view(event), at)
-        val seen = notes.views(notes.view(event))
+        usedAt(event.view, at)
+        val seen = notes.views(event.view)
         for vehicle <- 0 until vehicles do decidedUpon(vehicle)(seen(vehicle)) = true
-        headings(agent).usedAt(notes.number(event), at)
-        if vehicles == 2 then headings(1 - agent).usedAt(notes.opponent(event), at)
+        headings(agent).usedAt(event.number, at)
+        if vehicles == 2 then headings(1 - agent).usedAt(event.opponent, at)
         // Its effort is counted even where nobody uses it.
-        headings(agent).usedAt(notes.number(event) + 1, at)
-      case ACT            => headings(agent).usedAt(notes.number(event), at)
-      case SCORE | EXPOSE => usedAt(notes.view(event), at)
+        headings(agent).usedAt(event.number + 1, at)
+      case ACT            => headings(agent).usedAt(event.number, at)
+      case SCORE | EXPOSE => usedAt(event.view, at)
       case PREDICT        =>
-        readings(agent).usedAt(notes.from(event), at)
-        decidedUpon(agent)(notes.from(event)) = true
-        for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
-          headings(agent).usedAt(part.decision, at)
+        readings(agent).usedAt(event.from, at)
+        decidedUpon(agent)(event.from) = true
+        for part <- event.course.parts if part.command > 0 do
+          headings(agent).usedAt(part.command, at)
       case LOOK | JOIN => ()
 
   private def usedAt(view: Int, at: Int): Unit =
@@ -205,9 +190,9 @@ private final class TimetableCompiler(
       count += 1
     told(view)
 
-  private def look(event: Int): Unit =
-    val vehicle = notes.agent(event)
-    val reading = notes.number(event)
+  private def look(event: Note): Unit =
+    val vehicle = event.agent
+    val reading = event.number
     if readings(vehicle).isUsed(reading) then
       operation(
         LOOK,
@@ -217,81 +202,75 @@ private final class TimetableCompiler(
       )
       happens(event, acts = false)
 
-  private def decide(event: Int, at: Int): Unit =
-    val agent = notes.agent(event)
-    val own   = notes.number(event)
-    val view  = notes.view(event)
+  private def decide(event: Note, at: Int): Unit =
+    val agent = event.agent
+    val own   = event.number
+    val view  = event.view
     operation(
       DECIDE,
       agent,
       tell(view),
-      if vehicles == 2 then headings(1 - agent).place(notes.opponent(event)) else 0,
+      if vehicles == 2 then headings(1 - agent).place(event.opponent) else 0,
       headings(agent).place(own),
       // Taken before the one before is given back: its effort is counted from there.
       headings(agent).take(own + 1)
     )
-    times(size * Numbers + 1) = notes.ownAgeS(event).toFloat
-    times(size * Numbers + 2) = notes.opponentAgeS(event).toFloat
-    times(size * Numbers + 3) = notes.aheadS(event).toFloat
-    took(notes.elapsedS(event))
+    times(size * Numbers + 1) = event.ownAgeS.toFloat
+    times(size * Numbers + 2) = event.opponentAgeS.toFloat
+    times(size * Numbers + 3) = event.aheadS.toFloat
+    took(event.elapsedS)
     releaseView(view, at)
     headings(agent).release(own, at)
-    if vehicles == 2 then headings(1 - agent).release(notes.opponent(event), at)
+    if vehicles == 2 then headings(1 - agent).release(event.opponent, at)
     headings(agent).release(own + 1, at)
 
-  private def predict(event: Int, at: Int): Unit =
-    val vehicle = notes.agent(event)
-    val from    = notes.from(event)
+  private def predict(event: Note, at: Int): Unit =
+    val vehicle = event.agent
     operation(
       PREDICT,
       vehicle,
-      readings(vehicle).place(from),
+      readings(vehicle).place(event.from),
       // Taken before the reading is given back: it is carried forward beside it.
-      readings(vehicle).take(notes.number(event)),
-      place(vehicle, event)
+      readings(vehicle).take(event.number),
+      placed
     )
+    courses += event.course.placed(headings(vehicle).place)
+    placed += 1
     size += 1
-    release(vehicle, event, at)
+    readings(vehicle).release(event.from, at)
+    for part <- event.course.parts if part.command > 0 do
+      headings(vehicle).release(part.command, at)
 
-  /** The number of a course, whose commands have their places now. */
-  private def place(vehicle: Int, event: Int): Int =
-    courses.add(notes.courses(notes.course(event)), headings(vehicle).place)
-
-  private def release(vehicle: Int, event: Int, at: Int): Unit =
-    readings(vehicle).release(notes.from(event), at)
-    for part <- notes.courses(notes.course(event)).parts if part.decision > 0 do
-      headings(vehicle).release(part.decision, at)
-
-  private def act(event: Int, at: Int): Unit =
-    val vehicle = notes.agent(event)
-    operation(ACT, vehicle, headings(vehicle).place(notes.number(event)))
+  private def act(event: Note, at: Int): Unit =
+    val vehicle = event.agent
+    operation(ACT, vehicle, headings(vehicle).place(event.number))
     happens(event, acts = true)
-    headings(vehicle).release(notes.number(event), at)
+    headings(vehicle).release(event.number, at)
 
-  private def expose(event: Int, at: Int): Unit =
-    val view = notes.view(event)
-    operation(EXPOSE, notes.agent(event), tell(view), notes.number(event) % Sight.Ring)
-    times(size * Numbers + 1) = notes.elapsedS(event).toFloat
-    times(size * Numbers + 2) = notes.ownAgeS(event).toFloat
-    times(size * Numbers + 3) = notes.opponentAgeS(event).toFloat
-    took(notes.atS(event))
+  private def expose(event: Note, at: Int): Unit =
+    val view = event.view
+    operation(EXPOSE, event.agent, tell(view), event.number % Sight.Ring)
+    times(size * Numbers + 1) = event.elapsedS.toFloat
+    times(size * Numbers + 2) = event.ownAgeS.toFloat
+    times(size * Numbers + 3) = event.opponentAgeS.toFloat
+    took(event.atS)
     releaseView(view, at)
 
-  private def join(event: Int): Unit =
+  private def join(event: Note): Unit =
     operation(
       JOIN,
-      notes.agent(event),
-      notes.number(event) % Sight.Ring,
-      notes.opponent(event),
-      notes.from(event).max(0) % Sight.Ring
+      event.agent,
+      event.number % Sight.Ring,
+      event.opponent,
+      event.from.max(0) % Sight.Ring
     )
     size += 1
 
-  private def score(event: Int, at: Int): Unit =
-    val view   = notes.view(event)
-    val isLast = Rollout.isLast10s(notes.atS(event), durationS)
+  private def score(event: Note, at: Int): Unit =
+    val view   = event.view
+    val isLast = Rollout.isLast10s(event.atS, durationS)
     operation(SCORE, 0, tell(view), if isLast then 1 else 0)
-    took(notes.atS(event))
+    took(event.atS)
     releaseView(view, at)
 
   private def operation(
@@ -308,8 +287,8 @@ private final class TimetableCompiler(
     operations(at + 5) = d
 
   /** Ends an operation that happens to a vehicle. */
-  private def happens(event: Int, acts: Boolean): Unit =
-    clocks(notes.agent(event)).tell(notes.atS(event), acts, times, size * Numbers)
+  private def happens(event: Note, acts: Boolean): Unit =
+    clocks(event.agent).tell(event.atS, acts, times, size * Numbers)
     size += 1
 
   /** Ends another operation. */

@@ -10,38 +10,7 @@ import skein.units.Instant
 private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, eyes: Map[Int, SensorModel])
     extends LoopObserver:
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
-  var size               = 0
-  private var capacity   = 4096
-  var kind: Array[Int]   = Array.ofDim[Int](capacity)
-  var agent: Array[Int]  = Array.ofDim[Int](capacity)
-  var atS: Array[Double] = Array.ofDim[Double](capacity) // a decision's: not before
-
-  // Of a decision; of a picture the errors, and whether what is in view is found.
-  var elapsedS, ownAgeS, opponentAgeS: Array[Double] = Array.ofDim[Double](capacity)
-
-  /** Of a decision by who sees: until when what is believed is carried on. */
-  var aheadS: Array[Double] = Array.ofDim[Double](capacity)
-
-  /** `LOOK`: the reading's number. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one
-    * more. `EXPOSE` and `JOIN`: the picture's.
-    */
-  var number: Array[Int] = Array.ofDim[Int](capacity)
-
-  /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
-  var view: Array[Int] = Array.ofDim[Int](capacity)
-
-  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
-    * the one that joined before.
-    */
-  var opponent: Array[Int] = Array.ofDim[Int](capacity)
-
-  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
-  var from: Array[Int] = Array.ofDim[Int](capacity)
-
-  /** `PREDICT`: the number of the course, among [[courses]]. */
-  var course: Array[Int] = Array.ofDim[Int](capacity)
-
-  val courses: mutable.ArrayBuffer[Course] = mutable.ArrayBuffer.empty
+  val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
   /** By vehicle: the readings that entered the forecast. */
   private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
@@ -62,24 +31,13 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
   private val placed     = Array.ofDim[Int](vehicles)
 
-  private def note(what: Int, who: Int, time: Double, which: Int): Unit =
-    if size == capacity then grow()
-    kind(size) = what; agent(size) = who; atS(size) = time; number(size) = which
-    size += 1
-
-  private def grow(): Unit =
-    capacity *= 2
-    kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
-    view = view.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
-    from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
-    atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
-    ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
-    aheadS = aheadS.padTo(capacity, 0.0)
+  private def note(kind: Int, vehicle: Int, timeS: Double, number: Int): Note =
+    all += Note(kind, vehicle, timeS, number)
+    all.last
 
   private def look(vehicle: Int, timeS: Double): Int =
     looks(vehicle) += 1
-    note(LOOK, vehicle, timeS, looks(vehicle))
-    looks(vehicle)
+    note(LOOK, vehicle, timeS, looks(vehicle)).number
 
   private def viewOf(seen: Array[Int]): Int =
     numberOf.getOrElseUpdate(
@@ -116,11 +74,10 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
       val legs = forecast.legsWhenActing(Instant.ofNanos(atNs)).get
       predicted = viewOf(Array.tabulate(vehicles): vehicle =>
         val start = newest(vehicle, forecast)
-        courses += start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
         looks(vehicle) += 1
-        note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
-        from(size - 1) = start.reading
-        course(size - 1) = courses.size - 1
+        val noted = note(PREDICT, vehicle, atNs * 1e-9, looks(vehicle))
+        noted.from = start.reading
+        noted.course = start.plotter.predicted(legs(vehicle).map(plotted(vehicle, _)))
         looks(vehicle))
     predicted
 
@@ -128,17 +85,17 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     val seen = upon.forecast match
       case Some(forecast) => predict(forecast, atNs)
       case None           => viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
-    note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
+    val noted = note(DECIDE, vehicle, atNs * 1e-9, decisions(vehicle))
     decisions(vehicle) += 1
-    view(size - 1) = seen
-    elapsedS(size - 1) = elapsed
+    noted.view = seen
+    noted.elapsedS = elapsed
     if vehicles == 2 then
-      opponent(size - 1) = upon.sentDecision(1 - vehicle)
-      ownAgeS(size - 1) = (atNs - upon.validAtNs(vehicle)) * 1e-9
-      opponentAgeS(size - 1) = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
+      noted.opponent = upon.sentDecision(1 - vehicle)
+      noted.ownAgeS = (atNs - upon.validAtNs(vehicle)) * 1e-9
+      noted.opponentAgeS = (atNs - upon.validAtNs(1 - vehicle)) * 1e-9
     if eyes.contains(vehicle) then
-      opponentAgeS(size - 1) = atNs * 1e-9
-      aheadS(size - 1) = upon.forecast.fold(-1.0): forecast =>
+      noted.opponentAgeS = atNs * 1e-9
+      noted.aheadS = upon.forecast.fold(-1.0): forecast =>
         val now = Instant.ofNanos(atNs)
         forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
@@ -147,12 +104,12 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   private val newest, runnerUp = Array.fill(vehicles)(-1)
 
   override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
-    val seen = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
-    note(EXPOSE, vehicle, atNs * 1e-9, number)
-    view(size - 1) = seen
-    elapsedS(size - 1) = SensorModel.normal(picture.bearing)
-    ownAgeS(size - 1) = SensorModel.normal(picture.range)
-    opponentAgeS(size - 1) = if picture.found < eyes(vehicle).detection then 1 else 0
+    val seen  = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
+    val noted = note(EXPOSE, vehicle, atNs * 1e-9, number)
+    noted.view = seen
+    noted.elapsedS = SensorModel.normal(picture.bearing)
+    noted.ownAgeS = SensorModel.normal(picture.range)
+    noted.opponentAgeS = if picture.found < eyes(vehicle).detection then 1 else 0
     exposedNs(vehicle)(number % Sight.Ring) = atNs
 
   override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
@@ -161,9 +118,9 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     val isOlder = takenNs(picture) < takenNs(newest(vehicle))
     // Two are on the way at most, and whichever is overtaken twice is dropped.
     require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")
-    note(JOIN, vehicle, atNs * 1e-9, picture)
-    opponent(size - 1) = if isOlder then 1 else 0
-    from(size - 1) = newest(vehicle)
+    val noted = note(JOIN, vehicle, atNs * 1e-9, picture)
+    noted.opponent = if isOlder then 1 else 0
+    noted.from = newest(vehicle)
     if isOlder then runnerUp(vehicle) = picture
     else
       runnerUp(vehicle) = newest(vehicle)
@@ -178,13 +135,45 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   ): Unit = decisionOf(vehicle) += decisions(vehicle)
 
   override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
-    note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number))
+    note(ACT, vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
 
   override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
     placed(vehicle) = look(vehicle, timeS)
     if vehicle == vehicles - 1 then
-      note(SCORE, 0, timeS, 0)
-      view(size - 1) = viewOf(placed.clone)
+      note(SCORE, 0, timeS, 0).view = viewOf(placed.clone)
+
+/** Something that happens.
+  *
+  * @param kind
+  *   of [[TimetableKernel]]'s operations
+  * @param agent
+  *   the vehicle
+  * @param atS
+  *   a decision's: not before
+  * @param number
+  *   `LOOK`: the reading's. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one more.
+  *   `EXPOSE` and `JOIN`: the picture's
+  */
+private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, val number: Int):
+  /** Of a decision; of a picture the errors, and whether what is in view is found. */
+  var elapsedS, ownAgeS, opponentAgeS = 0.0
+
+  /** Of a decision by who sees: until when what is believed is carried on. */
+  var aheadS = 0.0
+
+  /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
+  var view = 0
+
+  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
+    * the one that joined before.
+    */
+  var opponent = 0
+
+  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
+  var from = 0
+
+  /** `PREDICT`: the way to the moment predicted. */
+  var course: Course = Course(Vector.empty)
 
 /** A reading in the forecast.
   *

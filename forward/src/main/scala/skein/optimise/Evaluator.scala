@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.forward.{Delays, Duel, LoopTiming, Outcome, Rollout, VelocityResponse}
+import skein.forward.Delays
 import skein.lanes.{DuelBatch, DuelWorlds}
 import skein.policy.{Policy, PolicyFamily, Role}
 import skein.simd.{LaneMath, WorldRandom}
@@ -111,53 +111,3 @@ final class DuelEvaluator(
     def link(world: Int): Delays        = DuelEvaluator.this.link
     def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))
     def evader(world: Int): Policy      = DuelEvaluator.this.evader(policies(world / keys.length))
-
-/** Judges by any function of a trajectory, by the scalar reference, on the calling thread.
-  *
-  * @param duel
-  *   of a candidate
-  */
-final class TrajectoryEvaluator(
-    duel: Vector[Double] => Duel,
-    timing: LoopTiming,
-    link: Delays,
-    model: VelocityResponse,
-    seed: Long
-)(value: Trajectory => Double)
-    extends Evaluator:
-
-  def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
-    candidates.map: candidate =>
-      val rollout = Rollout(duel(candidate), timing, link, model)
-      val values  = episodes.map: episode =>
-        val path    = Trajectory.Builder()
-        val outcome = rollout.fly(WorldRandom.key(seed, 0, episode), onScore = path)
-        value(path.result(outcome))
-      RunningStats.of(values.size)(values)
-
-/** An episode as it was flown: positions, m, once a period.
-  *
-  * @param evader
-  *   north and east at each time
-  */
-final case class Trajectory(
-    timesS: Vector[Double],
-    evader: Vector[(Double, Double)],
-    pursuer: Vector[(Double, Double)],
-    outcome: Outcome
-):
-  def distancesM: Vector[Double] =
-    evader.zip(pursuer).map((e, p) => StrictMath.hypot(e._1 - p._1, e._2 - p._2))
-
-object Trajectory:
-  private[skein] final class Builder extends Rollout.Listener:
-    private val times           = Vector.newBuilder[Double]
-    private val evader, pursuer = Vector.newBuilder[(Double, Double)]
-
-    def scored(timeS: Double, evaderX: Double, evaderY: Double, pursuerX: Double, pursuerY: Double): Unit =
-      times += timeS
-      evader += ((evaderX, evaderY))
-      pursuer += ((pursuerX, pursuerY))
-
-    def result(outcome: Outcome): Trajectory =
-      Trajectory(times.result(), evader.result(), pursuer.result(), outcome)

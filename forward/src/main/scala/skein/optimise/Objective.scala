@@ -2,6 +2,7 @@ package skein.optimise
 
 import skein.lanes.DuelOutcomes
 import skein.policy.Role
+import skein.units.Expect
 
 /** A number that an episode comes to, by the name that users give. */
 enum DuelMeasure:
@@ -103,11 +104,8 @@ object Objective:
     for
       sum <- WeightedSum.parse(text, Forms)(measureOf)
       read = sum.terms
-      _ <- Either.cond(
-        read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
-        (),
+      _ <- Expect.that(read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1):
         s"objective '$text': expected one capture radius, came ${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
-      )
     yield Objective(read, sum.stated.getOrElse(naturally(read, role)))
 
   private def naturally(terms: Vector[(Double, DuelMeasure)], role: Role): Direction = terms match

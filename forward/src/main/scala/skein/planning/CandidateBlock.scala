@@ -3,12 +3,17 @@ package skein.planning
 /** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays hold step
   * after step: the action of candidate i in step h is at h · SIZE + i.
   */
-private[planning] trait CandidateBlock:
-  def turnRates: Array[Float]
-  def speeds: Array[Float]
+private[planning] abstract class CandidateBlock(steps: Int):
+  final val turnRates, speeds: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
 
   /** Of each candidate, after [[fly]]. */
-  def costs: Array[Float]
+  final val costs: Array[Float] = Array.ofDim(CandidateBlock.Size)
+
+  /** Weighted sums per step and place in the block. */
+  final val turnSums, speedSums: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
+
+  /** Sums of the weights per place in the block. */
+  final val weightSums: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
   /** What all manoeuvres from now on are flown in, and what they are to achieve. */
   def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit
@@ -25,18 +30,12 @@ private[planning] trait CandidateBlock:
   /** Flies all candidates. */
   def fly(): Unit
 
-  /** Forgets the sums below. */
-  def forget(): Unit
+  /** Forgets the sums. */
+  final def forget(): Unit =
+    for sums <- Seq(turnSums, speedSums, weightSums) do java.util.Arrays.fill(sums, 0f)
 
   /** Adds the actions flown, each weighted by e^(−(cost − base) / temperature), to the sums. */
   def weigh(base: Float, temperature: Float): Unit
-
-  /** Weighted sums per step and place in the block. */
-  def turnSums: Array[Float]
-  def speedSums: Array[Float]
-
-  /** Sums of the weights per place in the block. */
-  def weightSums: Array[Float]
 
 private[planning] object CandidateBlock:
   /** Candidates of a block: few enough for the caches, a multiple of every lane count. */

@@ -1,14 +1,13 @@
 package skein.planning
 
 import skein.policy.{ObservingPolicy, PlanarObservation}
-import skein.vehicle.ReducedModel
+import skein.vehicle.{PlaneReading, ReducedModel}
 
 /** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen, and how a
   * plan is told to others.
   *
-  * Velocities follow commands as [[skein.vehicle.ReducedModel]] says, a piece per step and alike in all directions:
-  * v' = (gain · command − v) / lag − drag · s · v with the speed s at the step's beginning, integrated exactly over the
-  * step, in which the command stands: the heading has turned at its beginning.
+  * Velocities follow commands as [[skein.vehicle.ReducedModel]] says, a piece per step, in which the command stands: the
+  * heading has turned at its beginning.
   */
 final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Double):
   import ManoeuvreRollout.*
@@ -112,23 +111,17 @@ object ManoeuvreRollout:
 
   /** A vehicle under its commands, step by step. Mutable. */
   private[planning] final class Flyer(start: Motion, response: ReducedModel, dtS: Double):
-    var x  = start.x
-    var y  = start.y
-    var vx = start.vx
-    var vy = start.vy
+    private var at = PlaneReading(start.x, start.y, start.vx, start.vy)
+
+    def x: Double  = at.northM
+    def y: Double  = at.eastM
+    def vx: Double = at.northMps
+    def vy: Double = at.eastMps
 
     def motion: Motion = Motion(x, y, vx, vy)
 
     def fly(commandedX: Double, commandedY: Double): Unit =
-      val rate               = 1 / response.lagS + response.dragPerM * StrictMath.hypot(vx, vy)
-      val left               = StrictMath.exp(-rate * dtS)
-      val glide              = (1 - left) / rate
-      val reached            = response.gain / (response.lagS * rate)
-      val (wantedX, wantedY) = (reached * commandedX, reached * commandedY)
-      x += wantedX * dtS + (vx - wantedX) * glide
-      y += wantedY * dtS + (vy - wantedY) * glide
-      vx = wantedX + (vx - wantedX) * left
-      vy = wantedY + (vy - wantedY) * left
+      at = response.step(at, commandedX, commandedY, dtS)
 
 /** @param track
   *   of the vehicle itself

@@ -3,11 +3,8 @@ package skein.planning
 /** A block of candidates flown one after the other, where the JVM has no vector module: the same candidates as the
   * kernel's, some fifty times slower.
   */
-private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
+private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(steps):
   private val size = CandidateBlock.Size
-
-  val turnRates, speeds, turnSums, speedSums = Array.ofDim[Float](steps * size)
-  val costs, weightSums                      = Array.ofDim[Float](size)
 
   private var rollout: Option[ManoeuvreRollout] = None
   private var limits: Option[Limits]            = None
@@ -46,9 +43,6 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock:
       IArray.tabulate(steps)(step => turnRates(step * size + i)),
       IArray.tabulate(steps)(step => speeds(step * size + i))
     )
-
-  def forget(): Unit =
-    for sums <- Seq(turnSums, speedSums, weightSums) do java.util.Arrays.fill(sums, 0f)
 
   def weigh(base: Float, temperature: Float): Unit =
     for i <- 0 until size do

@@ -57,7 +57,9 @@ class HomicidalChauffeurSuite extends munit.FunSuite:
     boundary:
       val _ = duel(pursuer, evader, start, durationS).fly(
         0,
-        onScore = (timeS, ex, ey, px, py) => if math.hypot(ex - px, ey - py) <= captureM then break(timeS)
+        observer = DuelPath((timeS, ex, ey, px, py) =>
+          if math.hypot(ex - px, ey - py) <= captureM then break(timeS)
+        )
       )
       Double.PositiveInfinity
 

@@ -26,7 +26,7 @@ class RolloutOracleSuite extends munit.FunSuite:
     val points = ArrayBuffer.empty[Vector[Double]]
     val _      = Rollout(duel, timing, link, model).fly(
       key,
-      onScore = (_, ex, ey, px, py) => points += Vector(ex, ey, px, py)
+      observer = DuelPath((_, ex, ey, px, py) => points += Vector(ex, ey, px, py))
     )
     points.toVector
 

@@ -16,7 +16,7 @@ class RolloutSuite extends munit.FunSuite:
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
-    val _      = rollout.fly(key, onScore = (_, ex, ey, px, py) => points += ((ex, ey, px, py)))
+    val _      = rollout.fly(key, observer = DuelPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
     points.toVector
 
   private def distances(rollout: Rollout, key: Int): Vector[Double] =

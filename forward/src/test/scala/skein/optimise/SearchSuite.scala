@@ -1,10 +1,11 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced}
+import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
 import skein.lanes.DuelBatch
 import skein.policy.{Axis, PaperEvader, PaperPursuer, PolicyFamily, Role, SearchSpace}
 import skein.signal.SplitMix64
+import skein.simd.WorldRandom
 import skein.testing.Unhurried
 
 class SearchSuite extends munit.FunSuite, Unhurried:
@@ -135,14 +136,11 @@ class SearchSuite extends munit.FunSuite, Unhurried:
     val candidates = Vector(Vector(0.7), Vector(1.0), Vector(1.4))
     val tallies    = game(1).tallies(candidates, 0 until 30)
     assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
-    val scalar = TrajectoryEvaluator(
-      c => short.copy(pursuer = short.pursuer.copy(policy = PaperPursuer(c.head.toFloat))),
-      LoopTiming.Stream(),
-      DelayTable.vpn,
-      lag,
-      seed = 1
-    )(path => path.distancesM.takeRight(100).sum / 100).tallies(candidates, 0 until 30)
-    for (tally, reference) <- tallies.zip(scalar) do assertEqualsDouble(tally.mean, reference.mean, 0.03)
+    for (tally, candidate) <- tallies.zip(candidates) do
+      val pursuer   = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
+      val rollout   = Rollout(short.copy(pursuer = pursuer), LoopTiming.Stream(), DelayTable.vpn, lag)
+      val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
+      assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
 
   test("the paper's pursuer over vpn: the search finds a turn rate at least as good as any of a fine grid"):
     val turnRate  = PolicyFamily.paperPursuer.space

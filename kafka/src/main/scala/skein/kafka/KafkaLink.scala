@@ -4,6 +4,7 @@ import java.util.concurrent.atomic.AtomicReference
 import org.apache.pekko.Done
 import scala.concurrent.{ExecutionContext, Future}
 import skein.solver.{LinkNews, MessageLink, OpenLink}
+import skein.units.Expect
 
 /** A flight's link to a solver behind a Kafka broker. All flights of a prefix share the topics; each takes what is its own.
   *
@@ -33,5 +34,5 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
     new OpenLink:
       def send(message: Array[Byte]): Either[String, Unit] =
         // What is said while it is down is how the broker is found to be back.
-        Either.cond(pipe.ready.isCompleted && pipe.send(message), (), isDown.get.getOrElse(away))
+        Expect.that(pipe.ready.isCompleted && pipe.send(message))(isDown.get.getOrElse(away))
       def close(): Future[Done] = pipe.close().map(_ => Done)

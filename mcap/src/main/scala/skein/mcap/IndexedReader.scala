@@ -68,7 +68,7 @@ final class IndexedReader private (source: ByteSource, limits: Limits, val summa
           case other => Refused.malformed(at, "a chunk", s"a ${Opcode.name(other.opcode)} record")
       case Stretch.Kind.CutChunk =>
         val content = part(stretch.offset + 9, stretch.length - 9).toArray
-        val chunk   = RecordDecoder.beginningOfChunk(content, content.length, at)
+        val chunk   = RecordCodec.beginningOfChunk(content, content.length, at)
         val records = chunk.fold(Bytes.empty)(Compression.decompress(_, limits, at, cut = true))
         RecordWalk(records, stretch.offset, inChunk = true, cut = true)
 

@@ -29,7 +29,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   private var metadataCount = 0
 
   out.raw(Magic.bytes)
-  RecordEncoder.append(Record.Header(options.profile, options.library), out)
+  RecordCodec.append(Record.Header(options.profile, options.library), out)
 
   /** Names a schema; gives its identifier.
     *
@@ -107,7 +107,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   def attachment(logTime: Long, createTime: Long, name: String, mediaType: String, data: Bytes): Unit =
     open()
     val start = offset + out.size
-    RecordEncoder.append(Record.Attachment(logTime, createTime, name, mediaType, data, 0), out)
+    RecordCodec.append(Record.Attachment(logTime, createTime, name, mediaType, data, 0), out)
     val length = offset + out.size - start
     attachedCount += 1
     if options.attachmentIndex then
@@ -117,7 +117,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   def metadata(name: String, entries: SeqMap[String, String]): Unit =
     open()
     val start = offset + out.size
-    RecordEncoder.append(Record.Metadata(name, entries), out)
+    RecordCodec.append(Record.Metadata(name, entries), out)
     metadataCount += 1
     if options.metadataIndex then
       metadatas += Record.MetadataIndex(start, offset + out.size - start, name)
@@ -133,21 +133,21 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   def finish(): Unit =
     flush()
     finished = true
-    RecordEncoder.append(Record.DataEnd(sum.getValue.toInt), out)
+    RecordCodec.append(Record.DataEnd(sum.getValue.toInt), out)
     drain()
     sum.reset()
     val start   = offset
     val groups  = summary()
     val empty   = out.size == 0
     val offsets = offset + out.size
-    if options.summaryOffsets then groups.foreach(RecordEncoder.append(_, out))
+    if options.summaryOffsets then groups.foreach(RecordCodec.append(_, out))
     val footer = Record.Footer(
       if empty then 0 else start,
       if options.summaryOffsets && groups.nonEmpty then offsets else 0,
       0
     )
     val at = out.size
-    RecordEncoder.append(footer, out)
+    RecordCodec.append(footer, out)
     // The CRC covers the footer up to itself.
     sum.update(out.array, 0, at + 9 + 16)
     out.patchU32(at + 9 + 16, sum.getValue.toInt)
@@ -157,7 +157,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
   private def open(): Unit = require(!finished, "written after it was finished")
 
   private def put(record: Record): Unit =
-    RecordEncoder.append(record, if options.chunked then chunk else out)
+    RecordCodec.append(record, if options.chunked then chunk else out)
     room()
 
   private def room(): Unit =
@@ -181,7 +181,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
         Record.Chunk(chunkTimes.start, chunkTimes.end, chunk.size, crc, options.compression.name, packed)
       drain()
       val start = offset
-      RecordEncoder.chunkHead(record, out)
+      RecordCodec.chunkHead(record, out)
       drain()
       pass(packed.array, packed.from, packed.from + packed.size)
       val length  = offset - start
@@ -209,7 +209,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
       if log.entries.size > 0 then
         if options.messageIndex then
           offsets += log.channel.id -> (offset + out.size)
-          RecordEncoder.append(
+          RecordCodec.append(
             Record.MessageIndex(log.channel.id, Bytes.of(log.entries.array, 0, log.entries.size)),
             out
           )
@@ -230,7 +230,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
       .filter(_.nonEmpty)
       .map: group =>
         val start = out.size
-        group.foreach(RecordEncoder.append(_, out))
+        group.foreach(RecordCodec.append(_, out))
         Record.SummaryOffset(group.head.opcode, offset + start, out.size - start)
 
   private def statistics = Record.Statistics(

@@ -6,7 +6,7 @@ import scala.collection.immutable.SeqMap
   * that reader and writer agree on, unsigned; so are sizes and offsets, which count bytes from the start of the file.
   * Identifiers are unsigned 16 bit, a sequence number unsigned 32 bit. A CRC of 0 means that there is none.
   */
-sealed abstract class Record(val opcode: Int)
+sealed abstract class Record(val opcode: Int) extends Product
 
 object Record:
   final case class Header(profile: String, library: String) extends Record(Opcode.Header)

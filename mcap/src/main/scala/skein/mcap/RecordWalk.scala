@@ -44,7 +44,7 @@ private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Bool
   def start: Int     = at - records.from
   def length: Int    = next - at
   def place: Place   = if inChunk then Place(offset, start) else Place(offset + start)
-  def record: Record = RecordDecoder.decode(opcode, array, at + 9, next, place)
+  def record: Record = RecordCodec.decode(opcode, array, at + 9, next, place)
 
   /** Of a message, without decoding it. */
   def channelId: Int = view.getShort(at + 9) & 0xffff

@@ -163,7 +163,7 @@ final class StreamParser(limits: Limits = Limits()):
 
   private def finishRecord(): Option[Parsed] =
     val at     = Place(start)
-    val record = RecordDecoder.decode(opcode, content, 0, length, at)
+    val record = RecordCodec.decode(opcode, content, 0, length, at)
     record match
       case Record.DataEnd(crc) =>
         Checksum.hold(crc, sum.getValue.toInt, "all bytes before", at)
@@ -203,7 +203,7 @@ final class StreamParser(limits: Limits = Limits()):
       val error = McapError.CutOff(at, s"$length bytes of ${Opcode.name(opcode)}", has)
       fail(error): Unit
       if opcode == Opcode.Chunk then
-        walk = RecordDecoder
+        walk = RecordCodec
           .beginningOfChunk(content, has, at)
           .map: chunk =>
             RecordWalk(

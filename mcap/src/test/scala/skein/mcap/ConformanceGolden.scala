@@ -46,9 +46,9 @@ class ConformanceGolden extends munit.FunSuite:
     pairs.foreach: pair =>
       Parsing.all(pair.file).records.foreach: record =>
         val out = ByteBuilder(64)
-        RecordEncoder.append(record, out)
+        RecordCodec.append(record, out)
         val again =
-          RecordDecoder.decode(out.array(0) & 0xff, out.array, 9, out.size, Place(0))
+          RecordCodec.decode(out.array(0) & 0xff, out.array, 9, out.size, Place(0))
         assertEquals(again, record, pair.name)
 
   /** A file's description leaves out how messages are gathered. */
@@ -152,8 +152,8 @@ private object ConformanceGolden:
         )
         // The description leaves the CRC out; the parser has held it.
         val out = ByteBuilder(64)
-        RecordEncoder.append(attachment, out)
-        RecordDecoder.decode(Opcode.Attachment, out.array, 9, out.size, Place(0))
+        RecordCodec.append(attachment, out)
+        RecordCodec.decode(Opcode.Attachment, out.array, 9, out.size, Place(0))
       case "AttachmentIndex" =>
         Record.AttachmentIndex(
           long("offset"),

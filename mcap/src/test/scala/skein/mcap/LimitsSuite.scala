@@ -4,7 +4,7 @@ class LimitsSuite extends munit.FunSuite:
   private val begin =
     val out = ByteBuilder(64)
     out.raw(Magic.bytes)
-    RecordEncoder.append(Record.Header("", ""), out)
+    RecordCodec.append(Record.Header("", ""), out)
     Bytes.of(out.array.take(out.size))
 
   private def after(records: ByteBuilder => Unit): Bytes =
@@ -41,7 +41,7 @@ class LimitsSuite extends munit.FunSuite:
     assertEquals(parsers.map(_()).map(_.next()).toSet, Set(Parsed.NeedsBytes))
 
   test("a chunk that claims to grow beyond the limit is refused"):
-    val file = after(RecordEncoder.append(Record.Chunk(0, 0, 1L << 40, 0, "zstd", Bytes.empty), _))
+    val file = after(RecordCodec.append(Record.Chunk(0, 0, 1L << 40, 0, "zstd", Bytes.empty), _))
     assertEquals(
       errorOf(file),
       "byte 25: a chunk, uncompressed, claims 1099511627776 bytes, expected at most 268435456"
@@ -70,19 +70,19 @@ class LimitsSuite extends munit.FunSuite:
         "came 53 51 4c 69 74 65 20 66"
     )
     assertEquals(
-      errorOf(after(RecordEncoder.append(Record.Message(7, 0, 0, 0, Bytes.empty), _))),
+      errorOf(after(RecordCodec.append(Record.Message(7, 0, 0, 0, Bytes.empty), _))),
       "byte 25: expected a message of a channel named before, came one of channel 7"
     )
     assertEquals(
-      errorOf(after(RecordEncoder.append(Record.Chunk(0, 0, 0, 0, "bz2", Bytes.empty), _))),
+      errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 0, 0, "bz2", Bytes.empty), _))),
       "byte 25: expected a chunk compressed by zstd, by lz4 or not at all, came \"bz2\""
     )
     assertEquals(
-      errorOf(after(RecordEncoder.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
+      errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
       "byte 25: the CRC of the chunk's records, uncompressed, is written as 0x00000005, its bytes give 0x352441c2"
     )
     assertEquals(
-      errorOf(after(RecordEncoder.append(Record.SummaryOffset(3, 0, 0), _))),
+      errorOf(after(RecordCodec.append(Record.SummaryOffset(3, 0, 0), _))),
       "byte 25: expected a record of the data section, came a Summary Offset record"
     )
     assertEquals(
@@ -91,14 +91,14 @@ class LimitsSuite extends munit.FunSuite:
     )
 
   test("a record of a kind that is not known yet is given as it is"):
-    val file = after(RecordEncoder.append(Record.Other(0x91, Bytes.utf8("later")), _))
+    val file = after(RecordCodec.append(Record.Other(0x91, Bytes.utf8("later")), _))
     assertEquals(Parsing.all(file).records.last, Record.Other(0x91, Bytes.utf8("later")))
 
   test("a channel that is named again otherwise is refused, one named again is not"):
     def channel(topic: String) =
       Record.Channel(1, 0, topic, "", scala.collection.immutable.VectorMap.empty)
     def file(second: String) = after: out =>
-      RecordEncoder.append(channel("/a"), out)
-      RecordEncoder.append(channel(second), out)
+      RecordCodec.append(channel("/a"), out)
+      RecordCodec.append(channel(second), out)
     assertEquals(Parsing.all(file("/a")).records.size, 3)
     assertEquals(errorOf(file("/b")), "byte 52: expected channel 1 as it was named before, /a, came /b")

@@ -1,5 +1,7 @@
 package skein.mujoco
 
+import skein.units.Expect
+
 /** What a model's body is, as it was measured.
   *
   * @param stepS
@@ -65,12 +67,12 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
       )
       _ <- expect(count >= 4)(s"at least 4 actuators, came $count")
       falling = accelerations(resting)
-      effects    <- all(count)(effectOf(_, falling))
+      effects    <- Expect.each(0 until count)(effectOf(_, falling))
       _          <- expect(falling(0) < 0)("gravity along −z")
       allocation <- Allocation.of(Array.tabulate(4, count)((axis, actuator) => effects(actuator)(axis)))
       actuators = MujocoActuators(lowest, highest, resting, effects, -falling(0), allocation)
       hovering  = actuators.hovering
-      _ <- all(count): i =>
+      _ <- Expect.each(0 until count): i =>
         expect(hovering(i) >= lowest(i) && hovering(i) <= highest(i))(
           s"a control range with ${hovering(i)}, by which it hovers, came ${lowest(i)} to ${highest(i)}"
         ).left.map(named(i))
@@ -133,12 +135,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
 
 private object MujocoMeasuring:
   private def expect(holds: Boolean)(what: => String): Either[String, Unit] =
-    Either.cond(holds, (), s"expected $what")
-
-  /** Of each, or why the first one has none. */
-  private def all[A](count: Int)(of: Int => Either[String, A]): Either[String, Vector[A]] =
-    (0 until count).foldLeft[Either[String, Vector[A]]](Right(Vector.empty)): (sofar, i) =>
-      sofar.flatMap(before => of(i).map(before :+ _))
+    Expect.that(holds)(s"expected $what")
 
   /** `mjJNT_FREE` */
   private val FreeJoint = 0

@@ -2,6 +2,7 @@ package skein.mujoco
 
 import java.lang.foreign.{Arena, MemorySegment}
 import java.nio.file.{Files, Path}
+import skein.units.Expect
 
 /** A multirotor in MuJoCo's XML. Its body is the one of the first joint, a free one; its z is up. What its actuators do is
   * measured ([[MujocoMeasuring]]). MuJoCo's memory of it is freed when nobody refers to it any more.
@@ -33,7 +34,7 @@ object MujocoModel:
   def read(file: Path): Either[String, MujocoModel] =
     for
       _ <- MujocoLibrary.find
-      _ <- Either.cond(Files.isRegularFile(file), (), s"expected a file of MuJoCo's XML, there is no $file")
+      _ <- Expect.that(Files.isRegularFile(file))(s"expected a file of MuJoCo's XML, there is no $file")
       compiled <- load(file)
       body     <- measured(compiled).left.map(reason => s"$file: $reason")
     yield new MujocoModel(file.toString, compiled, body)

@@ -5,6 +5,7 @@ import java.sql.{DriverManager, SQLException}
 import java.util.Properties
 import org.duckdb.DuckDBConnection
 import scala.util.Using
+import skein.units.Expect
 
 /** The database behind a recording, while it is written. Not safe for use from several threads at once. */
 private[record] final class RecordingFile private (val path: Path, connection: DuckDBConnection):
@@ -68,7 +69,7 @@ private[record] object RecordingFile:
   /** Whether a recording could have this name. */
   def free(file: Path): Either[RecordError, Unit] =
     if isUnnameable(file) then Left(RecordError.CannotCreate(file, Unnameable))
-    else Either.cond(!Files.exists(file), (), RecordError.AlreadyExists(file))
+    else Expect.that(!Files.exists(file))(RecordError.AlreadyExists(file))
 
   /** Makes the file and its tables, with rows that somebody else puts in. Blocks. */
   def filled(file: Path)(rows: DuckDBConnection => Unit): Either[RecordError, Unit] =

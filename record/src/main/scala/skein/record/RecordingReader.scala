@@ -4,6 +4,7 @@ import java.io.IOException
 import java.nio.file.{AccessDeniedException, Files, Path}
 import java.sql.Connection
 import scala.util.Using
+import skein.units.Expect
 
 /** Reads recordings back. A file that a killed process left is as good as another. */
 object RecordingReader:
@@ -48,7 +49,7 @@ object RecordingReader:
     else
       for
         known  <- isDuckDb(file)
-        _      <- Either.cond(known, (), RecordError.NotARecording(file, "it is not a DuckDB file"))
+        _      <- Expect.that(known)(RecordError.NotARecording(file, "it is not a DuckDB file"))
         opened <- RecordingFile
           .attempt(RecordError.CannotOpen(file, _))(RecordingFile.connect(file, readOnly = true))
         result <- Using.resource(opened)(connection =>
@@ -62,11 +63,8 @@ object RecordingReader:
         RecordingFormat.of(connection)
       )
       .flatMap: found =>
-        Either.cond(
-          found >= RecordingFormat.oldest && found <= RecordingFormat.version,
-          (),
+        Expect.that(found >= RecordingFormat.oldest && found <= RecordingFormat.version):
           RecordError.OtherVersion(file, RecordingFormat.oldest, RecordingFormat.version, found)
-        )
 
   /** DuckDB's files bear its name behind an eight-byte checksum. */
   private def isDuckDb(file: Path): Either[RecordError, Boolean] =

@@ -1,0 +1,141 @@
+package skein.bytes
+
+import java.io.{
+  ByteArrayInputStream,
+  ByteArrayOutputStream,
+  DataInputStream,
+  DataOutputStream,
+  EOFException,
+  IOException
+}
+import java.util.Locale
+import scala.compiletime.{constValue, erasedValue, summonInline}
+import scala.deriving.Mirror
+import skein.units.*
+
+/** How values are written as bytes, and read back to the bit: numbers big-endian, texts in UTF-8 behind their length in
+  * bytes, lists behind their length, what may be absent behind a byte that says whether it is there; a case class by its
+  * fields in their order; an enum by a byte for the case, from 1, then that case's fields.
+  */
+trait Codec[A]:
+  def write(value: A, out: DataOutputStream): Unit
+
+  /** @throws IOException
+    *   where something else comes; no length is believed that is more than the bytes left
+    */
+  def read(in: DataInputStream): A
+
+  /** The same bytes for another type. */
+  final def imap[B](to: A => B)(from: B => A): Codec[B] =
+    Codec.of[B]((value, out) => write(from(value), out))(in => to(read(in)))
+
+object Codec:
+  def apply[A](using codec: Codec[A]): Codec[A] = codec
+
+  def of[A](put: (A, DataOutputStream) => Unit)(take: DataInputStream => A): Codec[A] = new Codec[A]:
+    def write(value: A, out: DataOutputStream): Unit = put(value, out)
+    def read(in: DataInputStream): A                 = take(in)
+
+  def bytes[A](value: A)(using codec: Codec[A]): Array[Byte] =
+    val into = ByteArrayOutputStream(1024)
+    codec.write(value, DataOutputStream(into))
+    into.toByteArray
+
+  /** A message that is all of the bytes.
+    *
+    * @return
+    *   or what was expected, and what came
+    */
+  def message[A](bytes: Array[Byte])(using codec: Codec[A]): Either[String, A] =
+    val in = DataInputStream(ByteArrayInputStream(bytes))
+    try
+      val read = codec.read(in)
+      Either.cond(in.available == 0, read, s"expected the message's end, came ${in.available} more bytes")
+    catch
+      case _: EOFException    => Left(s"the message is cut off after ${bytes.length} bytes")
+      case wrong: IOException => Left(wrong.getMessage)
+
+  /** How many come: no more than there are bytes left. */
+  def length(in: DataInputStream): Int =
+    val came = in.readInt()
+    if came < 0 || came > in.available then
+      throw IOException(s"expected a length of 0 to ${in.available}, came $came")
+    came
+
+  given Codec[Boolean]         = of[Boolean]((value, out) => out.writeBoolean(value))(_.readBoolean())
+  given Codec[Int]             = of[Int]((value, out) => out.writeInt(value))(_.readInt())
+  given Codec[Long]            = of[Long]((value, out) => out.writeLong(value))(_.readLong())
+  given Codec[Double]          = of[Double]((value, out) => out.writeDouble(value))(_.readDouble())
+  given Codec[Instant]         = Codec[Long].imap[Instant](Instant.ofNanos(_))(_.toNanos)
+  given Codec[Span]            = Codec[Long].imap[Span](Span.ofNanos(_))(_.toNanos)
+  given Codec[Metres]          = Codec[Double].imap[Metres](Metres(_))(_.value)
+  given Codec[MetresPerSecond] = Codec[Double].imap[MetresPerSecond](MetresPerSecond(_))(_.value)
+  given Codec[Radians]         = Codec[Double].imap[Radians](Radians(_))(_.value)
+  given Codec[Vector3]         = derived
+  given Codec[Quaternion]      = derived
+
+  given Codec[String] = new Codec[String]:
+    def write(value: String, out: DataOutputStream): Unit =
+      val encoded = value.getBytes("UTF-8")
+      out.writeInt(encoded.length)
+      out.write(encoded)
+    def read(in: DataInputStream): String = String(in.readNBytes(length(in)), "UTF-8")
+
+  given option[A](using codec: Codec[A]): Codec[Option[A]] = new Codec[Option[A]]:
+    def write(value: Option[A], out: DataOutputStream): Unit =
+      out.writeBoolean(value.isDefined)
+      value.foreach(codec.write(_, out))
+    def read(in: DataInputStream): Option[A] = Option.when(in.readBoolean())(codec.read(in))
+
+  given vector[A](using codec: Codec[A]): Codec[Vector[A]] = new Codec[Vector[A]]:
+    def write(value: Vector[A], out: DataOutputStream): Unit =
+      out.writeInt(value.size)
+      value.foreach(codec.write(_, out))
+    def read(in: DataInputStream): Vector[A] = Vector.fill(length(in))(codec.read(in))
+
+  given pair[A, B](using Codec[A], Codec[B]): Codec[(A, B)] = derived
+
+  given either[A, B](using Codec[A], Codec[B]): Codec[Either[A, B]] = derived
+
+  /** A tuple is itself with names and without. */
+  given named[N <: Tuple, V <: Tuple](using codec: Codec[V]): Codec[NamedTuple.NamedTuple[N, V]] =
+    codec.asInstanceOf[Codec[NamedTuple.NamedTuple[N, V]]]
+
+  /** Of a case class or an enum, whose fields have codecs. */
+  inline def derived[A](using mirror: Mirror.Of[A]): Codec[A] = inline mirror match
+    case product: Mirror.ProductOf[A] => ofFields(product, fields[product.MirroredElemTypes])
+    case sum: Mirror.SumOf[A]         =>
+      ofCases(constValue[sum.MirroredLabel], sum, cases[sum.MirroredElemTypes])
+
+  private inline def fields[T <: Tuple]: List[Codec[Any]] = inline erasedValue[T] match
+    case _: EmptyTuple     => Nil
+    case _: (head *: tail) => summonInline[Codec[head]].asInstanceOf[Codec[Any]] :: fields[tail]
+
+  private inline def cases[T <: Tuple]: List[Codec[Any]] = inline erasedValue[T] match
+    case _: EmptyTuple     => Nil
+    case _: (head *: tail) =>
+      derived[head](using summonInline[Mirror.Of[head]]).asInstanceOf[Codec[Any]] :: cases[tail]
+
+  private[skein] def ofFields[A](product: Mirror.ProductOf[A], fields: List[Codec[Any]]): Codec[A] =
+    new Codec[A]:
+      def write(value: A, out: DataOutputStream): Unit =
+        for (field, codec) <- value.asInstanceOf[Product].productIterator.zip(fields) do
+          codec.write(field, out)
+      def read(in: DataInputStream): A =
+        product.fromProduct(Tuple.fromArray(fields.map(_.read(in)).toArray[Any]))
+
+  private[skein] def ofCases[A](label: String, sum: Mirror.SumOf[A], cases: List[Codec[Any]]): Codec[A] =
+    new Codec[A]:
+      private val all = cases.toVector
+
+      def write(value: A, out: DataOutputStream): Unit =
+        val number = sum.ordinal(value)
+        out.writeByte(number + 1)
+        all(number).write(value, out)
+
+      def read(in: DataInputStream): A =
+        val kind = in.readUnsignedByte()
+        if kind < 1 || kind > all.size then
+          val what = label.toLowerCase(Locale.ROOT)
+          throw IOException(s"expected a kind of $what from 1 to ${all.size}, came $kind")
+        all(kind - 1).read(in).asInstanceOf[A]

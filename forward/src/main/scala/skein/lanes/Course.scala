@@ -1,0 +1,23 @@
+package skein.lanes
+
+/** A way by which a [[Timetable]]'s reading is carried forward: parts flown under one command each. What the numbers mean,
+  * the kind of predicted vehicles says.
+  */
+private[skein] final case class Course(parts: Vector[Course.Part], first: Double = 0, second: Double = 0):
+  /** With the places of the commands that its decisions became. */
+  private[lanes] def placed(placeOf: Int => Int): Course =
+    copy(parts =
+      parts.map(part => part.copy(command = if part.command == 0 then Course.Rest else placeOf(part.command)))
+    )
+
+  /** About so much memory is held. */
+  private[lanes] def bytes: Long = 48 + 56L * parts.size
+
+private[skein] object Course:
+  /** In the place of a command: none yet. */
+  val Rest: Int = -1
+
+  /** @param command
+    *   the decision that it carries, 0 where there is none yet; in a timetable its place, or [[Rest]]
+    */
+  final case class Part(command: Int, span: Double, rest: Double)

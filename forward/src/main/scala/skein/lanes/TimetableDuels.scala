@@ -1,0 +1,44 @@
+package skein.lanes
+
+import skein.forward.{Duel, LoopTiming}
+
+/** Duels by [[TimetableKernel]]: the evader is vehicle 0. Mutable.
+  *
+  * @param duel
+  *   start, speeds and duration; its policies are not used
+  * @param model
+  *   the same as the timetables'
+  * @param pursuerPolicy
+  *   takes the parameters of each candidate's pursuer before it flies
+  * @param pursuerEye
+  *   by which alone the pursuer knows of the evader; null for one that is told
+  */
+private[lanes] final class TimetableDuels(
+    duel: Duel,
+    timing: LoopTiming,
+    model: LaneDynamics,
+    pursuerPolicy: LanePolicy,
+    evaderPolicy: LanePolicy,
+    pursuerEye: EyeLanes = null,
+    evaderEye: EyeLanes = null
+) extends DuelKernel:
+  private val scores = LaneScores(duel.durationS, timing.periodS, this)
+  private val sight  = LaneObservation()
+  private val kernel = TimetableKernel(
+    Array(
+      DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, sight, false, evaderEye),
+      DuelAgents(1, duel.pursuer, model, pursuerPolicy, pursuerEffortRad, sight, false, pursuerEye)
+    ),
+    scores
+  )
+
+  /** Flies [[DuelKernel.WORLDS]] candidates through one episode, by the policies' parameters.
+    *
+    * @param worlds
+    *   those that count are the first
+    * @param captureRadiusM
+    *   a distance of at most this is a capture
+    */
+  def fly(timetable: Timetable, worlds: Int, captureRadiusM: Float): Unit =
+    scores.captureWithin(captureRadiusM)
+    kernel.fly(timetable, worlds)
