@@ -93,8 +93,7 @@ final class DuelAgents extends TimetableAgents {
       believe(views[view + self] * WORLDS, times, number);
       policy.decide(sight, headings, before, eye.heading(), 0, headings, after);
     }
-    policy.commit();
-    add(policy.turned, effort);
+    policy.commit(effort);
   }
 
   /** Looks at what a decision is made upon. */
@@ -102,13 +101,11 @@ final class DuelAgents extends TimetableAgents {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    difference(theirs.seenX, opponentSeen, ours.seenX, ownSeen, sight.dx);
-    difference(theirs.seenY, opponentSeen, ours.seenY, ownSeen, sight.dy);
+    seePositions(theirs, opponentSeen, ours, ownSeen, times[number]);
     if (needsVelocity()) {
       difference(theirs.seenVx, opponentSeen, ours.seenVx, ownSeen, sight.dvx);
       difference(theirs.seenVy, opponentSeen, ours.seenVy, ownSeen, sight.dvy);
     }
-    Arrays.fill(sight.elapsed, times[number]);
     if (needsAges()) {
       Arrays.fill(sight.ownAge, times[number + 1]);
       Arrays.fill(sight.opponentAge, times[number + 2]);
@@ -146,17 +143,27 @@ final class DuelAgents extends TimetableAgents {
     eye.join(picture, isOlder, last);
   }
 
+  /** One pass for what every policy is told. */
+  private void seePositions(
+      TimetableVehicles theirs, int opponentSeen, TimetableVehicles ours, int ownSeen, float elapsedS) {
+    float[] theirX = theirs.seenX, theirY = theirs.seenY, ourX = ours.seenX, ourY = ours.seenY;
+    float[] dx = sight.dx, dy = sight.dy, elapsed = sight.elapsed;
+    FloatVector since = FloatVector.broadcast(SPECIES, elapsedS);
+    for (int i = 0; i < WORLDS; i += LANES) {
+      FloatVector.fromArray(SPECIES, theirX, opponentSeen + i)
+          .sub(FloatVector.fromArray(SPECIES, ourX, ownSeen + i))
+          .intoArray(dx, i);
+      FloatVector.fromArray(SPECIES, theirY, opponentSeen + i)
+          .sub(FloatVector.fromArray(SPECIES, ourY, ownSeen + i))
+          .intoArray(dy, i);
+      since.intoArray(elapsed, i);
+    }
+  }
+
   private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {
     for (int i = 0; i < WORLDS; i += LANES)
       FloatVector.fromArray(SPECIES, of, ofAt + i)
           .sub(FloatVector.fromArray(SPECIES, and, andAt + i))
           .intoArray(into, i);
-  }
-
-  private static void add(float[] what, float[] to) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, to, i)
-          .add(FloatVector.fromArray(SPECIES, what, i))
-          .intoArray(to, i);
   }
 }

@@ -1,6 +1,10 @@
 package skein.lanes;
 
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
 import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
 import skein.policy.Policy;
 import skein.simd.LaneFunction;
 
@@ -49,11 +53,22 @@ class LanePolicy {
   /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
   void take(int world, Policy policy) {
     if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
+    put(world, policy);
+  }
+
+  /** The same of a policy that is known to be of this form. */
+  void put(int world, Policy policy) {
     double[] values = form.parametersOf(policy);
     for (int i = 0; i < values.length; i++) parameters[i * WORLDS + world] = (float) values[i];
     double[] remembered = form.initialOf(policy);
     for (int i = 0; i < remembered.length; i++)
       initial[i * WORLDS + world] = (float) remembered[i];
+  }
+
+  /** A world flies by the policy that another does. */
+  void copy(int from, int to) {
+    for (int i = 0; i < parameters.length; i += WORLDS) parameters[i + to] = parameters[i + from];
+    for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
   /** Whether it looks at the velocities of the sight. */
@@ -142,10 +157,18 @@ class LanePolicy {
     parameters[world] = number;
   }
 
-  /** All worlds' decisions become commands. */
-  void commit() {
-    System.arraycopy(newHeading, 0, heading, 0, WORLDS);
+  /**
+   * All worlds' decisions become commands.
+   *
+   * @param effort where the changes of the heading are added up
+   */
+  void commit(float[] effort) {
+    if (form.keepsHeading()) System.arraycopy(newHeading, 0, heading, 0, WORLDS);
     System.arraycopy(newMemory, 0, memory, 0, memory.length);
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, effort, i)
+          .add(FloatVector.fromArray(SPECIES, turned, i))
+          .intoArray(effort, i);
   }
 
   /** What was decided is remembered in the worlds whose time, from a place on, comes before another. */

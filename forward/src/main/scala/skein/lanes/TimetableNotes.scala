@@ -1,5 +1,6 @@
 package skein.lanes
 
+import java.util.Arrays.copyOf
 import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
 import skein.forward.{Grounds, LoopObserver, Sight}
@@ -59,7 +60,6 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
   private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
   private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
-  private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
   private val placed     = Array.ofDim[Int](vehicles)
 
   private def note(what: Int, who: Int, time: Double, which: Int): Unit =
@@ -69,25 +69,22 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
   private def grow(): Unit =
     capacity *= 2
-    kind = kind.padTo(capacity, 0); agent = agent.padTo(capacity, 0); number = number.padTo(capacity, 0)
-    view = view.padTo(capacity, 0); opponent = opponent.padTo(capacity, 0)
-    from = from.padTo(capacity, 0); course = course.padTo(capacity, 0)
-    atS = atS.padTo(capacity, 0.0); elapsedS = elapsedS.padTo(capacity, 0.0)
-    ownAgeS = ownAgeS.padTo(capacity, 0.0); opponentAgeS = opponentAgeS.padTo(capacity, 0.0)
-    aheadS = aheadS.padTo(capacity, 0.0)
+    kind = copyOf(kind, capacity); agent = copyOf(agent, capacity); number = copyOf(number, capacity)
+    view = copyOf(view, capacity); opponent = copyOf(opponent, capacity)
+    from = copyOf(from, capacity); course = copyOf(course, capacity)
+    atS = copyOf(atS, capacity); elapsedS = copyOf(elapsedS, capacity)
+    ownAgeS = copyOf(ownAgeS, capacity); opponentAgeS = copyOf(opponentAgeS, capacity)
+    aheadS = copyOf(aheadS, capacity)
 
   private def look(vehicle: Int, timeS: Double): Int =
     looks(vehicle) += 1
     note(LOOK, vehicle, timeS, looks(vehicle))
     looks(vehicle)
 
+  /** Several decide upon one view, one after the other. */
   private def viewOf(seen: Array[Int]): Int =
-    numberOf.getOrElseUpdate(
-      mutable.ArraySeq.make(seen), {
-        views += seen
-        views.size - 1
-      }
-    )
+    if views.isEmpty || !java.util.Arrays.equals(views.last, seen) then views += seen
+    views.size - 1
 
   override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
     val seen = readingOf(vehicle)
