@@ -1,10 +1,6 @@
 package skein.lanes;
 
-import static skein.simd.LaneMath.LANES;
-import static skein.simd.LaneMath.SPECIES;
-
 import java.util.Arrays;
-import jdk.incubator.vector.FloatVector;
 import skein.forward.Duelist;
 
 /** One side of a duel in many worlds: decides by the difference of the two vehicles' readings. */
@@ -101,11 +97,13 @@ final class DuelAgents extends TimetableAgents {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    seePositions(theirs, opponentSeen, ours, ownSeen, times[number]);
+    sight.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
+    sight.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
     if (needsVelocity()) {
-      difference(theirs.seenVx, opponentSeen, ours.seenVx, ownSeen, sight.dvx);
-      difference(theirs.seenVy, opponentSeen, ours.seenVy, ownSeen, sight.dvy);
+      sight.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
+      sight.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
     }
+    Arrays.fill(sight.elapsed, times[number]);
     if (needsAges()) {
       Arrays.fill(sight.ownAge, times[number + 1]);
       Arrays.fill(sight.opponentAge, times[number + 2]);
@@ -115,11 +113,11 @@ final class DuelAgents extends TimetableAgents {
   /** The same by what is believed. */
   private void believe(int ownSeen, float[] times, int number) {
     eye.look(vehicles, ownSeen, times[number + 2], times[number + 3]);
-    System.arraycopy(eye.northM(), 0, sight.dx, 0, WORLDS);
-    System.arraycopy(eye.eastM(), 0, sight.dy, 0, WORLDS);
+    sight.seeFromOwn(LaneObservation.X, eye.northM());
+    sight.seeFromOwn(LaneObservation.Y, eye.eastM());
     if (needsVelocity()) {
-      difference(eye.northMps(), 0, vehicles.seenVx, ownSeen, sight.dvx);
-      difference(eye.eastMps(), 0, vehicles.seenVy, ownSeen, sight.dvy);
+      sight.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
+      sight.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
     }
     Arrays.fill(sight.elapsed, times[number]);
     Arrays.fill(sight.ownAge, times[number + 1]);
@@ -141,29 +139,5 @@ final class DuelAgents extends TimetableAgents {
   @Override
   void join(int picture, boolean isOlder, int last) {
     eye.join(picture, isOlder, last);
-  }
-
-  /** One pass for what every policy is told. */
-  private void seePositions(
-      TimetableVehicles theirs, int opponentSeen, TimetableVehicles ours, int ownSeen, float elapsedS) {
-    float[] theirX = theirs.seenX, theirY = theirs.seenY, ourX = ours.seenX, ourY = ours.seenY;
-    float[] dx = sight.dx, dy = sight.dy, elapsed = sight.elapsed;
-    FloatVector since = FloatVector.broadcast(SPECIES, elapsedS);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector.fromArray(SPECIES, theirX, opponentSeen + i)
-          .sub(FloatVector.fromArray(SPECIES, ourX, ownSeen + i))
-          .intoArray(dx, i);
-      FloatVector.fromArray(SPECIES, theirY, opponentSeen + i)
-          .sub(FloatVector.fromArray(SPECIES, ourY, ownSeen + i))
-          .intoArray(dy, i);
-      since.intoArray(elapsed, i);
-    }
-  }
-
-  private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, of, ofAt + i)
-          .sub(FloatVector.fromArray(SPECIES, and, andAt + i))
-          .intoArray(into, i);
   }
 }

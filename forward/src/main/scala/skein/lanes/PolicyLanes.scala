@@ -83,8 +83,8 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** How many arrays it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] of what [[In]] lists. */
-  val function: LaneFunction = LaneCompiler.compile(inputs, outputs)
+  /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and the own ones. */
+  val function: LaneFunction = LaneCompiler.compile(inputs, outputs, differences = LaneObservation.READ)
 
   /** Computes [[outputs]] but how far the decided heading is from the one before. */
   lazy val course: LaneFunction = LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1))
