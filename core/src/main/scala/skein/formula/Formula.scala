@@ -36,9 +36,7 @@ final class Formula private (
 
   /** The values of these nodes of [[trace]]. */
   def evaluate(nodes: Vector[Node], input: Array[Double], parameters: Array[Double]): Array[Double] =
-    val values = Array.ofDim[Double](trace.size)
-    Formula.evaluate(nodes, input, parameters, values)
-    nodes.map(node => values(node.id)).toArray
+    Evaluation(nodes)(input, parameters)
 
   /** What comes out for doubles: slow, and to the bit what the method itself answers. */
   def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
@@ -182,9 +180,17 @@ object Formula:
       input: Array[Double],
       parameters: Array[Double],
       values: Array[Double]
+  ): Unit = compute(Trace.needed(of).toArray, input, parameters, values)
+
+  /** The same of nodes in an order in which each comes after what it needs. */
+  private[formula] def compute(
+      order: Array[Node],
+      input: Array[Double],
+      parameters: Array[Double],
+      values: Array[Double]
   ): Unit =
     import Op.{Always, And, Const, Eq, Input, Le, Lt, Not, Or, Param, Where}
-    for node <- Trace.needed(of) do
+    for node <- order do
       def a = values(node.args(0).id)
       def b = values(node.args(1).id)
       values(node.id) = node.op match
@@ -198,6 +204,17 @@ object Formula:
         case Or           => Math.max(a, b)
         case Lt | Le | Eq => if Op.holds(node.op, a, b) then 1 else 0
         case op           => if node.args.size == 1 then Op.compute(op, a) else Op.compute(op, a, b)
+
+/** What some nodes of one [[Trace]] come to, again and again: what they need is found once. */
+final class Evaluation(nodes: Vector[Node]):
+  private val order   = Trace.needed(nodes).toArray
+  private val size    = order.iterator.map(_.id + 1).maxOption.getOrElse(0)
+  private val answers = nodes.iterator.map(_.id).toArray
+
+  def apply(input: Array[Double], parameters: Array[Double]): Array[Double] =
+    val values = Array.ofDim[Double](size)
+    Formula.compute(order, input, parameters, values)
+    answers.map(values(_))
 
 /** Reads numbers inside of objects of one form, each object on the way once. */
 private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
@@ -218,18 +235,21 @@ private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
 
   def fits(root: AnyRef): Boolean =
     val found = walk(root)
-    guarded.indices.forall: i =>
-      val value = found(guarded(i))
-      expected(i) match
-        case null                => value == null
-        case kind: Class[?]      => value != null && (value.getClass eq kind)
-        case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
-        case number              => value == number
+    var i     = 0
+    while i < guarded.length && holds(expected(i), found(guarded(i))) do i += 1
+    i == guarded.length
+
+  private def holds(expected: Any, value: AnyRef): Boolean = expected match
+    case null                => value == null
+    case kind: Class[?]      => value != null && (value.getClass eq kind)
+    case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
+    case number              => value == number
 
   /** What stands at each place; nothing behind what is not of the form. */
   private def walk(root: AnyRef): Array[AnyRef] =
     val found = Array.ofDim[AnyRef](steps.length)
-    for i <- steps.indices do
+    var i     = 0
+    while i < steps.length do
       val from = if before(i) < 0 then root else found(before(i))
       found(i) = steps(i) match
         case Step.Itself       => root
@@ -243,4 +263,5 @@ private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
             case _                      =>
               if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
               else null
+      i += 1
     found

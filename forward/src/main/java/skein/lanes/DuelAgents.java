@@ -1,10 +1,6 @@
 package skein.lanes;
 
-import static skein.simd.LaneMath.LANES;
-import static skein.simd.LaneMath.SPECIES;
-
 import java.util.Arrays;
-import jdk.incubator.vector.FloatVector;
 import skein.forward.Duelist;
 
 /** One side of a duel in many worlds: decides by the difference of the two vehicles' readings. */
@@ -93,8 +89,7 @@ final class DuelAgents extends TimetableAgents {
       believe(views[view + self] * WORLDS, times, number);
       policy.decide(sight, headings, before, eye.heading(), 0, headings, after);
     }
-    policy.commit();
-    add(policy.turned, effort);
+    policy.commit(effort);
   }
 
   /** Looks at what a decision is made upon. */
@@ -102,11 +97,11 @@ final class DuelAgents extends TimetableAgents {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    difference(theirs.seenX, opponentSeen, ours.seenX, ownSeen, sight.dx);
-    difference(theirs.seenY, opponentSeen, ours.seenY, ownSeen, sight.dy);
+    sight.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
+    sight.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
     if (needsVelocity()) {
-      difference(theirs.seenVx, opponentSeen, ours.seenVx, ownSeen, sight.dvx);
-      difference(theirs.seenVy, opponentSeen, ours.seenVy, ownSeen, sight.dvy);
+      sight.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
+      sight.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
     }
     Arrays.fill(sight.elapsed, times[number]);
     if (needsAges()) {
@@ -118,11 +113,11 @@ final class DuelAgents extends TimetableAgents {
   /** The same by what is believed. */
   private void believe(int ownSeen, float[] times, int number) {
     eye.look(vehicles, ownSeen, times[number + 2], times[number + 3]);
-    System.arraycopy(eye.northM(), 0, sight.dx, 0, WORLDS);
-    System.arraycopy(eye.eastM(), 0, sight.dy, 0, WORLDS);
+    sight.seeFromOwn(LaneObservation.X, eye.northM());
+    sight.seeFromOwn(LaneObservation.Y, eye.eastM());
     if (needsVelocity()) {
-      difference(eye.northMps(), 0, vehicles.seenVx, ownSeen, sight.dvx);
-      difference(eye.eastMps(), 0, vehicles.seenVy, ownSeen, sight.dvy);
+      sight.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
+      sight.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
     }
     Arrays.fill(sight.elapsed, times[number]);
     Arrays.fill(sight.ownAge, times[number + 1]);
@@ -144,19 +139,5 @@ final class DuelAgents extends TimetableAgents {
   @Override
   void join(int picture, boolean isOlder, int last) {
     eye.join(picture, isOlder, last);
-  }
-
-  private static void difference(float[] of, int ofAt, float[] and, int andAt, float[] into) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, of, ofAt + i)
-          .sub(FloatVector.fromArray(SPECIES, and, andAt + i))
-          .intoArray(into, i);
-  }
-
-  private static void add(float[] what, float[] to) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, to, i)
-          .add(FloatVector.fromArray(SPECIES, what, i))
-          .intoArray(to, i);
   }
 }

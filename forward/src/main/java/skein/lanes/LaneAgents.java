@@ -127,10 +127,12 @@ final class LaneAgents {
    * @param readAt by vehicle, when the readings held were taken; for policies that ask for ages
    */
   void decide(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
-    look(opponents, vectors, offers.joinedAt, offers.nextAt);
+    look(vectors, offers.joinedAt, offers.nextAt);
+    see(LaneObservation.X, opponents, LaneVehicles.SEEN_X);
+    see(LaneObservation.Y, opponents, LaneVehicles.SEEN_Y);
     if (policy.needsVelocity()) {
-      difference(vectors, opponents.vehicles, LaneVehicles.SEEN_VX, sight.dvx);
-      difference(vectors, opponents.vehicles, LaneVehicles.SEEN_VY, sight.dvy);
+      see(LaneObservation.VX, opponents, LaneVehicles.SEEN_VX);
+      see(LaneObservation.VY, opponents, LaneVehicles.SEEN_VY);
     }
     if (policy.needsAges()) {
       age(readAt[self], sight.ownAge);
@@ -157,13 +159,16 @@ final class LaneAgents {
     }
   }
 
-  /** When each decides and sends, and how far away the opponent was read. */
-  private void look(LaneAgents opponents, LaneVectors vectors, int[] joinedAt, int[] nextAt) {
+  private void see(int what, LaneAgents opponents, int from) {
+    sight.see(what, opponents.vehicles.state, from, vehicles.state, from);
+  }
+
+  /** When each decides and sends. */
+  private void look(LaneVectors vectors, int[] joinedAt, int[] nextAt) {
     IntVector none = IntVector.broadcast(INTS, NONE);
     FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
         grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
-    float[] ours = vehicles.state, theirs = opponents.vehicles.state;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector joined = IntVector.fromArray(INTS, joinedAt, i);
@@ -176,21 +181,6 @@ final class LaneAgents {
       FloatVector time = (FloatVector) deciding.convertShape(VectorOperators.I2F, SPECIES, 0);
       FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
       zero.blend(time.fma(grainS, before), before.compare(LT, undecided)).intoArray(sight.elapsed, i);
-      FloatVector.fromArray(SPECIES, theirs, LaneVehicles.SEEN_X + i)
-          .sub(FloatVector.fromArray(SPECIES, ours, LaneVehicles.SEEN_X + i))
-          .intoArray(sight.dx, i);
-      FloatVector.fromArray(SPECIES, theirs, LaneVehicles.SEEN_Y + i)
-          .sub(FloatVector.fromArray(SPECIES, ours, LaneVehicles.SEEN_Y + i))
-          .intoArray(sight.dy, i);
-    }
-  }
-
-  private void difference(LaneVectors vectors, LaneVehicles opponents, int of, float[] into) {
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      FloatVector.fromArray(SPECIES, opponents.state, of + i)
-          .sub(FloatVector.fromArray(SPECIES, vehicles.state, of + i))
-          .intoArray(into, i);
     }
   }
 

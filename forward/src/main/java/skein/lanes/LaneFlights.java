@@ -140,7 +140,7 @@ abstract class LaneFlights extends LaneVehicles {
 
   private void flyTo(int row, LaneVectors vectors, boolean withVelocity) {
     goOn(row, vectors);
-    choose(row);
+    choose(row, vectors);
     fly(vectors, withVelocity);
   }
 
@@ -199,58 +199,56 @@ abstract class LaneFlights extends LaneVehicles {
       FloatVector.fromArray(SPECIES, chosen, i).add(shift).intoArray(chosen, i);
   }
 
-  /** The pieces in which the times there lie. */
-  private void choose(int row) {
-    int back = filled - 1, slot = back & slots - 1;
-    findFrom(slot * fields * WORLDS, shift(slot, row));
-    while (isLate()) {
-      back--;
-      if (back < 0 || back < filled - slots)
-        throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
-      slot = back & slots - 1;
-      findWhereLate(slot * fields * WORLDS, shift(slot, row));
-    }
-    if (back == filled - 1)
-      System.arraycopy(pieces, slot * fields * WORLDS + WORLDS, chosen, WORLDS, (fields - 1) * WORLDS);
-    else for (int field = PIECE_X; field < fields; field++) copy(field * WORLDS);
-  }
-
-  private void findFrom(int from, float shiftS) {
-    FloatVector shift = FloatVector.broadcast(SPECIES, shiftS);
-    IntVector here = IntVector.broadcast(INTS, from);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector.fromArray(SPECIES, pieces, from + i).add(shift).intoArray(chosen, i);
-      here.add(IntVector.fromArray(INTS, WORLD, i)).intoArray(place, i);
+  /** The pieces in which the times there lie; elsewhere than in these vectors, any. */
+  private void choose(int row, LaneVectors vectors) {
+    int newest = filled - 1;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k], back = newest;
+      boolean isLate = find(i, newest, row);
+      while (isLate) {
+        back--;
+        if (back < 0 || back < filled - slots)
+          throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
+        isLate = findWhereLate(i, back, row);
+      }
+      if (back == newest) copy(i, newest);
+      else gather(i);
     }
   }
 
-  /** Whether a piece that was found begins only after the time there. */
-  private boolean isLate() {
-    for (int i = 0; i < WORLDS; i += LANES)
-      if (FloatVector.fromArray(SPECIES, chosen, i)
-          .compare(GT, FloatVector.fromArray(SPECIES, until, i))
-          .anyTrue()) return true;
-    return false;
+  /** Takes the pieces of a slot in one vector of worlds; whether one of them begins only after the time there. */
+  private boolean find(int i, int number, int row) {
+    int slot = number & slots - 1, from = slot * fields * WORLDS;
+    FloatVector begins = FloatVector.fromArray(SPECIES, pieces, from + i).add(shift(slot, row));
+    begins.intoArray(chosen, i);
+    IntVector.fromArray(INTS, WORLD, i).add(from).intoArray(place, i);
+    return begins.compare(GT, FloatVector.fromArray(SPECIES, until, i)).anyTrue();
   }
 
-  private void findWhereLate(int from, float shiftS) {
-    FloatVector shift = FloatVector.broadcast(SPECIES, shiftS);
-    IntVector here = IntVector.broadcast(INTS, from);
-    for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector begins = FloatVector.fromArray(SPECIES, chosen, i);
-      VectorMask<Float> late = begins.compare(GT, FloatVector.fromArray(SPECIES, until, i));
-      begins
-          .blend(FloatVector.fromArray(SPECIES, pieces, from + i).add(shift), late)
-          .intoArray(chosen, i);
-      IntVector.fromArray(INTS, place, i)
-          .blend(here.add(IntVector.fromArray(INTS, WORLD, i)), late.cast(INTS))
-          .intoArray(place, i);
-    }
+  /** The same where that which was taken is late. */
+  private boolean findWhereLate(int i, int number, int row) {
+    int slot = number & slots - 1, from = slot * fields * WORLDS;
+    FloatVector time = FloatVector.fromArray(SPECIES, until, i), begins = FloatVector.fromArray(SPECIES, chosen, i);
+    VectorMask<Float> late = begins.compare(GT, time);
+    FloatVector earlier =
+        begins.blend(FloatVector.fromArray(SPECIES, pieces, from + i).add(shift(slot, row)), late);
+    earlier.intoArray(chosen, i);
+    IntVector.fromArray(INTS, place, i)
+        .blend(IntVector.fromArray(INTS, WORLD, i).add(from), late.cast(INTS))
+        .intoArray(place, i);
+    return earlier.compare(GT, time).anyTrue();
   }
 
-  /** One of the numbers of the pieces that were found. */
-  private void copy(int of) {
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, pieces, of, place, i).intoArray(chosen, of + i);
+  /** The numbers of the pieces of one slot. */
+  private void copy(int i, int number) {
+    int from = (number & slots - 1) * fields * WORLDS + i;
+    for (int field = PIECE_X; field < fields; field++)
+      FloatVector.fromArray(SPECIES, pieces, from + field * WORLDS).intoArray(chosen, field * WORLDS + i);
+  }
+
+  /** The numbers of the pieces that were found. */
+  private void gather(int i) {
+    for (int field = PIECE_X; field < fields; field++)
+      FloatVector.fromArray(SPECIES, pieces, field * WORLDS, place, i).intoArray(chosen, field * WORLDS + i);
   }
 }

@@ -1,21 +1,60 @@
 package skein.lanes;
 
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
+import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneFunction;
 
-/** What the policies of many worlds see at a decision: see {@code skein.policy.Policy}. */
+/**
+ * What the policies of many worlds see at a decision: see {@code skein.policy.Policy}. Of the two
+ * vehicles' readings it says where they stand: policies take the one from the other in their own pass.
+ */
 final class LaneObservation {
   /** Worlds that decide together: few enough for the first-level cache. A multiple of every lane count. */
   static final int WORLDS = LaneFunction.COUNT;
 
-  /** The opponent's position minus the own one, north and east, m. */
-  final float[] dx = new float[WORLDS], dy = new float[WORLDS];
+  /** Of a reading: position, m, and velocity, m/s, north and east; velocities are told only to policies that use them. */
+  static final int X = 0, Y = 1, VX = 2, VY = 3;
 
-  /** The same of the velocities, m/s; kept only for policies that use them. */
-  final float[] dvx = new float[WORLDS], dvy = new float[WORLDS];
+  static final int READ = 4;
+
+  private static final float[] ZEROS = new float[WORLDS];
+
+  /** Where the readings of the opponent and the own ones begin, by what they tell. */
+  final float[][] opponent = new float[READ][], own = new float[READ][];
+
+  final int[] opponentAt = new int[READ], ownAt = new int[READ];
 
   /** Since the own last decision, s. */
   final float[] elapsed = new float[WORLDS];
 
   /** How old the readings are, s; kept only for policies that ask for it. */
   final float[] ownAge = new float[WORLDS], opponentAge = new float[WORLDS];
+
+  LaneObservation() {
+    Arrays.fill(opponent, ZEROS);
+    Arrays.fill(own, ZEROS);
+  }
+
+  void see(int what, float[] opponent, int opponentAt, float[] own, int ownAt) {
+    this.opponent[what] = opponent;
+    this.opponentAt[what] = opponentAt;
+    this.own[what] = own;
+    this.ownAt[what] = ownAt;
+  }
+
+  /** What is known of the opponent from the own vehicle. */
+  void seeFromOwn(int what, float[] difference) {
+    see(what, difference, 0, ZEROS, 0);
+  }
+
+  /** The opponent's reading minus the own one. */
+  void difference(int what, float[] into) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, opponent[what], opponentAt[what] + i)
+          .sub(FloatVector.fromArray(SPECIES, own[what], ownAt[what] + i))
+          .intoArray(into, i);
+  }
 }

@@ -1,6 +1,10 @@
 package skein.lanes;
 
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
 import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
 import skein.policy.Policy;
 import skein.simd.LaneFunction;
 
@@ -19,6 +23,9 @@ class LanePolicy {
   private final float[][] arrays;
   private final int[] offsets;
 
+  /** What the last decision was made upon. */
+  private LaneObservation seen;
+
   /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
   private final float[] initial, memory, newMemory;
 
@@ -33,8 +40,8 @@ class LanePolicy {
     function = form.function();
     parameters = new float[form.parameters() * WORLDS];
     scratch = new float[function.scratch()];
-    // The outputs: three numbers, what is remembered, and the heading.
-    arrays = new float[form.inputs() + 3 + form.memories() + 1][];
+    // What the own readings tell comes last.
+    arrays = new float[form.inputs() + form.outputs().size() + LaneObservation.READ][];
     offsets = new int[arrays.length];
     initial = new float[form.memories() * WORLDS];
     memory = new float[initial.length];
@@ -49,11 +56,22 @@ class LanePolicy {
   /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
   void take(int world, Policy policy) {
     if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
+    put(world, policy);
+  }
+
+  /** The same of a policy that is known to be of this form. */
+  void put(int world, Policy policy) {
     double[] values = form.parametersOf(policy);
     for (int i = 0; i < values.length; i++) parameters[i * WORLDS + world] = (float) values[i];
     double[] remembered = form.initialOf(policy);
     for (int i = 0; i < remembered.length; i++)
       initial[i * WORLDS + world] = (float) remembered[i];
+  }
+
+  /** A world flies by the policy that another does. */
+  void copy(int from, int to) {
+    for (int i = 0; i < parameters.length; i += WORLDS) parameters[i + to] = parameters[i + from];
+    for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
   /** Whether it looks at the velocities of the sight. */
@@ -80,10 +98,10 @@ class LanePolicy {
       Directions into,
       int intoAt) {
     // In the order of PolicyLanes.In, then of the outputs.
-    set(0, sight.dx, 0);
-    set(1, sight.dy, 0);
-    set(2, sight.dvx, 0);
-    set(3, sight.dvy, 0);
+    for (int i = 0; i < LaneObservation.READ; i++) {
+      set(i, sight.opponent[i], sight.opponentAt[i]);
+      set(arrays.length - LaneObservation.READ + i, sight.own[i], sight.ownAt[i]);
+    }
     set(4, sight.elapsed, 0);
     set(5, own.cos, ownAt);
     set(6, own.sin, ownAt);
@@ -100,7 +118,8 @@ class LanePolicy {
     set(outputs, into.cos, intoAt);
     set(outputs + 1, into.sin, intoAt);
     set(outputs + 2, turned, 0);
-    set(outputs + 3 + memories, newHeading, 0);
+    if (form.keepsHeading()) set(outputs + 3 + memories, newHeading, 0);
+    seen = sight;
     function.apply(arrays, offsets, parameters, scratch);
   }
 
@@ -117,8 +136,17 @@ class LanePolicy {
   private scala.collection.immutable.Vector<float[]> copies(int from, int until) {
     var all = scala.collection.immutable.Vector$.MODULE$.<float[]>newBuilder();
     for (int i = from; i < until; i++)
-      all.addOne(Arrays.copyOfRange(arrays[i], offsets[i], offsets[i] + WORLDS));
+      all.addOne(
+          i < LaneObservation.READ
+              ? difference(i)
+              : Arrays.copyOfRange(arrays[i], offsets[i], offsets[i] + WORLDS));
     return all.result();
+  }
+
+  private float[] difference(int what) {
+    float[] difference = new float[WORLDS];
+    seen.difference(what, difference);
+    return difference;
   }
 
   private void set(int place, float[] array, int offset) {
@@ -142,10 +170,18 @@ class LanePolicy {
     parameters[world] = number;
   }
 
-  /** All worlds' decisions become commands. */
-  void commit() {
-    System.arraycopy(newHeading, 0, heading, 0, WORLDS);
+  /**
+   * All worlds' decisions become commands.
+   *
+   * @param effort where the changes of the heading are added up
+   */
+  void commit(float[] effort) {
+    if (form.keepsHeading()) System.arraycopy(newHeading, 0, heading, 0, WORLDS);
     System.arraycopy(newMemory, 0, memory, 0, memory.length);
+    for (int i = 0; i < WORLDS; i += LANES)
+      FloatVector.fromArray(SPECIES, effort, i)
+          .add(FloatVector.fromArray(SPECIES, turned, i))
+          .intoArray(effort, i);
   }
 
   /** What was decided is remembered in the worlds whose time, from a place on, comes before another. */

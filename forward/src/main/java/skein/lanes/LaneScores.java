@@ -15,7 +15,7 @@ final class LaneScores implements TimetableScores {
   private final DuelKernel into;
   private float captureRadiusM;
   private int lastScores;
-  private final float[] distance = new float[WORLDS], sum = new float[WORLDS], lastSum = new float[WORLDS];
+  private final float[] sum = new float[WORLDS], lastSum = new float[WORLDS];
 
   LaneScores(double durationS, double periodS, DuelKernel into) {
     this.into = into;
@@ -43,48 +43,48 @@ final class LaneScores implements TimetableScores {
    */
   void add(LaneVehicles one, LaneVehicles other, float timeS, boolean isLast) {
     int x = LaneVehicles.X, y = LaneVehicles.Y;
-    distances(one.state, x, one.state, y, other.state, x, other.state, y, distance);
-    add(timeS, isLast);
+    add(one.state, x, one.state, y, other.state, x, other.state, y, timeS, isLast);
   }
 
   @Override
   public void score(TimetableAgents[] agents, int[] views, int view, boolean isLast, float timeS) {
-    distances(agents, views, view, distance);
-    add(timeS, isLast);
+    TimetableVehicles one = agents[0].vehicles, other = agents[1].vehicles;
+    int at = views[view] * WORLDS, there = views[view + 1] * WORLDS;
+    add(one.seenX, at, one.seenY, at, other.seenX, there, other.seenY, there, timeS, isLast);
   }
 
   /** Between the readings of a timetable's first two vehicles. */
   static void distances(TimetableAgents[] agents, int[] views, int view, float[] into) {
     TimetableVehicles one = agents[0].vehicles, other = agents[1].vehicles;
     int at = views[view] * WORLDS, there = views[view + 1] * WORLDS;
-    distances(
-        one.seenX, at, one.seenY, at, other.seenX, there, other.seenY, there, into);
-  }
-
-  private static void distances(
-      float[] x1, int x1At, float[] y1, int y1At, float[] x2, int x2At, float[] y2, int y2At, float[] into) {
     for (int i = 0; i < WORLDS; i += LANES) {
       FloatVector
-          x = FloatVector.fromArray(SPECIES, x1, x1At + i).sub(FloatVector.fromArray(SPECIES, x2, x2At + i)),
-          y = FloatVector.fromArray(SPECIES, y1, y1At + i).sub(FloatVector.fromArray(SPECIES, y2, y2At + i));
+          x = FloatVector.fromArray(SPECIES, one.seenX, at + i).sub(FloatVector.fromArray(SPECIES, other.seenX, there + i)),
+          y = FloatVector.fromArray(SPECIES, one.seenY, at + i).sub(FloatVector.fromArray(SPECIES, other.seenY, there + i));
       x.fma(x, y.mul(y)).sqrt().intoArray(into, i);
     }
   }
 
-  private void add(float timeS, boolean isLast) {
+  private void add(
+      float[] x1, int x1At, float[] y1, int y1At, float[] x2, int x2At, float[] y2, int y2At,
+      float timeS, boolean isLast) {
+    float[] least = into.minDistance, captureS = into.captureS, sum = this.sum, lastSum = this.lastSum;
     FloatVector time = FloatVector.broadcast(SPECIES, timeS),
         radius = FloatVector.broadcast(SPECIES, captureRadiusM),
         infinite = FloatVector.broadcast(SPECIES, Float.POSITIVE_INFINITY);
     if (isLast) lastScores++;
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector now = FloatVector.fromArray(SPECIES, distance, i);
-      FloatVector.fromArray(SPECIES, into.minDistance, i).min(now).intoArray(into.minDistance, i);
+      FloatVector
+          x = FloatVector.fromArray(SPECIES, x1, x1At + i).sub(FloatVector.fromArray(SPECIES, x2, x2At + i)),
+          y = FloatVector.fromArray(SPECIES, y1, y1At + i).sub(FloatVector.fromArray(SPECIES, y2, y2At + i));
+      FloatVector now = x.fma(x, y.mul(y)).sqrt();
+      FloatVector.fromArray(SPECIES, least, i).min(now).intoArray(least, i);
       FloatVector.fromArray(SPECIES, sum, i).add(now).intoArray(sum, i);
       if (isLast) FloatVector.fromArray(SPECIES, lastSum, i).add(now).intoArray(lastSum, i);
       infinite
           .blend(time, now.compare(LE, radius))
-          .min(FloatVector.fromArray(SPECIES, into.captureS, i))
-          .intoArray(into.captureS, i);
+          .min(FloatVector.fromArray(SPECIES, captureS, i))
+          .intoArray(captureS, i);
     }
   }
 

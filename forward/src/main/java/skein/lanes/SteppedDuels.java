@@ -29,6 +29,7 @@ public final class SteppedDuels implements TimetableScores {
   private final LanePolicy[] policies;
   private final DuelAgents[] agents;
   private final LaneObservation sight = new LaneObservation();
+  private final float[] north = new float[WORLDS], east = new float[WORLDS];
   private final boolean[] isOutside;
   private final TimetableKernel kernel;
   private Timetable timetable;
@@ -152,8 +153,12 @@ public final class SteppedDuels implements TimetableScores {
         operation * Timetable.Numbers());
     Directions own = agents[vehicle].headings, theirs = agents[1 - vehicle].headings;
     int known = operations[field + 3] * WORLDS, before = operations[field + 4] * WORLDS;
-    turn(sight.dx, sight.dy, 0, own, before, into, 0);
-    turn(sight.dvx, sight.dvy, 0, own, before, into, 2 * WORLDS);
+    sight.difference(LaneObservation.X, north);
+    sight.difference(LaneObservation.Y, east);
+    turn(north, east, 0, own, before, into, 0);
+    sight.difference(LaneObservation.VX, north);
+    sight.difference(LaneObservation.VY, east);
+    turn(north, east, 0, own, before, into, 2 * WORLDS);
     turn(theirs.cos, theirs.sin, known, own, before, into, 4 * WORLDS);
     System.arraycopy(sight.elapsed, 0, into, 6 * WORLDS, WORLDS);
     System.arraycopy(sight.ownAge, 0, into, 7 * WORLDS, WORLDS);

@@ -1,5 +1,6 @@
 package skein.lanes
 
+import skein.formula.Untraceable
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponse}
 import skein.fusion.SensorModel
 import skein.policy.Policy
@@ -40,6 +41,9 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     private val ofLane                 = Array.ofDim[Int](batch)
     private var filled                 = 0
 
+    // Who flies in the lane filled last.
+    private var lastPursuer, lastEvader: Policy = null
+
     protected def kernel: DuelKernel
 
     /** Worlds that the lanes were filled with. */
@@ -57,9 +61,16 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       filled += 1
 
     private def put(lane: Int, worlds: DuelWorlds, world: Int): Unit =
-      pursuers.take(lane, worlds.pursuer(world))
-      evaders.take(lane, worlds.evader(world))
+      val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
+      put(lane, pursuers, pursuer, lastPursuer)
+      put(lane, evaders, evader, lastEvader)
+      lastPursuer = pursuer
+      lastEvader = evader
       fill(lane, worlds, world)
+
+    /** Reads a policy's numbers, unless the lane before was filled with the very same. */
+    private def put(lane: Int, lanes: LanePolicy, policy: Policy, before: Policy): Unit =
+      if lane > 0 && (policy eq before) then lanes.copy(lane - 1, lane) else lanes.put(lane, policy)
 
     def fly(worlds: DuelWorlds, captureRadiusM: Float, into: DuelOutcomes): Unit =
       // Lanes that no world needs fly the last one again.
@@ -81,14 +92,26 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
 
+  private type Form = Either[Untraceable, PolicyLanes]
+
   private val byForm = collection.mutable.HashMap.empty[(AnyRef, AnyRef), Lanes]
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     val filled  = collection.mutable.LinkedHashSet.empty[Lanes]
     val unknown = Array.newBuilder[Int]
+
+    // Neighbours often fly the very same policy.
+    var (lastPursuer, lastEvader) = (null: Policy, null: Policy)
+    var forms                     = (null: Form, null: Form)
     for world <- numbers do
       val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
-      val forms             = (PolicyLanes.of(pursuer), PolicyLanes.of(evader))
+      if (pursuer ne lastPursuer) || (evader ne lastEvader) then
+        forms = (
+          if pursuer eq lastPursuer then forms._1 else PolicyLanes.of(pursuer),
+          if evader eq lastEvader then forms._2 else PolicyLanes.of(evader)
+        )
+        lastPursuer = pursuer
+        lastEvader = evader
       if forms._1.isRight && forms._2.isRight && canFly(worlds.link(world)) then
         val chosen = byForm.getOrElseUpdate(forms, lanes(pursuer, evader))
         chosen.add(worlds, world)

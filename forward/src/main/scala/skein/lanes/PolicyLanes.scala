@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.concurrent.{ConcurrentHashMap, CopyOnWriteArrayList}
-import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
+import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{ObservingPolicy, PlanarObservation, Policy}
 import skein.simd.{LaneCompiler, LaneFunction}
 
@@ -59,6 +59,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
         val (cos, sin) = angles.cosSin(heading)
         Vector(cos, sin, apart(cos, sin)) ++ remembered
 
+  /** Whether it turns from the heading commanded last, and so decides a heading besides its direction. */
+  val keepsHeading: Boolean = turn.isDefined
+
   private val needed = Trace.needed(outputs)
 
   /** Whether it looks at velocities. */
@@ -80,18 +83,19 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** How many arrays it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] of what [[In]] lists. */
-  val function: LaneFunction = LaneCompiler.compile(inputs, outputs)
+  /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and the own ones. */
+  val function: LaneFunction = LaneCompiler.compile(inputs, outputs, differences = LaneObservation.READ)
 
   /** Computes [[outputs]] but how far the decided heading is from the one before. */
   lazy val course: LaneFunction = LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1))
 
-  private val plain = derived.forall(_.op == Op.Param)
+  private val plain      = derived.forall(_.op == Op.Param)
+  private val evaluation = Evaluation(derived)
 
   def parametersOf(policy: Policy): Array[Double] =
     val own = formula.parametersOf(policy)
     if plain then derived.iterator.map(node => own(node.index)).toArray
-    else formula.evaluate(derived, Array.emptyDoubleArray, own)
+    else evaluation(Array.emptyDoubleArray, own)
 
   /** The function's inputs for what one policy sees and remembers. */
   def inputsOf(seen: PlanarObservation, memory: Any): Array[Double] =

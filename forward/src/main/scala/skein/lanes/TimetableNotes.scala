@@ -1,5 +1,6 @@
 package skein.lanes
 
+import java.util.Arrays.copyOf
 import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
 import skein.forward.{Grounds, LoopObserver, Sight}
@@ -28,7 +29,6 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
   private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
   private val decisionOf = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
-  private val numberOf   = mutable.HashMap.empty[mutable.ArraySeq[Int], Int]
   private val placed     = Array.ofDim[Int](vehicles)
 
   private def note(kind: Int, vehicle: Int, timeS: Double, number: Int): Note =
@@ -39,13 +39,10 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     looks(vehicle) += 1
     note(LOOK, vehicle, timeS, looks(vehicle)).number
 
+  /** Several decide upon one view, one after the other. */
   private def viewOf(seen: Array[Int]): Int =
-    numberOf.getOrElseUpdate(
-      mutable.ArraySeq.make(seen), {
-        views += seen
-        views.size - 1
-      }
-    )
+    if views.isEmpty || !java.util.Arrays.equals(views.last, seen) then views += seen
+    views.size - 1
 
   override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
     val seen = readingOf(vehicle)

@@ -21,8 +21,11 @@ object LaneCompiler:
     *   how many there are
     * @param outputs
     *   what is computed
+    * @param differences
+    *   so many of the first inputs are differences of two arrays' numbers; what is taken away stands in the arrays behind
+    *   those of the outputs
     */
-  def compile(inputs: Int, outputs: Vector[Node]): LaneFunction =
+  def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0): LaneFunction =
     val passes  = Passes.of(outputs)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
     val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
@@ -61,7 +64,7 @@ object LaneCompiler:
               s"pass$number",
               Names.apply,
               ClassFile.ACC_STATIC,
-              code => PassCompiler(code, pass, inputs).emit()
+              code => PassCompiler(code, pass, inputs, differences, inputs + outputs.size).emit()
             ): Unit
       )
     val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
@@ -85,8 +88,18 @@ private object Names:
 
   val apply: MethodTypeDesc = MethodTypeDesc.of(ConstantDescs.CD_void, floats.arrayType, ints, floats, floats)
 
-/** Writes the bytecode of one pass. A vector is a local variable, given by its number. */
-private final class PassCompiler(code: CodeBuilder, pass: Pass, inputs: Int):
+/** Writes the bytecode of one pass. A vector is a local variable, given by its number.
+  *
+  * @param subtrahends
+  *   where the arrays begin whose numbers are taken away from the first inputs
+  */
+private final class PassCompiler(
+    code: CodeBuilder,
+    pass: Pass,
+    inputs: Int,
+    differences: Int,
+    subtrahends: Int
+):
   import Names.*
   private val count          = LaneFunction.COUNT
   private val slots          = mutable.HashMap.empty[Node, Int]
@@ -116,7 +129,7 @@ private final class PassCompiler(code: CodeBuilder, pass: Pass, inputs: Int):
           Names.apply,
           ClassFile.ACC_STATIC,
           other =>
-            val first = PassCompiler(other, pass, inputs)
+            val first = PassCompiler(other, pass, inputs, differences, subtrahends)
             first.body()
             other.return_()
             for array <- first.arrays.keys.toVector.sorted do arrays(array) = (fresh(), fresh())
@@ -173,7 +186,9 @@ private final class PassCompiler(code: CodeBuilder, pass: Pass, inputs: Int):
     def b = of(node.args(1))
     node.op match
       case Op.Const => constant(node.value.toFloat)
-      case Op.Input => input(node.index)
+      case Op.Input =>
+        val number = node.index
+        if number < differences then two("sub", input(number), input(subtrahends + number)) else input(number)
       case Op.Param => loaded(2, node.index * count)
       case Op.Neg   => unary("neg", a)
       case Op.Abs   => unary("abs", a)

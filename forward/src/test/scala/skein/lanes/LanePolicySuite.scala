@@ -27,7 +27,9 @@ class LanePolicySuite extends munit.FunSuite:
       val (sight, lanes) = (LaneObservation(), LanePolicy.of(draw(random)))
       val (own, known)   = (Directions(worlds), Directions(worlds))
       val into           = Directions(worlds)
-      var off            = Vector.empty[Double]
+      val read           = Vector.fill(LaneObservation.READ)(Array.ofDim[Float](worlds))
+      for (numbers, what) <- read.zipWithIndex do sight.seeFromOwn(what, numbers)
+      var off = Vector.empty[Double]
       for _ <- 1 to 8 do
         def uniform(most: Double) = most * (2 * random.nextDouble() - 1)
         val policies              = Vector.fill(worlds)(draw(random))
@@ -35,8 +37,7 @@ class LanePolicySuite extends munit.FunSuite:
         val knownHeadings         = Vector.fill(worlds)(uniform(10))
         for (policy, world) <- policies.zipWithIndex do
           lanes.take(world, policy)
-          sight.dx(world) = uniform(25).toFloat; sight.dy(world) = uniform(25).toFloat
-          sight.dvx(world) = uniform(12).toFloat; sight.dvy(world) = uniform(12).toFloat
+          for (numbers, most) <- read.zip(Seq(25, 25, 12, 12)) do numbers(world) = uniform(most).toFloat
           sight.elapsed(world) = (0.1 * random.nextDouble()).toFloat
           known.fill(world, world + 1, knownHeadings(world))
         own.fill(0, worlds, ownHeading)
@@ -44,10 +45,10 @@ class LanePolicySuite extends munit.FunSuite:
         lanes.decide(sight, own, 0, known, 0, into, 0)
         off = off ++ policies.zipWithIndex.map: (policy, world) =>
           val heading = policy.heading(
-            sight.dx(world),
-            sight.dy(world),
-            sight.dvx(world),
-            sight.dvy(world),
+            read(0)(world),
+            read(1)(world),
+            read(2)(world),
+            read(3)(world),
             ownHeading,
             knownHeadings(world),
             sight.elapsed(world)
