@@ -1,6 +1,6 @@
 package skein.lanes
 
-import java.util.Arrays.copyOf
+import java.util.Arrays
 import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
 import skein.forward.{Grounds, LoopObserver, Sight}
@@ -41,7 +41,7 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
 
   /** Several decide upon one view, one after the other. */
   private def viewOf(seen: Array[Int]): Int =
-    if views.isEmpty || !java.util.Arrays.equals(views.last, seen) then views += seen
+    if views.isEmpty || !Arrays.equals(views.last, seen) then views += seen
     views.size - 1
 
   override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
