@@ -29,8 +29,7 @@ final class PredictedDragVehicles extends PredictedVehicles {
     System.arraycopy(seenY, reading, flight.y, 0, WORLDS);
     System.arraycopy(seenVx, reading, flight.vx, 0, WORLDS);
     System.arraycopy(seenVy, reading, flight.vy, 0, WORLDS);
-    for (int i = 0; i < course.parts().size(); i++) {
-      Course.Part part = course.parts().apply(i);
+    for (Course.Part part : course.parts()) {
       if (part.command() == Course.Rest()) flight.rest();
       else flight.act(sent, part.command() * WORLDS);
       flight.fly((int) part.span(), (float) part.rest());

@@ -40,8 +40,7 @@ final class PredictedLagVehicles extends PredictedVehicles {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (int i = 0; i < course.parts().size(); i++) {
-      Course.Part part = course.parts().apply(i);
+    for (Course.Part part : course.parts()) {
       int place = part.command();
       if (place != Course.Rest()) {
         float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;

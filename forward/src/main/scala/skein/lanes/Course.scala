@@ -3,15 +3,18 @@ package skein.lanes
 /** A way by which a [[Timetable]]'s reading is carried forward: parts flown under one command each. What the numbers mean,
   * the kind of predicted vehicles says.
   */
-private[skein] final case class Course(parts: Vector[Course.Part], first: Double = 0, second: Double = 0):
+private[skein] final class Course(
+    val parts: Array[Course.Part],
+    val first: Double = 0,
+    val second: Double = 0
+):
   /** With the places of the commands that its decisions became. */
   private[lanes] def placed(placeOf: Int => Int): Course =
-    copy(parts =
-      parts.map(part => part.copy(command = if part.command == 0 then Course.Rest else placeOf(part.command)))
-    )
+    def place(decision: Int) = if decision == 0 then Course.Rest else placeOf(decision)
+    Course(parts.map(part => part.copy(command = place(part.command))), first, second)
 
   /** About so much memory is held. */
-  private[lanes] def bytes: Long = 48 + 56L * parts.size
+  private[lanes] def bytes: Long = 48 + 56L * parts.length
 
 private[skein] object Course:
   /** In the place of a command: none yet. */

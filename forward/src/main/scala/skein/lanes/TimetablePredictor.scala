@@ -54,7 +54,7 @@ private object CoastPredictor extends TimetablePredictor, CoursePlotter:
   def plotter: CoursePlotter                               = this
   def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter = this
   def predicted(legs: Vector[CoursePlotter.Leg]): Course   =
-    Course(Vector.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
+    Course(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
   * command, how long it carries the vehicle, and how much of its velocity is reached.
@@ -71,13 +71,14 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
     val parts              = flown.map: part =>
       val (left, after) = (totalS - part.fromS, totalS - part.untilS)
       Course.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
-    Course(parts, lag * reached(totalS), StrictMath.exp(-totalS / lag))
+    Course(parts.toArray, lag * reached(totalS), StrictMath.exp(-totalS / lag))
 
 /** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
 private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
 
-  def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, (flown, _) => Course(flown.map(pieces)))
+  def plotter: CoursePlotter =
+    ReducedPlotter(model.deadTimeS, (flown, _) => Course(flown.map(pieces).toArray))
 
   private def pieces(part: ReducedPlotter.Flown): Course.Part =
     var pieceS = part.fromS
