@@ -26,7 +26,7 @@ class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.
 /** Forward simulation, by vectors. */
 class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Alone, Optimised
 
-class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone, Optimised
+class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone
 
 /** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
   * loopback.
