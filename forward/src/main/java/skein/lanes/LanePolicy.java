@@ -150,7 +150,8 @@ class LanePolicy {
   }
 
   private void set(int place, float[] array, int offset) {
-    arrays[place] = array;
+    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    if (arrays[place] != array) arrays[place] = array;
     offsets[place] = offset;
   }
 

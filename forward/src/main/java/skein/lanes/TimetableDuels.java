@@ -34,9 +34,13 @@ final class TimetableDuels extends DuelKernel {
       EyeLanes pursuerEye,
       EyeLanes evaderEye) {
     scores = new LaneScores(duel.durationS(), timing.periodS(), this);
-    LaneObservation sight = new LaneObservation();
-    DuelAgents evader = new DuelAgents(0, duel.evader(), model, evaderPolicy, evaderEffortRad, sight, false, evaderEye),
-        pursuer = new DuelAgents(1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, sight, false, pursuerEye);
+    DuelAgents
+        evader =
+            new DuelAgents(
+                0, duel.evader(), model, evaderPolicy, evaderEffortRad, new LaneObservation(), false, evaderEye),
+        pursuer =
+            new DuelAgents(
+                1, duel.pursuer(), model, pursuerPolicy, pursuerEffortRad, new LaneObservation(), false, pursuerEye);
     kernel = new TimetableKernel(new TimetableAgents[] {evader, pursuer}, scores);
   }
 
