@@ -201,42 +201,39 @@ abstract class LaneFlights extends LaneVehicles {
 
   /** The pieces in which the times there lie; elsewhere than in these vectors, any. */
   private void choose(int row, LaneVectors vectors) {
-    int newest = filled - 1;
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k], back = newest;
-      boolean isLate = find(i, newest, row);
-      while (isLate) {
-        back--;
-        if (back < 0 || back < filled - slots)
-          throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
-        isLate = findWhereLate(i, back, row);
-      }
-      if (back == newest) copy(i, newest);
+      int i = vectors.first[k];
+      if (find(row, i)) copy(i, filled - 1);
       else gather(i);
     }
   }
 
-  /** Takes the pieces of a slot in one vector of worlds; whether one of them begins only after the time there. */
-  private boolean find(int i, int number, int row) {
-    int slot = number & slots - 1, from = slot * fields * WORLDS;
-    FloatVector begins = FloatVector.fromArray(SPECIES, pieces, from + i).add(shift(slot, row));
-    begins.intoArray(chosen, i);
-    IntVector.fromArray(INTS, WORLD, i).add(from).intoArray(place, i);
-    return begins.compare(GT, FloatVector.fromArray(SPECIES, until, i)).anyTrue();
-  }
-
-  /** The same where that which was taken is late. */
-  private boolean findWhereLate(int i, int number, int row) {
-    int slot = number & slots - 1, from = slot * fields * WORLDS;
-    FloatVector time = FloatVector.fromArray(SPECIES, until, i), begins = FloatVector.fromArray(SPECIES, chosen, i);
+  /** Finds the pieces of one vector of worlds; whether they are the newest of all. */
+  private boolean find(int row, int i) {
+    float[] pieces = this.pieces;
+    int[] rowOf = this.rowOf;
+    int mask = slots - 1, size = fields * WORLDS, back = filled - 1, oldest = Math.max(0, filled - slots);
+    FloatVector time = FloatVector.fromArray(SPECIES, until, i);
+    IntVector world = IntVector.fromArray(INTS, WORLD, i), found = world.add((back & mask) * size);
+    FloatVector begins =
+        FloatVector.fromArray(SPECIES, pieces, (back & mask) * size + i)
+            .add((float) ((rowOf[back & mask] - row) * periodS));
     VectorMask<Float> late = begins.compare(GT, time);
-    FloatVector earlier =
-        begins.blend(FloatVector.fromArray(SPECIES, pieces, from + i).add(shift(slot, row)), late);
-    earlier.intoArray(chosen, i);
-    IntVector.fromArray(INTS, place, i)
-        .blend(IntVector.fromArray(INTS, WORLD, i).add(from), late.cast(INTS))
-        .intoArray(place, i);
-    return earlier.compare(GT, time).anyTrue();
+    while (late.anyTrue() && --back >= oldest) {
+      int from = (back & mask) * size;
+      begins =
+          begins.blend(
+              FloatVector.fromArray(SPECIES, pieces, from + i)
+                  .add((float) ((rowOf[back & mask] - row) * periodS)),
+              late);
+      found = found.blend(world.add(from), late.cast(INTS));
+      late = begins.compare(GT, time);
+    }
+    if (back < oldest)
+      throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
+    begins.intoArray(chosen, i);
+    found.intoArray(place, i);
+    return back == filled - 1;
   }
 
   /** The numbers of the pieces of one slot. */

@@ -39,9 +39,10 @@ final class LaneObservation {
   }
 
   void see(int what, float[] opponent, int opponentAt, float[] own, int ownAt) {
-    this.opponent[what] = opponent;
+    // Nearly always the same ones: to store a reference costs the collector's bookkeeping.
+    if (this.opponent[what] != opponent) this.opponent[what] = opponent;
+    if (this.own[what] != own) this.own[what] = own;
     this.opponentAt[what] = opponentAt;
-    this.own[what] = own;
     this.ownAt[what] = ownAt;
   }
 

@@ -62,15 +62,19 @@ class LanePolicy {
   /** The same of a policy that is known to be of this form. */
   void put(int world, Policy policy) {
     double[] values = form.parametersOf(policy);
-    for (int i = 0; i < values.length; i++) parameters[i * WORLDS + world] = (float) values[i];
+    for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
     double[] remembered = form.initialOf(policy);
     for (int i = 0; i < remembered.length; i++)
       initial[i * WORLDS + world] = (float) remembered[i];
   }
 
+  private int place(int parameter, int world) {
+    return LaneFunction.place(parameter, world, form.parameters());
+  }
+
   /** A world flies by the policy that another does. */
   void copy(int from, int to) {
-    for (int i = 0; i < parameters.length; i += WORLDS) parameters[i + to] = parameters[i + from];
+    for (int i = 0; i < form.parameters(); i++) parameters[place(i, to)] = parameters[place(i, from)];
     for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
@@ -150,7 +154,8 @@ class LanePolicy {
   }
 
   private void set(int place, float[] array, int offset) {
-    arrays[place] = array;
+    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    if (arrays[place] != array) arrays[place] = array;
     offsets[place] = offset;
   }
 
@@ -167,7 +172,7 @@ class LanePolicy {
 
   /** Tells one world's policy of a single number that number. */
   void tell(int world, float number) {
-    parameters[world] = number;
+    parameters[place(0, world)] = number;
   }
 
   /**

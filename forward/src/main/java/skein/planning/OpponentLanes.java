@@ -38,7 +38,8 @@ final class OpponentLanes {
     if (form != this.form) use(form);
     double[] numbers = form.parametersOf(opponent.policy());
     for (int i = 0; i < numbers.length; i++)
-      Arrays.fill(parameters, i * SIZE, (i + 1) * SIZE, (float) numbers[i]);
+      for (int world = 0; world < SIZE; world++)
+        parameters[LaneFunction.place(i, world, numbers.length)] = (float) numbers[i];
   }
 
   private void use(PolicyLanes form) {

@@ -12,10 +12,21 @@ public abstract class LaneFunction {
   public abstract int scratch();
 
   /**
+   * Where a world's parameter stands among all: those of worlds that are computed together are one
+   * stretch, for a pass through many that are used once reads them as fast as memory comes.
+   *
+   * @param count of parameters that each world has
+   */
+  public static int place(int parameter, int world, int count) {
+    int lane = world % LaneMath.LANES;
+    return (world - lane) * count + parameter * LaneMath.LANES + lane;
+  }
+
+  /**
    * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
    *     output must not lie where an input does.
    * @param offsets where in its array each begins
-   * @param parameters by parameter, then by world
+   * @param parameters at their {@link #place places}
    * @param scratch of {@link #scratch()} numbers
    */
   public abstract void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch);

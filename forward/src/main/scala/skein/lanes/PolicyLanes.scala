@@ -84,10 +84,11 @@ private[skein] final class PolicyLanes private (formula: Formula):
   def inputs: Int = In.Memory + memories
 
   /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and the own ones. */
-  val function: LaneFunction = LaneCompiler.compile(inputs, outputs, differences = LaneObservation.READ)
+  val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
 
   /** Computes [[outputs]] but how far the decided heading is from the one before. */
-  lazy val course: LaneFunction = LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1))
+  lazy val course: LaneFunction =
+    LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1), parameters = parameters)
 
   private val plain      = derived.forall(_.op == Op.Param)
   private val evaluation = Evaluation(derived)

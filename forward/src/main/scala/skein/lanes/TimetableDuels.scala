@@ -23,11 +23,10 @@ private[lanes] final class TimetableDuels(
     evaderEye: EyeLanes = null
 ) extends DuelKernel:
   private val scores = LaneScores(duel.durationS, timing.periodS, this)
-  private val sight  = LaneObservation()
   private val kernel = TimetableKernel(
     Array(
-      DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, sight, false, evaderEye),
-      DuelAgents(1, duel.pursuer, model, pursuerPolicy, pursuerEffortRad, sight, false, pursuerEye)
+      DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, LaneObservation(), false, evaderEye),
+      DuelAgents(1, duel.pursuer, model, pursuerPolicy, pursuerEffortRad, LaneObservation(), false, pursuerEye)
     ),
     scores
   )

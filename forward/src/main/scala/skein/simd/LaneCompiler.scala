@@ -24,8 +24,10 @@ object LaneCompiler:
     * @param differences
     *   so many of the first inputs are differences of two arrays' numbers; what is taken away stands in the arrays behind
     *   those of the outputs
+    * @param parameters
+    *   how many each world has
     */
-  def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0): LaneFunction =
+  def compile(inputs: Int, outputs: Vector[Node], differences: Int = 0, parameters: Int = 0): LaneFunction =
     val passes  = Passes.of(outputs)
     val self    = ClassDesc.of("skein.simd.CompiledLaneFunction")
     val scratch = passes.iterator.flatMap(_.stores).map(_._2 + 1).maxOption.getOrElse(0)
@@ -64,7 +66,7 @@ object LaneCompiler:
               s"pass$number",
               Names.apply,
               ClassFile.ACC_STATIC,
-              code => PassCompiler(code, pass, inputs, differences, inputs + outputs.size).emit()
+              code => PassCompiler(code, pass, inputs, differences, inputs + outputs.size, parameters).emit()
             ): Unit
       )
     val lookup = MethodHandles.lookup().defineHiddenClass(bytes, true)
@@ -98,7 +100,8 @@ private final class PassCompiler(
     pass: Pass,
     inputs: Int,
     differences: Int,
-    subtrahends: Int
+    subtrahends: Int,
+    parameters: Int
 ):
   import Names.*
   private val count          = LaneFunction.COUNT
@@ -129,7 +132,7 @@ private final class PassCompiler(
           Names.apply,
           ClassFile.ACC_STATIC,
           other =>
-            val first = PassCompiler(other, pass, inputs, differences, subtrahends)
+            val first = PassCompiler(other, pass, inputs, differences, subtrahends, parameters)
             first.body()
             other.return_()
             for array <- first.arrays.keys.toVector.sorted do arrays(array) = (fresh(), fresh())
@@ -189,7 +192,7 @@ private final class PassCompiler(
       case Op.Input =>
         val number = node.index
         if number < differences then two("sub", input(number), input(subtrahends + number)) else input(number)
-      case Op.Param => loaded(2, node.index * count)
+      case Op.Param => parameter(node.index)
       case Op.Neg   => unary("neg", a)
       case Op.Abs   => unary("abs", a)
       case Op.Sqrt  => unary("sqrt", a)
@@ -443,6 +446,13 @@ private final class PassCompiler(
   /** From an array of the arguments, the worlds' numbers from an index on. */
   private def loaded(argument: Int, from: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(argument).iload(world).loadConstant(from).iadd()
+    code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
+    stored()
+
+  /** See [[LaneFunction.place]]. */
+  private def parameter(number: Int): Int =
+    code.getstatic(math, "SPECIES", species).aload(2)
+    code.iload(world).loadConstant(parameters).imul().loadConstant(number * LaneMath.LANES).iadd()
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
