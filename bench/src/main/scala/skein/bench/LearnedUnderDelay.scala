@@ -59,7 +59,10 @@ object LearnedUnderDelay:
 
   private def flownBy(side: String, folder: Path, flights: Int, seed: String): Vector[Row] =
     val taught = Vector("paused" -> "none", "stream" -> "vpn").map: (loop, link) =>
-      s"taught under $loop over $link" -> learned(folder.resolve(s"$side-$loop-$link"), question(side, loop, link, seed))
+      s"taught under $loop over $link" -> learned(
+        folder.resolve(s"$side-$loop-$link"),
+        question(side, loop, link, seed)
+      )
     val role     = PolicyFile.role(side).fold(sys.error, identity)
     val searched =
       if role == Role.Pursuer then

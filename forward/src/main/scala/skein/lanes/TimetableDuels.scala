@@ -26,7 +26,16 @@ private[lanes] final class TimetableDuels(
   private val kernel = TimetableKernel(
     Array(
       DuelAgents(0, duel.evader, model, evaderPolicy, evaderEffortRad, LaneObservation(), false, evaderEye),
-      DuelAgents(1, duel.pursuer, model, pursuerPolicy, pursuerEffortRad, LaneObservation(), false, pursuerEye)
+      DuelAgents(
+        1,
+        duel.pursuer,
+        model,
+        pursuerPolicy,
+        pursuerEffortRad,
+        LaneObservation(),
+        false,
+        pursuerEye
+      )
     ),
     scores
   )
