@@ -5,6 +5,7 @@ import java.util.concurrent.ConcurrentHashMap
 import scala.concurrent.ExecutionContext
 import skein.airsim.{Image, Pixels, Scan, VehicleClient}
 import skein.record.{Blob, Cloud, CameraImage, Recorder, ImagingSensor}
+import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
@@ -20,17 +21,22 @@ private[skein] final class ImageRecorder(
 ):
   private val counts = ConcurrentHashMap[ImagingSensor, ImageRecorder.Count]()
   private val fovs   = ConcurrentHashMap[String, Radians]()
+  private val missed = ConcurrentHashMap.newKeySet[String]()
 
-  /** Asks for the camera's field of view, once. */
+  /** Asks for the camera's field of view; where no answer comes, again with the camera's next image. */
   def ask(camera: String): Unit =
-    vehicle.eyes
-      .fov(camera)
-      .foreach(_.foreach(known => fovs.put(camera, known)))(using ExecutionContext.parasitic)
+    vehicle.eyes.fov(camera).foreach {
+      case Right(known) => fovs.put(camera, known): Unit
+      case Left(_: (RpcError.Timeout | RpcError.Overloaded | RpcError.ConnectionLost)) =>
+        missed.add(camera): Unit
+      case Left(_) => ()
+    }(using ExecutionContext.parasitic)
 
   /** An image came. */
   def image(frame: Stamped[Image]): Unit =
-    val image  = frame.value
-    val shot   = image.shot
+    val image = frame.value
+    val shot  = image.shot
+    if missed.remove(shot.camera) then ask(shot.camera)
     val sensor = ImagingSensor.camera(vehicle.name, shot.camera, shot.kind.toString)
     if isWanted(sensor) then
       val content = image.pixels match

@@ -3,14 +3,15 @@ package skein.flight
 import java.nio.charset.StandardCharsets.ISO_8859_1
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
+import org.apache.pekko.util.ByteString
 import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
 import skein.link.*
 import skein.loop.{LoopKind, Outcome}
-import skein.record.{EventKind, MemoryRecorder, Recording}
+import skein.record.{CameraImage, EventKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
-import skein.settings.{FlightPlan, FlySettings}
+import skein.settings.{FlightPlan, FlySettings, ImageSource}
 import skein.signal.{Kinematics, LatencyProfile}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -51,13 +52,20 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     /** Calls by which clients took what a vehicle did not have. */
     var taken = Vector.empty[String]
 
+    /** Questions for a camera that have come; the first is lost. */
+    var cameraQuestions = 0
+
+    /** What the last flight's cameras saw. */
+    var images = Vector.empty[CameraImage]
+
     private final class Tapped(transport: Transport) extends Transport:
       def connect(to: Address) = transport.connect(to)
       def listen(at: Address)  = transport.listen(at).map: incoming =>
         incoming.copy(flow = incoming.flow.map: bytes =>
           val text = bytes.decodeString(ISO_8859_1)
           taken ++= Seq("enableApiControl", "armDisarm", "takeoff").filter(text.contains)
-          bytes)
+          if text.contains("simGetCameraInfo") then cameraQuestions += 1
+          if text.contains("simGetCameraInfo") && cameraQuestions == 1 then ByteString.empty else bytes)
 
     /** Flies plans one after another, as one command does. */
     def command(
@@ -87,6 +95,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
           case Right(assembly) =>
             onStart()
             assembly.landed.map(landed =>
+              images = recorder.records.collect { case image: CameraImage => image }.toVector
               Either.cond(
                 landed.outcome == Outcome.Completed,
                 recorder.recording,
@@ -253,6 +262,16 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     val high = seen.map(_.map(-_.positionNed.z).max)
     assert(high.max > 2 && high.max < 15, s"the highest were at ${high.max} m")
     assert(seen.last.forall(_.velocityNed.norm < 0.3), seen.last)
+
+  test("a camera whose lens was not told, since the question was lost, is asked again"):
+    val filmed          = brief.copy(images = List(ImageSource.Camera("front_center", 5)))
+    val (asked, images) = on(duel): bench =>
+      import bench.system.dispatcher
+      bench.command(filmed).map(orFail).map(_ => (bench.cameraQuestions, bench.images))
+    assertEquals(asked, 3)
+    for vehicle <- Seq("Pursuer", "Evader") do
+      val lenses = images.filter(_.vehicle == vehicle).map(_.fov)
+      assert(lenses.last.isDefined, s"$vehicle: $lenses")
 
   test("without one of the vehicles a flight is refused, with the names of those that are there"):
     assertEquals(
