@@ -99,6 +99,8 @@ def agent_of(algorithm, environments, spaces):
             "grad_norm_clip": 0.5,
             "value_clip": 0,
             "value_loss_scale": 0.5,
+            # Episodes end by their time alone.
+            "time_limit_bootstrap": True,
         }
     for role, model in models.items():
         model.init_state_dict(role=role)
