@@ -1,6 +1,8 @@
 package skein.testing
 
 import java.io.File
+import java.nio.channels.FileChannel
+import java.nio.file.StandardOpenOption.{CREATE, WRITE}
 import java.nio.file.{FileSystems, Files, Path}
 import munit.Assertions.assume
 import scala.sys.process.{Process, ProcessLogger}
@@ -32,16 +34,21 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     val home   = cache.resolve("skein").resolve(pinned.mkString("python-", "-", "").replace("==", "-"))
     val bin    = home.resolve("bin").resolve("python")
     val whole  = home.resolve("whole")
-    if Files.exists(whole) && Files.exists(bin) then Right(bin)
-    else
+    def made   =
       // An environment with a pip of its own takes twice the time.
-      val made = ran("python3", "-m", "venv", "--clear", "--without-pip", home.toString)
+      val empty = ran("python3", "-m", "venv", "--clear", "--without-pip", home.toString)
       for
-        _ <- installs.foldLeft(made)((before, packages) => before.flatMap(_ => pip(bin, packages)))
+        _ <- installs.foldLeft(empty)((before, packages) => before.flatMap(_ => pip(bin, packages)))
         _ <- ran(bin.toString, "-c", s"import $imports")
       yield
         Files.createFile(whole): Unit
         bin
+    Files.createDirectories(home.getParent)
+    // Modules' tests run side by side, each in a JVM of its own.
+    PythonEnvironment.synchronized:
+      Using.resource(FileChannel.open(home.resolveSibling(s"${home.getFileName}.lock"), CREATE, WRITE)): channel =>
+        Using.resource(channel.lock()): _ =>
+          if Files.exists(whole) && Files.exists(bin) then Right(bin) else made
 
   /** Runs one of the scripts.
     *
