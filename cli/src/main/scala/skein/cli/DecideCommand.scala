@@ -11,14 +11,13 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.{BuildId, Endpoint}
-import skein.flight.WarmUp
+import skein.flight.{FlightAssembler, WarmUp}
 import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
 import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
-import skein.policy.Fleet
 import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
-import skein.solver.{Briefing, SolverDesk, SolverServer}
+import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
 import skein.units.{Clock, Expect}
 
 /** Options of `./skein decide`. */
@@ -111,7 +110,7 @@ final class DecideCommand(using scenarios: Scenarios)
       val desk = SolverDesk(
         SecureRandom().nextLong(),
         BuildId.current,
-        briefing => fleetOf(briefing, options.scenario, warm),
+        briefing => decidersOf(briefing, options.scenario, warm),
         Clock.system,
         system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId),
         told = say
@@ -120,17 +119,18 @@ final class DecideCommand(using scenarios: Scenarios)
         val ended = Promise[Unit]()
         Edge.untilInterrupted(() => ended.trySuccess(()): Unit)(Edge.await(ended.future))
         Edge.await(close()): Unit
+        desk.close()
         val stats = desk.stats
         say(
           s"answered ${stats.answered} questions; refused ${stats.refused} flights; ${stats.garbled} messages were none"
         )
     finally Edge.await(system.terminate()): Unit
 
-  private def fleetOf(
+  private def decidersOf(
       briefing: Briefing,
       only: Option[String],
       warm: ConcurrentHashMap[String, Boolean]
-  ): Either[String, Fleet] =
+  ): Either[String, FlightDeciders] =
     for
       plan <- Briefing.plan(briefing)
       name = plan.settings.scenario.name
@@ -144,7 +144,7 @@ final class DecideCommand(using scenarios: Scenarios)
           warmUp(plan)
           true
       )
-      plan.fleet
+      FlightDeciders.of(plan, FlightAssembler.threads)
 
   /** So that the first decisions do not wait for the compiler. */
   private def warmUp(plan: RecordedPlan): Unit =

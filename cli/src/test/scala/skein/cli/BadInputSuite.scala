@@ -129,8 +129,18 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
         (
           FlyCommand(),
-          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan"),
-          "came with paused and plan alone"
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),
+          "came with paused alone"
+        ),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--deadline", "50ms"),
+          "deadline: expected more than planning.deadline, for which a solver searches its plans, 60.0 ms; came 50.0 ms"
+        ),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--period", "50ms"),
+          "period: expected more than planning.deadline"
         ),
         (
           SpreadCommand("skein.cli.Main"),

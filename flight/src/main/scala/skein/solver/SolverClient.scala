@@ -65,27 +65,28 @@ final class SolverClient(
   def roundTrips: Vector[Span] = lock.synchronized(exchange.trips)
 
   def ask(
-      vehicle: Int,
-      memory: Memory,
+      deciders: Vector[(vehicle: Int, memory: Memory)],
       remembered: Option[Solver.Remembered],
       view: TeamView,
       askedAt: Instant,
-      until: Instant
+      until: Instant,
+      searching: Span
   ): Future[Solved] = lock.synchronized:
     standing match
       case Standing.Greeting(why) => Future.failed(NoSolver(why))
       case Standing.Refused(why)  => Future.failed(NoSolver(why))
       case Standing.Welcome       =>
-        val (next, number) = exchange.asked(vehicle, askedAt, until)
+        val vehicle        = deciders.head.vehicle
+        val (next, number) = exchange.asked(vehicle, askedAt, until, searching)
         val used           = remembered.map(last => (solver = last.solver, question = last.question))
-        val question       = Question(flight, vehicle, number, askedAt, next.solverClock, used, memory, view)
+        val question       = Question(flight, deciders, number, askedAt, next.solverClock, used, view)
         open.send(MessageCodec.bytes(Message.Ask(question))) match
           case Left(why) => Future.failed(NoSolver(why))
           case Right(()) =>
             val answer = Promise[Solved]()
             val known = exchange.clocks.map(known => (offset = known.offset, uncertainty = known.uncertainty))
             exchange = next
-            waiting = waiting.updated(vehicle, Waiting(number, known, answer))
+            waiting = waiting.updated(vehicle, Waiting(number, deciders.size, known, answer))
             answer.future
 
   /** Says goodbye. */
@@ -133,7 +134,11 @@ final class SolverClient(
 
   private def answered(waits: Waiting, answer: Answer, askedAt: Instant, now: Instant): Unit =
     val _ = answer.result match
-      case Left(reason)  => waits.answer.tryFailure(NoSolver(reason))
+      case Left(reason)                                          => waits.answer.tryFailure(NoSolver(reason))
+      case Right(choice) if choice.chosen.size != waits.vehicles =>
+        waits.answer.tryFailure(NoSolver(
+          s"the solver was asked for ${waits.vehicles} vehicles and decided for ${choice.chosen.size}"
+        ))
       case Right(choice) =>
         waits.answer.trySuccess(
           Solved(
@@ -145,9 +150,7 @@ final class SolverClient(
             answer.answeredAt.since(answer.takenAt),
             waits.clock,
             choice.begunAnew,
-            choice.headingRad,
-            choice.speed,
-            choice.action
+            choice.chosen
           )
         )
 
@@ -201,6 +204,7 @@ object SolverClient:
 
   private final case class Waiting(
       number: Long,
+      vehicles: Int,
       clock: Option[(offset: Span, uncertainty: Span)],
       answer: Promise[Solved]
   )

@@ -57,7 +57,13 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
       solver = Some(SolverChoice.Kafka(at, prefix))
     )
     val solvers = (1 to repeats).map: id =>
-      val desk = SolverDesk(id, "same", Briefing.plan(_).map(_.fleet), Clock.system, system.dispatcher)
+      val desk = SolverDesk(
+        id,
+        "same",
+        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+        Clock.system,
+        system.dispatcher
+      )
       KafkaSolver(topics, desk, _ => ())
     Await.result(Future.traverse(solvers)(_.start()), 60.seconds): Unit
     val assembler = FlightAssembler(
