@@ -100,7 +100,7 @@ final class SolverClient(
     case Right(message) =>
       message match
         case Message.Welcome(`flight`, _)                    => welcomed()
-        case Message.Refused(`flight`, reason)               => refused(reason)
+        case Message.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case Message.Unknown(`flight`)                       => again("it does not know this flight")
         case Message.Tell(answer) if answer.flight == flight => heard(answer)
         // On a link that several flights share.
@@ -155,8 +155,9 @@ final class SolverClient(
         )
 
   private def told(news: LinkNews): Unit = news match
-    case LinkNews.Up           => again(Silent)
-    case LinkNews.Down(reason) =>
+    case LinkNews.Up              => again(Silent)
+    case LinkNews.Refused(reason) => refused(reason)
+    case LinkNews.Down(reason)    =>
       val lost = lock.synchronized:
         val lost = waiting.values.toVector
         val was  = standing
@@ -187,8 +188,7 @@ final class SolverClient(
       was != Standing.Welcome
     if isNew && !started.trySuccess(()) then note(EventKind.Reconnected, None, "a solver is there again")
 
-  private def refused(reason: String): Unit =
-    val why = s"the solver refuses: $reason"
+  private def refused(why: String): Unit =
     lock.synchronized:
       standing = Standing.Refused(why)
     if !started.tryFailure(NoSolver(why)) then note(EventKind.Refused, None, why)
