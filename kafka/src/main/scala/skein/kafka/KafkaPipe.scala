@@ -78,11 +78,11 @@ private[kafka] final class KafkaPipe(
   private def isReached(told: String = ""): Boolean = !closing.get && (topics.made() match
     case Right(()) => true
     case Left(no)  =>
-      if no.reason != told then absent(no.reason)
       if no.isFinal then
         val _ = reading.tryFailure(IOException(no.reason))
         false
       else
+        if no.reason != told then absent(no.reason)
         Thread.sleep(TryEveryMs)
         isReached(no.reason))
 

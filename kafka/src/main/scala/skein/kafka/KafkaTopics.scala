@@ -38,7 +38,8 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
         for name <- Seq(questions, answers) do
           val short = Map("retention.ms" -> "600000", "segment.bytes" -> "16777216").asJava
           val topic = NewTopic(name, 1, 1.toShort).configs(short)
-          try admin.createTopics(java.util.List.of(topic)).all.get(5, TimeUnit.SECONDS): Unit
+          // It says by itself what it waited for in vain, before that.
+          try admin.createTopics(java.util.List.of(topic)).all.get(8, TimeUnit.SECONDS): Unit
           catch case exists: ExecutionException if exists.getCause.isInstanceOf[TopicExistsException] => ()
       Right(())
     catch
