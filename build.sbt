@@ -255,7 +255,7 @@ lazy val cli = project
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
       """case " $* " in""",
-      """  " search "* | " worker "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "* | *" --learn"[\ =]*)""",
+      """  " search "* | " worker "* | " decide "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "* | *" --learn"[\ =]*)""",
       """    addJava "--add-modules=jdk.incubator.vector"""",
       """    case " $* " in " worker "*) archive=skein-vector-worker ;; *) archive=skein-vector ;; esac""",
       """    addJava "-XX:SharedArchiveFile=${app_home}/../$archive.jsa"""",

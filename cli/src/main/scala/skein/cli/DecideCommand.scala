@@ -11,14 +11,13 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.dispatch.Dispatchers
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.cluster.{BuildId, Endpoint}
-import skein.flight.WarmUp
+import skein.flight.{FlightAssembler, WarmUp}
 import skein.kafka.{KafkaBroker, KafkaSolver, KafkaTopics}
 import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
-import skein.policy.Fleet
 import skein.scenario.Scenarios
 import skein.settings.{RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
-import skein.solver.{Briefing, SolverDesk, SolverServer}
+import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
 import skein.units.{Clock, Expect}
 
 /** Options of `./skein decide`. */
@@ -28,7 +27,7 @@ final case class DecideOptions(
     )
     at: String = "tcp://127.0.0.1:7400",
     @arg(doc =
-      "starts Kafka's own broker there, in this process, for a first try; what it holds is deleted at the end"
+      "starts Kafka's own broker there, in this process; what it holds is deleted at the end. Without --tls, of this machine alone"
     )
     broker: Flag,
     @arg(doc = "decides for flights of this scenario alone; without it, of every one that this program has")
@@ -52,7 +51,8 @@ final class DecideCommand(using scenarios: Scenarios)
       secured <- options.secured.checked(Some(at))
       _       <- at match
         case SolverChoice.Kafka(at, prefix) =>
-          served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka), options.broker.value))
+          brokerMistake(options, at).toLeft(()).flatMap: _ =>
+            served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka), options.broker.value))
         case _ if options.broker.value =>
           Left(s"--broker: expected with --at kafka://127.0.0.1:9092/PREFIX, came with ${options.at}")
         case SolverChoice.Tcp(address) => served(options)(tcp(address, secured))
@@ -62,8 +62,28 @@ final class DecideCommand(using scenarios: Scenarios)
           )
     yield ()
 
-  /** Where it is asked, and how that ends. */
-  private type Serving = SolverDesk => ActorSystem ?=> Either[String, () => Future[Done]]
+  /** Where it is asked.
+    *
+    * @param failed
+    *   fails where nobody can ask there any more
+    */
+  private final case class Served(close: () => Future[Done], failed: Future[Nothing] = Future.never)
+
+  private type Serving = SolverDesk => ActorSystem ?=> Either[String, Served]
+
+  /** A broker of this process that cannot be, or is not to be. */
+  private def brokerMistake(options: DecideOptions, at: Address): Option[String] =
+    val isHere = Endpoint(at.host, at.port).isLoopback
+    if !options.broker.value then None
+    else if options.secured.kafkaSecurity.isDefined then
+      Some(
+        "--broker: expected without --kafka-security; the broker of this process has the certificates of --tls, or none"
+      )
+    else if at.port == 0 || !isHere && options.secured.tls.isEmpty then
+      Some(
+        s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, or of any address with --tls, came $at"
+      )
+    else None
 
   private given ExecutionContext = ExecutionContext.global
 
@@ -72,37 +92,32 @@ final class DecideCommand(using scenarios: Scenarios)
       val transport = TcpTransport(certificates = secured.certificates)
       val server    = Edge.await(SolverServer.start(address, transport, desk))
       Console.out.println(s"decides at tcp://${server.address}; Ctrl-C ends it")
-      Right(() => server.close())
+      Right(Served(() => server.close()))
     catch case error: TransportError => Left(error.getMessage)
 
   private def kafka(topics: KafkaTopics, withBroker: Boolean): Serving = desk =>
     import topics.broker as at
     def started(folder: Path): Either[String, Option[KafkaBroker]] =
       if !withBroker then Right(None)
-      else if topics.security.nonEmpty then
-        Left("--broker: the broker in this process speaks to this machine alone, without --kafka-security")
-      else if !Endpoint(at.host, at.port).isLoopback || at.port == 0 then
-        Left(s"--broker: expected a port of 127.0.0.1, such as kafka://127.0.0.1:9092/skein, came $at")
       else
         say(s"a Kafka broker starts at $at")
-        KafkaBroker.start(folder, at.port).map(Some(_)).left.map("--broker: " + _)
+        KafkaBroker.start(folder, at, topics.security).map(Some(_)).left.map("--broker: " + _)
     val folder = Files.createTempDirectory("skein-broker")
     started(folder) match
       case Left(reason) =>
         KafkaBroker.delete(folder)
         Left(reason)
       case Right(broker) =>
-        val solver =
-          KafkaSolver(topics, desk, reason => say(s"the broker at $at does not take answers: $reason"))
+        val solver  = KafkaSolver(topics, desk, say)
         def close() = solver.close().map: _ =>
           broker.foreach(_.close())
           KafkaBroker.delete(folder)
           Done
         say(s"looks for the broker at $at")
-        solver.start().foreach(_ =>
+        val failed = solver.start().flatMap: _ =>
           Console.out.println(s"decides at kafka://$at/${topics.prefix}; Ctrl-C ends it")
-        )
-        Right(() => close())
+          Future.never
+        Right(Served(() => close(), failed))
 
   private def served(options: DecideOptions)(serving: Serving): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein-decide")
@@ -111,26 +126,30 @@ final class DecideCommand(using scenarios: Scenarios)
       val desk = SolverDesk(
         SecureRandom().nextLong(),
         BuildId.current,
-        briefing => fleetOf(briefing, options.scenario, warm),
+        briefing => decidersOf(briefing, options.scenario, warm),
         Clock.system,
         system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId),
         told = say
       )
-      serving(desk).map: close =>
-        val ended = Promise[Unit]()
-        Edge.untilInterrupted(() => ended.trySuccess(()): Unit)(Edge.await(ended.future))
-        Edge.await(close()): Unit
+      serving(desk).flatMap: served =>
+        val ended = Promise[Either[String, Unit]]()
+        served.failed.failed.foreach(error => ended.trySuccess(Left(error.getMessage)))
+        val end =
+          Edge.untilInterrupted(() => ended.trySuccess(Right(())): Unit)(Edge.await(ended.future))
+        Edge.await(served.close()): Unit
+        desk.close()
         val stats = desk.stats
         say(
           s"answered ${stats.answered} questions; refused ${stats.refused} flights; ${stats.garbled} messages were none"
         )
+        end
     finally Edge.await(system.terminate()): Unit
 
-  private def fleetOf(
+  private def decidersOf(
       briefing: Briefing,
       only: Option[String],
       warm: ConcurrentHashMap[String, Boolean]
-  ): Either[String, Fleet] =
+  ): Either[String, FlightDeciders] =
     for
       plan <- Briefing.plan(briefing)
       name = plan.settings.scenario.name
@@ -144,7 +163,7 @@ final class DecideCommand(using scenarios: Scenarios)
           warmUp(plan)
           true
       )
-      plan.fleet
+      FlightDeciders.of(plan, FlightAssembler.threads)
 
   /** So that the first decisions do not wait for the compiler. */
   private def warmUp(plan: RecordedPlan): Unit =

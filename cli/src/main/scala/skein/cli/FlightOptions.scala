@@ -71,7 +71,7 @@ final case class FlightOptions(
     )
     fallback: Option[String],
     @arg(doc =
-      "flies each loop but paused and plan with its decisions made elsewhere, too: tcp://HOST:PORT of ./skein decide, kafka://HOST:PORT/PREFIX of one behind a broker, or link:PROFILE in virtual time, the profile being of the way there and back; a decision's deadline is then the period unless told otherwise"
+      "flies each loop but paused with its decisions made elsewhere, too: tcp://HOST:PORT of ./skein decide, kafka://HOST:PORT/PREFIX of one behind a broker, or link:PROFILE in virtual time, the profile being of the way there and back; a decision's deadline is then the period unless told otherwise"
     )
     solver: Option[String],
     @arg(doc =

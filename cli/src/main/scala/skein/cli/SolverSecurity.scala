@@ -7,6 +7,7 @@ import javax.net.ssl.SSLContext
 import mainargs.{ParserForClass, arg}
 import scala.jdk.CollectionConverters.*
 import skein.cluster.{Endpoint, Tls}
+import skein.kafka.KafkaCertificates
 import skein.link.Address
 import skein.settings.SolverChoice
 import skein.units.Expect
@@ -14,11 +15,11 @@ import skein.units.Expect
 /** How a flight and a solver trust one another. */
 final case class SolverSecurity(
     @arg(doc =
-      "for a solver of another machine: folder of ./skein cluster with this machine's certificate; without it, loopback alone"
+      "for a solver or a Kafka broker of another machine: folder of ./skein cluster with this machine's certificate; without it, loopback alone"
     )
     tls: Option[String],
     @arg(doc =
-      "for a Kafka broker of another machine: file with its clients' security.protocol, ssl.… and sasl.…; without it, loopback alone"
+      "in the place of --tls, for a Kafka broker with other certificates, or with passwords: file with its clients' security.protocol, ssl.… and sasl.…"
     )
     kafkaSecurity: Option[String]
 ):
@@ -28,7 +29,8 @@ final case class SolverSecurity(
   def checked(way: Option[SolverChoice]): Either[String, Checked] = way match
     case Some(SolverChoice.Tcp(at)) =>
       for
-        _    <- notOf(at, "--kafka-security" -> kafkaSecurity)
+        _ <- Expect.that(kafkaSecurity.isEmpty):
+          s"--kafka-security: expected with a solver behind a Kafka broker, came with tcp://$at"
         read <- tls match
           case Some(folder) => Tls.of(Path.of(folder)).flatMap(_.context).map(Some(_))
           case None         =>
@@ -41,15 +43,18 @@ final case class SolverSecurity(
       yield Checked(read, Map.empty)
     case Some(SolverChoice.Kafka(broker, _)) =>
       for
-        _    <- notOf(broker, "--tls" -> tls)
-        read <- kafkaSecurity match
-          case Some(file) => properties(Path.of(file))
-          case None       =>
+        read <- (tls, kafkaSecurity) match
+          case (Some(folder), None) => Tls.of(Path.of(folder)).flatMap(ofKafka)
+          case (None, Some(file))   => properties(Path.of(file))
+          case (Some(_), Some(_))   =>
+            Left("--tls, --kafka-security: expected one of them; the file says whom to trust, too")
+          case (None, None) =>
             Either.cond(
               isLoopback(broker),
               Map.empty[String, String],
-              s"--kafka-security: expected a file that says how to trust the broker at $broker, for example by " +
-                "security.protocol=SSL, and how to be trusted by it"
+              s"--tls: expected certificates where the Kafka broker at $broker is of another machine; ./skein cluster " +
+                "certificates DIR makes a lab's, and --kafka-security FILE tells of others. Without them the broker is " +
+                "of this machine alone, such as kafka://127.0.0.1:9092/PREFIX"
             )
       yield Checked(None, read)
     case Some(SolverChoice.Link(_)) | None =>
@@ -71,8 +76,9 @@ object SolverSecurity:
 
   private def isLoopback(at: Address) = Endpoint(at.host, at.port).isLoopback
 
-  private def notOf(at: Address, option: (String, Option[String])): Either[String, Unit] =
-    Expect.that(option._2.isEmpty)(s"${option._1}: is of another kind of solver than the one at $at")
+  /** The same certificates, once it is seen that they can be read. */
+  private def ofKafka(tls: Tls): Either[String, Map[String, String]] =
+    tls.context.map(_ => KafkaCertificates.settings(tls.keyStore, tls.trustStore, tls.password))
 
   private val Kinds = Seq("security.", "ssl.", "sasl.")
 

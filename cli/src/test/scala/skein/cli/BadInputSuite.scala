@@ -129,8 +129,18 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
         (
           FlyCommand(),
-          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan"),
-          "came with paused and plan alone"
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),
+          "came with paused alone"
+        ),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--deadline", "50ms"),
+          "deadline: expected more than planning.deadline, for which a solver searches its plans, 60.0 ms; came 50.0 ms"
+        ),
+        (
+          FlyCommand(),
+          virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--period", "50ms"),
+          "period: expected more than planning.deadline"
         ),
         (
           SpreadCommand("skein.cli.Main"),
@@ -142,6 +152,16 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
         (FlyCommand(), Seq("--tls", "certificates"), "--tls, --kafka-security: expected with a solver"),
         (DecideCommand(), Seq("--at", "link:vpn"), "expected tcp://HOST:PORT"),
         (DecideCommand(), Seq("--broker"), "--broker: expected with --at kafka://"),
+        (
+          DecideCommand(),
+          Seq("--at", "kafka://10.0.0.1:9092/skein", "--broker"),
+          "--tls: expected certificates where the Kafka broker at 10.0.0.1:9092 is of another machine"
+        ),
+        (
+          DecideCommand(),
+          Seq("--at", "kafka://127.0.0.1:0/skein", "--broker"),
+          "--broker: expected a port of 127.0.0.1"
+        ),
         (DecideCommand(), Seq("--scenario", "moon"), "--scenario: ")
       )
     do assertRefused(command, words, expected)

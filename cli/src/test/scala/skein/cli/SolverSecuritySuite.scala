@@ -21,14 +21,19 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
       )
     for at <- Seq("tcp://192.0.2.1:7400", "tcp://0.0.0.0:7400") do
       assert(clue(refused(at)).startsWith("--tls: expected"))
-    assert(clue(refused("kafka://192.0.2.1:9092/skein")).startsWith("--kafka-security: expected"))
+    assert(clue(refused("kafka://192.0.2.1:9092/skein")).startsWith("--tls: expected"))
 
   test("what is of another kind of solver is refused, and files that are not there are named"):
     assert(clue(refused(
       "tcp://127.0.0.1:1",
       kafka = Some("f")
-    )).contains("--kafka-security: is of another kind"))
-    assert(clue(refused("kafka://127.0.0.1:1/a", tls = Some("f"))).contains("--tls: is of another kind"))
+    )).contains("--kafka-security: expected with a solver behind a Kafka broker"))
+    assert(clue(refused(
+      "kafka://127.0.0.1:1/a",
+      tls = Some("f"),
+      kafka = Some("g")
+    )).contains("expected one of them"))
+    assert(clue(refused("kafka://192.0.2.1:1/a", tls = Some("no-such-folder"))).contains("no-such-folder"))
     assert(clue(refused("link:direct", tls = Some("f"))).contains("expected with a solver at"))
     assert(SolverSecurity(Some("f"), None).checked(None).isLeft)
     assert(clue(refused("tcp://192.0.2.1:1", tls = Some("no-such-folder"))).contains("no-such-folder"))

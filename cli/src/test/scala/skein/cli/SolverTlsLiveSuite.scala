@@ -90,7 +90,13 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assertEquals(heard.get, 0)
 
   test("a flight is decided by a solver over TLS"):
-    val desk     = SolverDesk(1, "same", Briefing.plan(_).map(_.fleet), Clock.system, system.dispatcher)
+    val desk = SolverDesk(
+      1,
+      "same",
+      Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+      Clock.system,
+      system.dispatcher
+    )
     val server   = Await.result(SolverServer.start(loopback, transport(Some(own)), desk), 20.seconds)
     val settings = FlySettings(
       List(LoopKind.Stream),

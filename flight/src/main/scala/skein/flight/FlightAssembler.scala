@@ -111,7 +111,7 @@ final class FlightAssembler(
       yield
         val loopSettings = settings.loopSettings(plan)
         val planners     =
-          if plan.loop != LoopKind.Plan then PlanWorkers.none
+          if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
             opened.closing(workers(settings.planningByModel)): threads =>
               threads.close()
@@ -273,7 +273,7 @@ final class FlightAssembler(
 
 object FlightAssembler:
   /** Threads to plan on, no more than there are cores. */
-  private def threads(planning: PlanSettings): PlanWorkers =
+  def threads(planning: PlanSettings): PlanWorkers =
     val threads = planning.searches.min(Runtime.getRuntime.availableProcessors)
     new ThreadedPlanWorkers(threads, BackgroundThread.factory("skein-plan"))
 

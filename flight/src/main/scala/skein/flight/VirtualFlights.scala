@@ -10,9 +10,9 @@ import skein.measure.RecordedTracks
 import skein.loop.planning.{CountedPlanWorkers, PlanWorkers}
 import skein.record.{Digest, MemoryRecorder}
 import skein.scenario.{Result, Scenario, Tracks}
-import skein.settings.{FlightPlan, FlySettings, SolverChoice}
+import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
-import skein.solver.{SolverDesk, SolverServer, TcpLink}
+import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -132,7 +132,8 @@ object VirtualFlights:
   private def serveSolver(settings: FlySettings, plan: FlightPlan, network: MemoryNetwork, clock: Clock)(using
       system: ActorSystem
   ): Future[SolverServer] =
-    val desk = SolverDesk(plan.seed, Here, _ => Right(plan.fleet(settings)), clock, system.dispatcher)
+    def deciders = FlightDeciders.of(RecordedPlan(settings, plan), workers)
+    val desk     = SolverDesk(plan.seed, Here, _ => Right(deciders), clock, system.dispatcher)
     SolverServer.start(SolverAt, network.host(There), desk)
 
   private val Here     = "localhost"

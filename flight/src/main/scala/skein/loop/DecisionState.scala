@@ -48,3 +48,15 @@ private final class JointDecisionState private (
     val answer  = PlanStage.Answer.of(found, problem, last)
     val (next, planned) = planning.decide(memories, views, now, problem.parts, answer)
     (JointDecisionState(planning, planner, next, Some(answer)), planned.map(_.decision))
+
+  /** As others would in the planner's place, this once. */
+  def decideBy(
+      others: Vector[Decider],
+      views: Vector[TeamView],
+      now: Instant
+  ): (JointDecisionState, Vector[Decision]) =
+    val (next, made) = others.lazyZip(memories).lazyZip(views).map(_.decideInstead(_, _, now)).unzip
+    (JointDecisionState(planning, planner, next, last), made)
+
+  /** With no plan to go on from. */
+  def begunAnew: JointDecisionState = JointDecisionState(planning, planner, memories, None)

@@ -89,6 +89,47 @@ final case class PlannedDecision(
     plan: Plan,
     byPolicy: Boolean,
     course: Option[Course] = None
+):
+  /** @param slices
+    *   that each search has finished
+    */
+  def report(slices: Vector[Int]): PlanReport = PlanReport(
+    plan.candidates,
+    slices,
+    Option.when(plan.cost.isFinite)(plan.cost.toDouble),
+    isSearched = plan.slices > 0,
+    byPolicy,
+    action.breaches.size,
+    action.breaches.headOption.map(_.toString),
+    course
+  )
+
+/** What is on record of how a decision was planned.
+  *
+  * @param candidates
+  *   flown by all searches together
+  * @param slices
+  *   that each search has finished
+  * @param cost
+  *   of the plan; absent where none was tried
+  * @param isSearched
+  *   whether any search finished a slice for this vehicle
+  * @param byPolicy
+  *   whether the last plan was too old to go on with
+  * @param breaches
+  *   of hard limits within the plan's horizon, of which `breach` is the first
+  * @param course
+  *   where the plan leads; absent where the policy decides in its place
+  */
+final case class PlanReport(
+    candidates: Long,
+    slices: Vector[Int],
+    cost: Option[Double],
+    isSearched: Boolean,
+    byPolicy: Boolean,
+    breaches: Int,
+    breach: Option[String],
+    course: Option[Course]
 )
 
 object Planning:
@@ -113,9 +154,9 @@ object Planning:
   private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
     (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
 
-  /** How long the vehicle may turn at once, s. */
+  /** How long the vehicle may turn at once, s. Where a solver decided last, its clock, as far as it is known, may be ahead. */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
-    memory.decidedAt.fold(0.0)(at => math.min(now.since(at).toSeconds, LongestTurnS))
+    memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
 
   private[loop] def motion(seen: Kinematics): Motion =
     Motion(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)

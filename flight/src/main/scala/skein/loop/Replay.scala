@@ -121,11 +121,16 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
         vehicle(decision, "vehicle", decision.vehicle).flatMap(self =>
           view(decision, self, state.planning.regardsTeam(self))
         )
-      slices <- searched(recorded)
+      isMissed = all.forall(decision => missed((decision.vehicle, decision.sequence)))
+      slices <- if isMissed then Right(Vector.empty) else searched(recorded)
     yield
-      val (next, made) = state.decide(views, recorded.decidedAt, slices)
-      val decisions    = made.map(rows.decision)
-      val decided      = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
+      val isNew        = all.exists(decision => begunAnew((decision.vehicle, decision.sequence)))
+      val before       = if isNew then state.begunAnew else state
+      val (next, made) =
+        if isMissed then before.decideBy(state.planning.vehicles.map(instead), views, recorded.decidedAt)
+        else before.decide(views, recorded.decidedAt, slices)
+      val decisions = made.map(rows.decision)
+      val decided   = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
       // Where its number is another, it differs from what is recorded.
       val own = decisions(planners.indexOf(recorded.vehicle))
       (states.copy(jointly = Some(next), decided = decided), own)

@@ -28,6 +28,12 @@ private final class TeamDeciding(
     parts: TeamParts,
     log: TeamLog
 )(using ExecutionContext):
+  /** What is to be decided upon, and when it was asked. */
+  private type Seen = (TeamView, Instant)
+
+  /** The plan is absent where a fallback decided. */
+  private type Planned = (decision: Decision, plan: Option[PlanReport])
+
   @volatile private var underWay = Option.empty[(vehicle: Int, at: Instant)]
 
   /** For whom a policy is asked, which its loop waits for, and since when. */
@@ -40,17 +46,19 @@ private final class TeamDeciding(
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
       .collect { case request if request.deciders(vehicle) => request }
-      .via(predicted(Vector(vehicle), solver.fold(Span.Zero)(_.delay), parts.meter("predict", vehicle)))
+      .via(predicted(Vector(vehicle), delay, parts.meter("predict", vehicle)))
       .addAttributes(parts.named("predict", vehicle))
 
   /** Carries requests forward to when the commands of some vehicles will act, and records how earlier predictions turned
     * out.
     *
     * @param lead
-    *   how much later that is because of what is done with the request
+    *   how much later that is because of what is done with the request, here or at a solver
     */
   def predict(deciders: Vector[Int], lead: Span): Flow[DecisionRequest, DecisionRequest, NotUsed] =
-    predicted(deciders, lead, parts.meter("predict")).addAttributes(parts.named("predict"))
+    predicted(deciders, lead + delay, parts.meter("predict")).addAttributes(parts.named("predict"))
+
+  private def delay: Span = solver.fold(Span.Zero)(_.delay)
 
   private def predicted(
       deciders: Vector[Int],
@@ -81,38 +89,50 @@ private final class TeamDeciding(
       Flow
         .fromMaterializer: (materializer, _) =>
           given system: ActorSystem = materializer.system
-          val instead               = deadline.otherwise.policy(fleet.agents(vehicle))
           solver match
-            case Some(solver) => decideElsewhere(vehicle, deadline.within, instead, solver)
+            case Some(solver) => decideElsewhere(vehicle, deadline, solver)
             case None         =>
               val policies = system.dispatchers.lookup(Dispatchers.DefaultBlockingDispatcherId)
-              decideWithin(vehicle, deadline.within, instead):
+              decideWithin(vehicle, deadline.within, deadline.otherwise.policy(fleet.agents(vehicle))):
                 case (memory, (view, now)) => Future(decideAt(vehicle, memory, view, now))(using policies)
         .mapMaterializedValue(_ => NotUsed)
 
-  private def decideElsewhere(
-      vehicle: Int,
-      deadline: Span,
-      instead: Option[AgentPolicy],
-      solver: Solver
-  )(using
+  private def decideElsewhere(vehicle: Int, deadline: Deadline, solver: Solver)(using
       ActorSystem
   ): Flow[DecisionRequest, Decision, NotUsed] =
-    inTime[Solved](vehicle, deadline, instead, asksAgain = true)((memory, view, now) =>
-      val remembered = memory.held match
+    requests(vehicle)
+      .via(askElsewhere(Vector(vehicle), deadline, solver, Span.Zero))
+      .map: (made, solved) =>
+        solved.foreach(log.solved(made.head, _))
+        made.head
+      .via(decided(vehicle))
+
+  /** Asks a solver for vehicles that are decided for together. Missed deadlines are recorded.
+    *
+    * @return
+    *   with the decisions the answer; without one, they are the fallback's
+    */
+  private def askElsewhere(vehicles: Vector[Int], deadline: Deadline, solver: Solver, searching: Span)(using
+      ActorSystem
+  ): Flow[Seen, (Vector[Decision], Option[Solved]), NotUsed] =
+    val instead = Expect.each(vehicles)(vehicle =>
+      deadline.otherwise.policy(fleet.agents(vehicle)).toRight(())
+    ).toOption
+    inTime(vehicles, deadline.within, instead, asksAgain = true): (memories, view, now) =>
+      val remembered = memories.head.held match
         case used: Solver.Remembered => Some(used)
         case _                       => None
+      val asked = vehicles.zip(memories).map((vehicle, memory) => (vehicle = vehicle, memory = memory))
       solver
-        .ask(vehicle, memory, remembered, view, now, now + deadline)
+        .ask(asked, remembered, view, now, now + deadline.within, searching)
         .map: solved =>
-          val (next, decision) =
-            deciders(vehicle).decided(memory, view, solved.decidedAt, solved.headingRad, solved.speed)
-          (
-            next.copy(held = Solver.Remembered(solved.solver, solved.question)),
-            decision.copy(action = solved.action),
-            solved
-          )
-    )(log.solved)
+          val used         = Solver.Remembered(solved.solver, solved.question)
+          val (next, made) = asked.zip(solved.chosen).map((asked, chosen) =>
+            val (next, decision) = deciders(asked.vehicle)
+              .decided(asked.memory, view, solved.decidedAt, chosen.headingRad, chosen.speed)
+            (next.copy(held = used), decision.copy(action = chosen.action))
+          ).unzip
+          (next, made, solved)
 
   private def decideAtOnce(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     requests(vehicle)
@@ -122,8 +142,7 @@ private final class TeamDeciding(
         finally underWay = None)
       .via(decided(vehicle))
 
-  /** What one vehicle shall decide upon, and when it was asked. */
-  private def requests(vehicle: Int): Flow[DecisionRequest, (TeamView, Instant), NotUsed] =
+  private def requests(vehicle: Int): Flow[DecisionRequest, Seen, NotUsed] =
     val deciding = parts.meter("decide", vehicle)
     // Not `filter`: it fetches one element ahead, which would grow old in it.
     Flow[DecisionRequest].collect:
@@ -152,64 +171,95 @@ private final class TeamDeciding(
   )(
       policy: (Memory, (TeamView, Instant)) => Future[(Memory, Decision)]
   )(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
-    inTime[Unit](vehicle, deadline, instead, asksAgain = false)((memory, view, now) =>
-      policy(memory, (view, now)).map((next, decision) => (next, decision, ()))
-    )((_, _) => ())
-
-  /** @param asksAgain
-    *   see [[Decide.within]]
-    * @param onDecided
-    *   told of each decision that came in time, with what came with it
-    */
-  private def inTime[A](vehicle: Int, deadline: Span, instead: Option[AgentPolicy], asksAgain: Boolean)(
-      policy: (Memory, TeamView, Instant) => Future[(Memory, Decision, A)]
-  )(onDecided: (Decision, A) => Unit)(using ActorSystem): Flow[DecisionRequest, Decision, NotUsed] =
-    type Seen = (TeamView, Instant)
-    type Made = (Decision, Option[A])
-    val otherwise = instead.fold(OnOverrun.Hold[Memory]()): fallback =>
-      val decider = Decider(fleet, vehicle, fallback)
-      OnOverrun.Ask[Memory, Seen, Made]: (memory, seen) =>
-        val (next, decision) = decider.decideInstead(memory, seen._1, seen._2)
-        (next, (decision, None))
     requests(vehicle)
-      .via(Decide.within[Memory, Seen, Made](deadline, otherwise, start(vehicle), asksAgain)((memory, seen) =>
-        policy(memory, seen._1, seen._2).map((next, decision, came) => (next, (decision, Some(came))))
+      .via(inTime(Vector(vehicle), deadline, instead.map(Vector(_)), asksAgain = false)(
+        (memories, view, now) =>
+          policy(memories.head, (view, now)).map((next, decision) => (Vector(next), Vector(decision), ()))
+      ))
+      .map((made, _) => made.head)
+      .via(decided(vehicle))
+
+  /** Decisions for vehicles that are decided for together, with what came with them; without that, they are the
+    * fallback's. Missed deadlines are recorded.
+    *
+    * @param instead
+    *   the fallback, by vehicle; without one nothing is decided where a deadline is missed
+    * @param asksAgain
+    *   see [[Decide.within]]
+    */
+  private def inTime[A](
+      vehicles: Vector[Int],
+      deadline: Span,
+      instead: Option[Vector[AgentPolicy]],
+      asksAgain: Boolean
+  )(
+      policy: (Vector[Memory], TeamView, Instant) => Future[(Vector[Memory], Vector[Decision], A)]
+  )(using ActorSystem): Flow[Seen, (Vector[Decision], Option[A]), NotUsed] =
+    type Made = (Vector[Decision], Option[A])
+    val otherwise = instead.fold(OnOverrun.Hold[Vector[Memory]]()): fallback =>
+      val deciders = vehicles.zip(fallback).map(Decider(fleet, _, _))
+      OnOverrun.Ask[Vector[Memory], Seen, Made]: (memories, seen) =>
+        val (next, made) = deciders
+          .zip(memories)
+          .map((decider, memory) => decider.decideInstead(memory, seen._1, seen._2))
+          .unzip
+        (next, (made, None))
+    Flow[Seen]
+      .via(Decide.within[Vector[Memory], Seen, Made](deadline, otherwise, vehicles.map(start), asksAgain)(
+        (memories, seen) =>
+          policy(memories, seen._1, seen._2).map((next, made, came) => (next, (made, Some(came))))
       ))
       .map:
-        case DeadlineResult.Decided((decision, came)) =>
-          came.foreach(onDecided(decision, _))
-          Some(decision)
+        case DeadlineResult.Decided(made)         => made
         case DeadlineResult.Missed(miss, instead) =>
-          val made = instead.map(_._1)
-          log.missed(vehicle, miss, made.map(_.sequence))
-          made
-      .collect { case Some(decision) => decision }
-      .via(decided(vehicle))
+          val made = instead.fold(Vector.empty[Decision])(_._1)
+          for (vehicle, place) <- vehicles.zipWithIndex do
+            log.missed(vehicle, miss, made.lift(place).map(_.sequence))
+          (made, None)
+      .collect { case made if made._1.nonEmpty => made }
 
   /** How the decisions of those vehicles are planned that plan. */
   val planning: Option[JointPlanning] = JointPlanning.of(fleet, settings.planning, settings.seed)
 
   /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned. */
   def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
-    type Seen = (TeamView, Instant)
-    val vehicles = planning.vehicles
-    val meter    = parts.meter("plan")
+    val meter = parts.meter("plan")
     Flow[DecisionRequest]
       .map: request =>
         meter.enter()
         (request.view, clock.now())
-      .via(PlanStage.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
-        (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
-        (memories, seen: Seen, parts, answer) =>
-          val (next, planned) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
-          (next, (planned, answer))
+      .via(solver.zip(settings.deadline) match
+        case None                     => planHere(planning)
+        case Some((solver, deadline)) => planElsewhere(planning, deadline, solver))
+      .via(Tap(made =>
+        meter.pass(made.headOption.flatMap(one => sensing.ageOf(one.decision.view)))
+        for (decision, plan) <- made do
+          val regardsTeam = planning.regardsTeam(decision.vehicle)
+          plan.fold(log.decided(decision, regardsTeam))(log.planned(decision, _, regardsTeam))
       ))
-      .via(Tap((planned, answer) =>
-        meter.pass(planned.headOption.flatMap(one => sensing.ageOf(one.decision.view)))
-        for one <- planned do log.planned(one, answer, planning.regardsTeam(one.decision.vehicle))
-      ))
-      .map((planned, _) => planned.map(_.decision))
+      .map(_.map(_.decision))
       .addAttributes(parts.named("plan"))
+
+  private def planHere(planning: JointPlanning)(using ActorSystem): Flow[Seen, Vector[Planned], NotUsed] =
+    val vehicles = planning.vehicles
+    PlanStage.within(settings.planning.deadline, workers, planning.planner, vehicles.map(start))(
+      (memories, seen: Seen) => planning.pose(memories, vehicles.map(_ => seen._1), seen._2),
+      (memories, seen: Seen, parts, answer) =>
+        val (next, made) = planning.decide(memories, vehicles.map(_ => seen._1), seen._2, parts, answer)
+        (next, made.map(one => (decision = one.decision, plan = Some(one.report(answer.slices)))))
+    )
+
+  private def planElsewhere(planning: JointPlanning, deadline: Deadline, solver: Solver)(using
+      ActorSystem
+  ): Flow[Seen, Vector[Planned], NotUsed] =
+    askElsewhere(planning.vehicles, deadline, solver, settings.planning.deadline).map: (made, solved) =>
+      for
+        by       <- solved
+        decision <- made
+      do log.solved(decision, by)
+      made.zipWithIndex.map((decision, place) =>
+        (decision = decision, plan = solved.flatMap(_.chosen(place).plan))
+      )
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 

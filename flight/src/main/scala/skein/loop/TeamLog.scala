@@ -2,7 +2,6 @@ package skein.loop
 
 import scala.util.{Failure, Success, Try}
 import skein.flow.{Overrun, Steered, Verified}
-import skein.loop.planning.PlanStage
 import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.record.{
@@ -90,8 +89,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   def decided(decision: Decision): Unit = decided(decision, deciders(decision.vehicle).regardsTeam)
 
   /** A planned decision, how it was planned, and what from. */
-  def planned(made: PlannedDecision, answer: PlanStage.Answer, regardsTeam: Boolean): Unit =
-    val PlannedDecision(decision, action, plan, byPolicy, course) = made
+  def planned(decision: Decision, plan: PlanReport, regardsTeam: Boolean): Unit =
     import decision.vehicle
     decided(decision, regardsTeam)
     recorder.offer(
@@ -99,20 +97,21 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
         name(vehicle),
         decision.sequence,
         plan.candidates,
-        answer.slices.map(_.toLong),
-        Option.when(plan.cost.isFinite)(plan.cost),
+        plan.slices.map(_.toLong),
+        plan.cost,
         clock.now().since(decision.decidedAt),
-        action.breaches.size,
-        course
+        plan.breaches,
+        plan.course
       )
     )
-    if plan.slices == 0 then
-      val instead = if byPolicy then "the policy decides" else "the last plan goes on"
+    if !plan.isSearched then
+      val instead = if plan.byPolicy then "the policy decides" else "the last plan goes on"
       note(EventKind.DeadlineMissed, Some(vehicle), s"no slice was searched: $instead")
-    for breach <- action.breaches.headOption do
+    for breach <- plan.breach do
       note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 
-  private def decided(decision: Decision, regardsTeam: Boolean): Unit =
+  /** A decision of a vehicle that plans, and what it was made from. */
+  def decided(decision: Decision, regardsTeam: Boolean): Unit =
     recorder.offer(rows.decision(decision))
     if regardsTeam then rows.sightings(decision).foreach(recorder.offer)
     rows.sensings(decision).foreach(recorder.offer)

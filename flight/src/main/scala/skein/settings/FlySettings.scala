@@ -274,7 +274,7 @@ object FlySettings:
         s"moves-in-flight: expected 1 to $MostMovesInFlight, came ${settings.movesInFlight}"
       ),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
-        "solver: expected with a loop whose decisions can be made elsewhere, came with paused and plan alone"
+        "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
       Option.when(settings.solver.isDefined && settings.policies.exists(OutsidePolicy.decides))(
         "solver: expected with policies that both processes have, came with one behind a socket"
@@ -282,6 +282,7 @@ object FlySettings:
       Option.when(settings.deadline.exists(_ <= Span.Zero))(
         s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
+      lateMistake(settings),
       settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
         s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and vehicles of another role, came with '${settings.scenario.name}'"
       )
@@ -289,8 +290,19 @@ object FlySettings:
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.mkString("skein.fly.", "\nskein.fly.", ""))
 
-  /** `paused` waits with its simulator stopped; what `plan` decides is searched by threads of this process. */
-  def decidedElsewhere(loop: LoopKind): Boolean = loop != LoopKind.Paused && loop != LoopKind.Plan
+  /** `paused` waits with its simulator stopped. */
+  def decidedElsewhere(loop: LoopKind): Boolean = loop != LoopKind.Paused
+
+  /** An answer has to come behind the search for it. */
+  private def lateMistake(settings: FlySettings): Option[String] =
+    val searched = settings.planning.deadline
+    val within   = settings.deadline.getOrElse(settings.period)
+    Option.when(
+      settings.solver.isDefined && settings.loops.contains(LoopKind.Plan) && within <= searched
+    ):
+      val which = if settings.deadline.isDefined then "deadline" else "period"
+      s"$which: expected more than planning.deadline, for which a solver searches its plans, ${searched.toMillis} ms; " +
+        s"came ${within.toMillis} ms"
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 

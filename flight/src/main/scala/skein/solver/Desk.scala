@@ -2,7 +2,8 @@ package skein.solver
 
 import skein.units.Instant
 
-/** A solver's side of one flight's questions: which is decided next, and from which memory. Immutable.
+/** A solver's side of one flight's questions: which is decided next, and from which memory. Immutable. Vehicles that are
+  * decided for together count as the first of them.
   *
   * Of each vehicle one question is decided at a time. Of those that come meanwhile the newest waits; the others, and those
   * that come behind a newer one, are left.

@@ -3,7 +3,8 @@ package skein.solver
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** A flight's side of its questions: which answer counts. Immutable.
+/** A flight's side of its questions: which answer counts. Immutable. Vehicles that are decided for together count as the
+  * first of them.
   *
   * An answer counts if it is to the newest question for its vehicle, comes before that one's deadline, and comes for the
   * first time. So nothing overtakes: an answer that was held up is not used once something newer was asked.
@@ -13,7 +14,7 @@ import skein.units.*
   * @param clocks
   *   how its clock stands to the controller's
   * @param trips
-  *   the latest round trips of answers that counted, the newest last
+  *   the latest round trips of answers that counted, without what was meant for searching, the newest last
   * @param told
   *   what that start of the solver has counted, as told last
   */
@@ -34,9 +35,13 @@ final case class Exchange private (
   /** Expected from a question to its answer: the mean of late; zero before the first. */
   def delay: Span = if trips.isEmpty then Span.Zero else trips.reduce(_ + _) / trips.size.toLong
 
-  /** @return with the question's number */
-  def asked(vehicle: Int, at: Instant, until: Instant): (Exchange, Long) =
-    val (next, number) = vehicles(vehicle).asked(at, until)
+  /** @param searching
+    *   for how long the solver is to look for its answer
+    * @return
+    *   with the question's number
+    */
+  def asked(vehicle: Int, at: Instant, until: Instant, searching: Span = Span.Zero): (Exchange, Long) =
+    val (next, number) = vehicles(vehicle).asked(at, until, searching)
     (copy(vehicles = vehicles.updated(vehicle, next), counts = counts.copy(asked = counts.asked + 1)), number)
 
   /** @param at
@@ -47,13 +52,14 @@ final case class Exchange private (
     known.open.get(answer.number) match
       case None if answer.number < known.next =>
         (copy(counts = counts.copy(repeated = counts.repeated + 1)), Verdict.Repeated)
-      case None                 => (copy(counts = counts.copy(foreign = counts.foreign + 1)), Verdict.Foreign)
-      case Some((asked, until)) =>
+      case None => (copy(counts = counts.copy(foreign = counts.foreign + 1)), Verdict.Foreign)
+      case Some((asked, until, searching)) =>
         val isTimely = answer.number == known.next - 1 && at < until
         val settled  = known.copy(open = known.open - answer.number)
         val heard    = copy(vehicles = vehicles.updated(answer.vehicle, settled)).aligned(answer, asked, at)
         if isTimely then
-          val lately = (trips :+ at.since(asked)).takeRight(Remembered)
+          val trip   = (at.since(asked) - searching).max(Span.Zero)
+          val lately = (trips :+ trip).takeRight(Remembered)
           (heard.copy(trips = lately, counts = counts.copy(used = counts.used + 1)), Verdict.Counts(asked))
         else (heard.copy(counts = counts.copy(late = counts.late + 1)), Verdict.Late(at.since(asked)))
 
@@ -135,12 +141,13 @@ object Exchange:
   /** @param next
     *   number of the next question
     * @param open
-    *   those without an answer, the newest of them: when they were asked, and until when an answer counts
+    *   those without an answer, the newest of them: when they were asked, until when an answer counts, and how much of
+    *   that is for searching
     */
-  final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant)]):
-    private[Exchange] def asked(at: Instant, until: Instant): (Vehicle, Long) =
+  final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
+    private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =
       val kept = open.filter((number, _) => number > next - MostOpen)
-      (Vehicle(next + 1, kept.updated(next, (asked = at, until = until))), next)
+      (Vehicle(next + 1, kept.updated(next, (asked = at, until = until, searching = searching))), next)
 
   object Vehicle:
     val silent: Vehicle = Vehicle(0, Map.empty)

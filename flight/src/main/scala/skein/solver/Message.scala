@@ -1,7 +1,7 @@
 package skein.solver
 
-import skein.loop.{Memory, TeamView}
-import skein.policy.{Action, Fleet}
+import skein.loop.{Chosen, Memory, TeamView}
+import skein.policy.Fleet
 import skein.record.{ClockKind, FlightRow, Parameter, Recording, RecordingHeader}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
@@ -93,29 +93,33 @@ object Briefing:
 
 /** What is to be decided.
   *
+  * @param deciders
+  *   who is decided for, at least one: a vehicle by its place, and what its decisions depend on; what the policy itself
+  *   remembers is with the solver
   * @param number
-  *   counts the questions for this vehicle; a later one leaves all earlier ones
+  *   counts the questions for these vehicles; a later one leaves all earlier ones
   * @param solverClock
   *   of which start of a solver the clock is known, and the controller's clock minus that
   * @param remembered
   *   the answer that was used last, by the solver's start and the question; absent before the first
-  * @param memory
-  *   of the vehicle's decisions; what the policy itself remembers is with the solver
   * @param view
-  *   without its forecast, and of sensors with those of this vehicle alone
+  *   without its forecast, and of sensors with those of these vehicles alone
   */
 final case class Question(
     flight: Long,
-    vehicle: Int,
+    deciders: Vector[(vehicle: Int, memory: Memory)],
     number: Long,
     askedAt: Instant,
     solverClock: Option[(solver: Long, offset: Span)],
     remembered: Option[(solver: Long, question: Long)],
-    memory: Memory,
     view: TeamView
-)
+):
+  /** The first of those who are decided for, as which they count. */
+  def vehicle: Int = deciders.head.vehicle
 
-/** @param solver
+/** @param vehicle
+  *   the first of those who were asked for
+  * @param solver
   *   this start of it
   * @param takenAt
   *   when the question came, on the solver's clock
@@ -143,16 +147,12 @@ final case class Answer(
 /** @param decidedAt
   *   what the policy took for now
   * @param begunAnew
-  *   whether what the policy remembered was not there
-  * @param speed
-  *   absent where the vehicle commands its own
-  * @param action
-  *   absent where heading and speed say it
+  *   whether what was remembered was not there
+  * @param chosen
+  *   for each vehicle that was asked for
   */
 final case class Choice(
     decidedAt: Instant,
     begunAnew: Boolean,
-    headingRad: Double,
-    speed: Option[MetresPerSecond],
-    action: Option[Action]
+    chosen: Vector[Chosen]
 )

@@ -3,15 +3,16 @@ package skein.solver
 import java.io.IOException
 import skein.bytes.Codec
 import skein.forecast.Estimate
-import skein.loop.{Memory, Move, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
+import skein.record.Course
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
 object MessageCodec:
   /** Peers of another version are refused. */
-  val Version = 2
+  val Version = 3
 
   /** Of a message, in bytes: what a Kafka broker takes unless told otherwise, less its own share. */
   val MostBytes = 900_000
@@ -55,7 +56,11 @@ object MessageCodec:
 
   private given Codec[Question] = Codec
     .derived[Question]
-    .imap(checked)(asked => asked.copy(view = withSensorsOf(asked.vehicle, asked.view)))
+    .imap(checked)(asked => asked.copy(view = withSensorsOf(asked.deciders.map(_.vehicle).toSet, asked.view)))
+
+  private given Codec[Course]     = Codec.derived
+  private given Codec[PlanReport] = Codec.derived
+  private given Codec[Chosen]     = Codec.derived
 
   private given Codec[Choice]   = Codec.derived
   private given Codec[Answer]   = Codec.derived
@@ -64,13 +69,14 @@ object MessageCodec:
 
   private def checked(asked: Question): Question =
     val vehicles = asked.view.readings.size
-    if asked.vehicle < 0 || asked.vehicle >= vehicles then
-      throw IOException(s"expected a vehicle below $vehicles, came ${asked.vehicle}")
+    val whose    = asked.deciders.map(_.vehicle)
+    if whose.isEmpty || whose.distinct != whose || whose.exists(!asked.view.readings.isDefinedAt(_)) then
+      throw IOException(s"expected different vehicles below $vehicles, came ${whose.mkString(", ")}")
     asked
 
-  private def withSensorsOf(vehicle: Int, view: TeamView): TeamView =
+  private def withSensorsOf(vehicles: Set[Int], view: TeamView): TeamView =
     view.copy(sensed =
-      view.sensed.zipWithIndex.map((sensed, its) => if its == vehicle then sensed else Map.empty)
+      view.sensed.zipWithIndex.map((sensed, its) => if vehicles(its) then sensed else Map.empty)
     )
 
   /** A view without its forecast, as it is written. */

@@ -31,3 +31,6 @@ trait OpenLink:
 enum LinkNews:
   case Up
   case Down(reason: String)
+
+  /** What it goes through does not let this side in, and is not tried again. */
+  case Refused(reason: String)

@@ -65,27 +65,28 @@ final class SolverClient(
   def roundTrips: Vector[Span] = lock.synchronized(exchange.trips)
 
   def ask(
-      vehicle: Int,
-      memory: Memory,
+      deciders: Vector[(vehicle: Int, memory: Memory)],
       remembered: Option[Solver.Remembered],
       view: TeamView,
       askedAt: Instant,
-      until: Instant
+      until: Instant,
+      searching: Span
   ): Future[Solved] = lock.synchronized:
     standing match
       case Standing.Greeting(why) => Future.failed(NoSolver(why))
       case Standing.Refused(why)  => Future.failed(NoSolver(why))
       case Standing.Welcome       =>
-        val (next, number) = exchange.asked(vehicle, askedAt, until)
+        val vehicle        = deciders.head.vehicle
+        val (next, number) = exchange.asked(vehicle, askedAt, until, searching)
         val used           = remembered.map(last => (solver = last.solver, question = last.question))
-        val question       = Question(flight, vehicle, number, askedAt, next.solverClock, used, memory, view)
+        val question       = Question(flight, deciders, number, askedAt, next.solverClock, used, view)
         open.send(MessageCodec.bytes(Message.Ask(question))) match
           case Left(why) => Future.failed(NoSolver(why))
           case Right(()) =>
             val answer = Promise[Solved]()
             val known = exchange.clocks.map(known => (offset = known.offset, uncertainty = known.uncertainty))
             exchange = next
-            waiting = waiting.updated(vehicle, Waiting(number, known, answer))
+            waiting = waiting.updated(vehicle, Waiting(number, deciders.size, known, answer))
             answer.future
 
   /** Says goodbye. */
@@ -99,7 +100,7 @@ final class SolverClient(
     case Right(message) =>
       message match
         case Message.Welcome(`flight`, _)                    => welcomed()
-        case Message.Refused(`flight`, reason)               => refused(reason)
+        case Message.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case Message.Unknown(`flight`)                       => again("it does not know this flight")
         case Message.Tell(answer) if answer.flight == flight => heard(answer)
         // On a link that several flights share.
@@ -133,7 +134,11 @@ final class SolverClient(
 
   private def answered(waits: Waiting, answer: Answer, askedAt: Instant, now: Instant): Unit =
     val _ = answer.result match
-      case Left(reason)  => waits.answer.tryFailure(NoSolver(reason))
+      case Left(reason)                                          => waits.answer.tryFailure(NoSolver(reason))
+      case Right(choice) if choice.chosen.size != waits.vehicles =>
+        waits.answer.tryFailure(NoSolver(
+          s"the solver was asked for ${waits.vehicles} vehicles and decided for ${choice.chosen.size}"
+        ))
       case Right(choice) =>
         waits.answer.trySuccess(
           Solved(
@@ -145,15 +150,14 @@ final class SolverClient(
             answer.answeredAt.since(answer.takenAt),
             waits.clock,
             choice.begunAnew,
-            choice.headingRad,
-            choice.speed,
-            choice.action
+            choice.chosen
           )
         )
 
   private def told(news: LinkNews): Unit = news match
-    case LinkNews.Up           => again(Silent)
-    case LinkNews.Down(reason) =>
+    case LinkNews.Up              => again(Silent)
+    case LinkNews.Refused(reason) => refused(reason)
+    case LinkNews.Down(reason)    =>
       val lost = lock.synchronized:
         val lost = waiting.values.toVector
         val was  = standing
@@ -184,8 +188,7 @@ final class SolverClient(
       was != Standing.Welcome
     if isNew && !started.trySuccess(()) then note(EventKind.Reconnected, None, "a solver is there again")
 
-  private def refused(reason: String): Unit =
-    val why = s"the solver refuses: $reason"
+  private def refused(why: String): Unit =
     lock.synchronized:
       standing = Standing.Refused(why)
     if !started.tryFailure(NoSolver(why)) then note(EventKind.Refused, None, why)
@@ -201,6 +204,7 @@ object SolverClient:
 
   private final case class Waiting(
       number: Long,
+      vehicles: Int,
       clock: Option[(offset: Span, uncertainty: Span)],
       answer: Promise[Solved]
   )

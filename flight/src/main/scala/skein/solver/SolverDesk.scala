@@ -4,9 +4,6 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
-import scala.util.control.NonFatal
-import skein.loop.Decider
-import skein.policy.Fleet
 import skein.units.*
 
 /** A solver: decides for every flight that it welcomes, whatever link its questions come over.
@@ -15,8 +12,8 @@ import skein.units.*
   *   names this start of it: another number each time
   * @param build
   *   of this program, which a flight's must be, too
-  * @param fleetOf
-  *   who flies by what is told of a flight, or why it is not decided for; may take its time
+  * @param decidersOf
+  *   who decides by what is told of a flight, or why nobody does; may take its time
   * @param clock
   *   its own, whatever the controllers' are
   * @param workers
@@ -27,7 +24,7 @@ import skein.units.*
 final class SolverDesk(
     id: Long,
     build: String,
-    fleetOf: Briefing => Either[String, Fleet],
+    decidersOf: Briefing => Either[String, FlightDeciders],
     clock: Clock,
     workers: ExecutionContext,
     takes: Question => Span = _ => Span.Zero,
@@ -61,9 +58,13 @@ final class SolverDesk(
         None
       case Message.Ask(question)   => offered(question, reply)
       case Message.Goodbye(flight) =>
-        lock.synchronized:
-          if sessions.contains(flight) then told(s"flight ${flight.toHexString} has ended")
+        val ended = lock.synchronized:
+          val ended = sessions.get(flight)
           sessions = sessions.removed(flight)
+          ended
+        for session <- ended do
+          told(s"flight ${flight.toHexString} has ended")
+          session.deciders.close()
         None
       case _ => None
     for (flight, vehicle) <- asked.distinct do next(flight, vehicle)
@@ -91,17 +92,20 @@ final class SolverDesk(
         s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
       )
     else if begins(flight) then
-      Future(fleetOf(briefing))(using workers).onComplete { result =>
+      Future(decidersOf(briefing))(using workers).onComplete { result =>
         lock.synchronized:
           greeting -= flight
         result match
-          case Success(Right(fleet)) =>
-            differing(briefing.agents, Briefing.agents(fleet)) match
-              case Some(reason) => no(reason)
-              case None         =>
-                admitted(flight, Session(briefing, fleet, Desk.of(fleet.agents.size), reply, 0))
+          case Success(Right(deciders)) =>
+            val vehicles = deciders.fleet.agents.size
+            differing(briefing.agents, Briefing.agents(deciders.fleet)) match
+              case Some(reason) =>
+                deciders.close()
+                no(reason)
+              case None =>
+                admitted(flight, Session(briefing, deciders, Desk.of(vehicles), reply, 0))
                 told(
-                  s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, ${fleet.agents.size} vehicles"
+                  s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles"
                 )
                 answer(Message.Welcome(flight, id))
           case Success(Left(reason)) => no(reason)
@@ -119,12 +123,25 @@ final class SolverDesk(
       case (there, here) if there != here =>
         s"the scenario is another here: the flight has $there, this solver $here"
 
-  private def admitted(flight: Long, session: Session): Unit = lock.synchronized:
-    uses += 1
-    // Whoever did not say goodbye makes room in the end.
-    val kept =
-      if sessions.size < MostFlights then sessions else sessions.removed(sessions.minBy(_._2.usedAt)._1)
-    sessions = kept.updated(flight, session.copy(usedAt = uses))
+  private def admitted(flight: Long, session: Session): Unit =
+    val left = lock.synchronized:
+      uses += 1
+      val others = sessions.removed(flight)
+      // Whoever did not say goodbye makes room in the end.
+      val kept =
+        if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
+      val left = sessions.removedAll(kept.keys).values
+      sessions = kept.updated(flight, session.copy(usedAt = uses))
+      left
+    left.foreach(_.deciders.close())
+
+  /** Decides for nobody any more, and ends what flights were planned with. */
+  def close(): Unit =
+    val left = lock.synchronized:
+      val left = sessions.values
+      sessions = Map.empty
+      left
+    left.foreach(_.deciders.close())
 
   /** @return where there may be something to decide now */
   private def offered(question: Question, reply: Array[Byte] => Unit): Option[(Long, Int)] =
@@ -133,7 +150,7 @@ final class SolverDesk(
         case None =>
           reply(MessageCodec.bytes(Message.Unknown(question.flight)))
           None
-        case Some(session) if question.view.readings.size != session.fleet.agents.size =>
+        case Some(session) if !isOf(session.deciders, question) =>
           garbled += 1
           None
         case Some(session) =>
@@ -144,6 +161,11 @@ final class SolverDesk(
           )
           Some((question.flight, question.vehicle))
 
+  /** Whether it is asked for whoever decides together, of all who fly. */
+  private def isOf(deciders: FlightDeciders, question: Question): Boolean =
+    question.view.readings.size == deciders.fleet.agents.size &&
+      deciders.together(question.vehicle) == question.deciders.map(_.vehicle)
+
   private def next(flight: Long, vehicle: Int): Unit =
     val work = lock.synchronized:
       sessions.get(flight).flatMap: session =>
@@ -151,7 +173,8 @@ final class SolverDesk(
         sessions = sessions.updated(flight, session.copy(desk = desk))
         waiting.map((session, _))
     for (session, waiting) <- work do
-      Future(decided(session, waiting.question))(using workers)
+      Future(decided(session, waiting.question))(using workers).flatten
+        .recover { case error => Left(Option(error.getMessage).getOrElse(error.toString)) }(using workers)
         .flatMap(made => held(waiting.question, made))(using workers)
         .foreach(made => done(waiting, made))(using workers)
 
@@ -160,21 +183,18 @@ final class SolverDesk(
     if span == Span.Zero then Future.successful(made)
     else after(span.toDuration, system.scheduler)(Future.successful(made))(using workers)
 
-  private def decided(session: Session, question: Question): Either[String, (Choice, Any)] =
-    try
-      val decider = Decider(session.fleet, question.vehicle)
-      val memory  = session.desk.memory(question, id)
-      val begins  = memory.isEmpty && question.remembered.isDefined
-      // By the controller's clock, as far as that is known to be.
-      val now = question.solverClock
-        .filter(_.solver == id)
-        .fold(question.askedAt)(known => question.askedAt.max(clock.now() + known.offset))
-      if !question.view.isComplete then Left("not every vehicle was seen")
-      else
-        val held             = memory.getOrElse(decider.start.held)
-        val (next, decision) = decider.decide(question.memory.copy(held = held), question.view, now)
-        Right((Choice(now, begins, decision.heading.value, decision.speed, decision.action), next.held))
-    catch case NonFatal(error) => Left(Option(error.getMessage).getOrElse(error.toString))
+  private def decided(session: Session, question: Question): Future[Either[String, (Choice, Any)]] =
+    val memory = session.desk.memory(question, id)
+    val begins = memory.isEmpty && question.remembered.isDefined
+    // By the controller's clock, as far as that is known to be.
+    val now = question.solverClock
+      .filter(_.solver == id)
+      .fold(question.askedAt)(known => question.askedAt.max(clock.now() + known.offset))
+    if !question.view.isComplete then Future.successful(Left("not every vehicle was seen"))
+    else
+      session.deciders
+        .decide(question, memory, now)
+        .map((chosen, held) => Right((Choice(now, begins, chosen), held)))(using ExecutionContext.parasitic)
 
   private def done(waiting: Desk.Waiting, made: Either[String, (Choice, Any)]): Unit =
     import waiting.question
@@ -195,7 +215,13 @@ final class SolverDesk(
           made.map(_._1).left.map(_.take(MostReason))
         )
         (session.reply, told)
-    for (reply, answer) <- answer do reply(MessageCodec.bytes(Message.Tell(answer)))
+    for (reply, answer) <- answer do
+      val told =
+        try MessageCodec.bytes(Message.Tell(answer))
+        catch // The courses of very many vehicles.
+          case tooLong: IllegalArgumentException =>
+            MessageCodec.bytes(Message.Tell(answer.copy(result = Left(tooLong.getMessage))))
+      reply(told)
     next(question.flight, question.vehicle)
 
 object SolverDesk:
@@ -213,7 +239,7 @@ object SolverDesk:
 
   private final case class Session(
       briefing: Briefing,
-      fleet: Fleet,
+      deciders: FlightDeciders,
       desk: Desk,
       reply: Array[Byte] => Unit,
       usedAt: Long

@@ -5,18 +5,19 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
-import skein.loop.{Fallback, LoopKind, Outcome, Replay}
+import skein.loop.{Fallback, LoopKind, Outcome, PlanSettings, Replay}
 import skein.policy.{PolicyFamily, Role}
 import skein.record.EventKind
-import skein.scenario.{Crossing, Scenarios}
+import skein.scenario.{Crossing, PaperDuel, Scenarios}
 import skein.settings.{FlySettings, PolicyFile, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.*
+import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights whose solver stands behind the emulated network: wire, connection and all. */
-class SolverFlightSimulation extends munit.FunSuite:
+class SolverFlightSimulation extends munit.FunSuite, Optimised:
   private given Scenarios = Scenarios.ours
 
   private val settings = FlySettings(
@@ -52,6 +53,25 @@ class SolverFlightSimulation extends munit.FunSuite:
       val digest = VirtualFlights.fly(again.settings, again.plan).map(_.recorder.digest)
       assertEquals(digest, Right(flown.recorder.digest))
 
+  test("planned elsewhere over a hop that takes no time, a flight is the one that its own process plans"):
+    for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
+      val plans = settings.copy(
+        loops = List(LoopKind.Plan),
+        scenario = scenario,
+        solver = SolverChoice.parse("link:none").toOption,
+        planning = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
+      )
+      val Vector(here, there) = plans.plans.map(plan =>
+        VirtualFlights.fly(plans, plan).fold(fail(_), identity).recorder.recording
+      ): @unchecked
+      assert(here.planned.size > 30, s"${here.planned.size} of ${scenario.name}")
+      assertEquals(there.solved.size, there.decisions.size)
+      assertEquals(there.decisions, here.decisions)
+      assertEquals(there.planned, here.planned)
+      assertEquals(there.readings, here.readings)
+      val again = RecordedPlan.of(there).fold(fail(_), identity)
+      assertEquals(Replay(again.fleet, there, again.settings.planningByModel).firstDifference, None)
+
   test("without a deadline of its own, a decision made elsewhere has the period for one"):
     val slow  = settings.copy(solver = SolverChoice.parse("link:constant:300ms").toOption)
     val flown = VirtualFlights.fly(slow, slow.plans.last).fold(fail(_), identity).recorder.recording
@@ -81,7 +101,13 @@ class SolverFlightSimulation extends munit.FunSuite:
         val clock              = Clock.ofNanos(VirtualTime.clock(system))
         val network            = MemoryNetwork(NetworkPlan(), 1, clock)
         val at                 = Address("solver", 7400)
-        val desk = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
+        val desk               = SolverDesk(
+          1,
+          "ours",
+          Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+          clock,
+          system.dispatcher
+        )
         for
           _ <- SolverServer.start(at, network.host("solver"), desk)
           client =
@@ -130,7 +156,13 @@ class SolverFlightSimulation extends munit.FunSuite:
       val clock   = Clock.ofNanos(VirtualTime.clock(system))
       val network = MemoryNetwork(NetworkPlan(), 1, clock)
       val at      = Address("solver", 7400)
-      val desk    = SolverDesk(1, "ours", Briefing.plan(_).map(_.fleet), clock, system.dispatcher)
+      val desk    = SolverDesk(
+        1,
+        "ours",
+        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+        clock,
+        system.dispatcher
+      )
       for
         _ <- SolverServer.start(at, network.host("solver"), desk)
         _ <- Future.traverse(garbage): text =>

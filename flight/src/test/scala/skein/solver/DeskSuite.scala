@@ -6,12 +6,11 @@ import skein.units.*
 class DeskSuite extends munit.FunSuite:
   private def asked(number: Long, used: Option[(Long, Long)] = None, vehicle: Int = 0) = Question(
     7,
-    vehicle,
+    Vector((vehicle = vehicle, memory = Memory(0, None, number))),
     number,
     Instant.Epoch,
     None,
     used.map((solver, question) => (solver = solver, question = question)),
-    Memory(0, None, number),
     TeamView.empty(2)
   )
 

@@ -1,12 +1,13 @@
 package skein.solver
 
+import skein.loop.Chosen
 import skein.solver.Exchange.Verdict
 import skein.units.*
 
 class ExchangeSuite extends munit.FunSuite:
   private def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
   private val within         = Span.ofMillis(100)
-  private val choice         = Right(Choice(at(0), false, 0, None, None))
+  private val choice         = Right(Choice(at(0), false, Vector(Chosen(0, None, None))))
 
   private def asking(times: Double*) =
     times.foldLeft(Exchange.of(2))((exchange, ms) => exchange.asked(0, at(ms), at(ms) + within)._1)
@@ -55,6 +56,13 @@ class ExchangeSuite extends munit.FunSuite:
     assertEquals(two.delay, Span.ofMillis(20))
     val (late, _) = two.asked(0, at(300), at(400))._1.heard(answer(2), at(900))
     assertEquals(late.delay, Span.ofMillis(20))
+
+  test("what is meant for searching is no part of the delay"):
+    val (first, _)  = asking().asked(0, at(0), at(0) + within, searching = Span.ofMillis(60))
+    val (one, _)    = first.heard(answer(0), at(68))
+    val (second, _) = one.asked(1, at(100), at(100) + within)
+    val (two, _)    = second.heard(answer(0, vehicle = 1), at(110))
+    assertEquals(two.delay, Span.ofMillis(9))
 
   test("what the solver has counted is told once"):
     val (one, first)  = asking(0).heard(answer(0, overtaken = 3), at(10))._1.news(answer(0, overtaken = 3))

@@ -3,8 +3,9 @@ package skein.solver
 import org.scalacheck.Prop.forAll
 import org.scalacheck.{Arbitrary, Gen}
 import skein.forecast.Estimate
-import skein.loop.{Memory, Move, Reading, SensorReading, TeamView}
+import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
+import skein.record.Course
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -92,28 +93,49 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
   private val question =
     for
       vehicles  <- Gen.choose(1, 5)
-      vehicle   <- Gen.choose(0, vehicles - 1)
+      count     <- Gen.choose(1, vehicles)
+      deciders  <- Gen.pick(count, 0 until vehicles)
       known     <- Gen.option(Gen.zip(Gen.long, span))
       used      <- Gen.option(pair)
       heading   <- number
       decidedAt <- Gen.option(instant)
       made      <- Gen.long
-      seen      <- view(vehicles, vehicle)
+      seen      <- view(vehicles, deciders.head)
       at        <- instant
       flight    <- Gen.long
     yield Question(
       flight,
-      vehicle,
+      deciders.toVector.map(vehicle => (vehicle = vehicle, memory = Memory(heading, decidedAt, made))),
       made / 2,
       at,
       known.map((solver, offset) => (solver = solver, offset = offset)),
       used.map((solver, question) => (solver = solver, question = question)),
-      Memory(heading, decidedAt, made),
       seen
     )
 
+  private val course =
+    Gen.zip(Gen.listOf(number), Gen.listOf(number), span).map((north, east, step) =>
+      Course(north.toVector, east.toVector, step)
+    )
+
+  private val plan =
+    for
+      candidates <- Gen.long
+      slices     <- Gen.listOf(Gen.choose(0, Int.MaxValue))
+      cost       <- Gen.option(number)
+      searched   <- Gen.oneOf(true, false)
+      breaches   <- Gen.choose(0, 99)
+      breach     <- Gen.option(text)
+      course     <- Gen.option(course)
+    yield PlanReport(candidates, slices.toVector, cost, searched, !searched, breaches, breach, course)
+
+  private val chosen =
+    Gen.zip(number, speed, Gen.option(action), Gen.option(plan)).map(Chosen(_, _, _, _))
+
   private val choice =
-    Gen.zip(instant, Gen.oneOf(true, false), number, speed, Gen.option(action)).map(Choice(_, _, _, _, _))
+    Gen.zip(instant, Gen.oneOf(true, false), Gen.listOf(chosen)).map((at, isNew, chosen) =>
+      Choice(at, isNew, chosen.toVector)
+    )
 
   private val answer =
     for
@@ -165,7 +187,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = MessageCodec.bytes(Message.Welcome(1, 2))
     assertEquals(
       MessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 2 of the solver's protocol, came version 9")
+      Left("expected messages of version 3 of the solver's protocol, came version 9")
     )
     assertEquals(
       MessageCodec.message(welcome.updated(1, 42.toByte)),
@@ -175,5 +197,13 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
       MessageCodec.message(new Array[Byte](MessageCodec.MostBytes + 1)),
       Left(s"expected ${MessageCodec.MostBytes} bytes at most, came ${MessageCodec.MostBytes + 1}")
     )
+    val memory   = Memory(0, None, 0)
+    val question = Question(1, Vector.empty, 0, Instant.Epoch, None, None, TeamView.empty(2))
+    for deciders <- Seq(Vector(), Vector(2), Vector(-1), Vector(1, 1)) do
+      val asked = question.copy(deciders = deciders.map(vehicle => (vehicle = vehicle, memory = memory)))
+      assertEquals(
+        MessageCodec.message(MessageCodec.bytes(Message.Ask(asked))),
+        Left(s"expected different vehicles below 2, came ${deciders.mkString(", ")}")
+      )
     val claims = MessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
     assert(MessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

@@ -2,33 +2,33 @@ package skein.solver
 
 import skein.loop.*
 import skein.policy.*
-import skein.record.EventKind
-import skein.scenario.PaperDuel
+import skein.record.{EventKind, Parameter, Recording}
+import skein.scenario.{Crossing, PaperDuel}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.SolverTrial.To
+import skein.testing.Optimised
 import skein.units.*
 
 /** Whole flights whose decisions are made by a solver elsewhere, in virtual time: where it is slow, dies, is started again,
   * answers twice, or answers in another order.
   */
-class SolverSimulation extends munit.FunSuite:
+class SolverSimulation extends munit.FunSuite, Optimised:
   private val fleet = PaperDuel().fleet
+
+  /** As a flight records it whose fallback that is. */
+  private def hovering(recording: Recording): Recording =
+    val fallback = Parameter(Replay.Fallback, Fallback.Hover.label)
+    recording.copy(heading = recording.heading.copy(parameters = recording.heading.parameters :+ fallback))
 
   /** What must hold of every such flight. */
   private def checked(
       trial: SolverTrial,
       fleet: Fleet = fleet,
-      parameters: Seq[(String, String)] = Nil
+      answers: Recording => Int = _.solved.size
   ): SolverTrial =
     val recording = trial.recording
     assertEquals(trial.outcome, Outcome.Completed)
-    val heading = recording.heading.copy(parameters =
-      recording.heading.parameters ++ (("fallback" -> "hover") +: parameters).map(skein.record.Parameter(
-        _,
-        _
-      ))
-    )
-    assertEquals(Replay(fleet, recording.copy(heading = heading)).firstDifference, None)
+    assertEquals(Replay(fleet, hovering(recording), SolverTrial.planning).firstDifference, None)
     for (vehicle, solved) <- recording.solved.groupBy(_.vehicle) do
       val numbers = solved.map(_.question)
       assertEquals(numbers, numbers.sorted.distinct, s"$vehicle used answers out of order")
@@ -41,7 +41,7 @@ class SolverSimulation extends munit.FunSuite:
       recording.decisions.map(decision => (decision.vehicle, decision.sequence)).toSet
     )
     // Every answer has one fate; the last may come when the flight has ended.
-    val unused = trial.counts.used - recording.solved.size
+    val unused = trial.counts.used - answers(recording)
     assert(unused >= 0 && unused <= fleet.agents.size, trial.counts)
     assertEquals(trial.counts.late, trial.events(EventKind.LateReply).size.toLong)
     trial
@@ -151,13 +151,59 @@ class SolverSimulation extends munit.FunSuite:
     assert(trial.counts.late >= 5, trial.counts)
     assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
     // Without the word of the new start, the replay's memory is another.
-    val silent = trial.recording.copy(
-      events = trial.recording.events.filter(_.kind != EventKind.SolverRestarted),
-      heading = trial.recording.heading.copy(parameters =
-        trial.recording.heading.parameters :+ skein.record.Parameter("fallback", "hover")
-      )
+    assertEquals(Replay(team, unsaid(trial.recording)).firstDifference.map(_.column), Some("headingRad"))
+
+  private def unsaid(recording: Recording): Recording =
+    hovering(recording.copy(events = recording.events.filter(_.kind != EventKind.SolverRestarted)))
+
+  test(
+    "plans are made elsewhere; where the solver is slow or starts again vehicles hover, and it all replays"
+  ):
+    val trial = checked(SolverTrial.fly(
+      kind = LoopKind.Plan,
+      takes = question => if question.number % 10 == 9 then Span.ofMillis(50) else Span.Zero
+    ): hand =>
+      hand.at(2)(hand.kill())
+      hand.at(3)(hand.start(2)))
+    val pursuer = trial.recording.solved.filter(_.vehicle == "Pursuer")
+    assertEquals(trial.recording.planned.map(_.decision), pursuer.map(_.decision))
+    assert(pursuer.size > 30, pursuer.size)
+    for one <- pursuer do assert(one.roundTrip.toMillis >= 70, one)
+    assert(trial.byFallback.count(_._1 == "Pursuer") > 10, trial.byFallback)
+    assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
+
+  test("a team is planned for by one question, and an answer decides for all or for none of them"):
+    val team  = Crossing(vehicles = 4).fleet
+    val trial = checked(
+      SolverTrial.fly(kind = LoopKind.Plan, fleet = team, seconds = 10): hand =>
+        hand.at(2)(hand.kill())
+        for start <- 2 to 9 do hand.at(start + 0.5)(hand.start(start))
+      ,
+      team,
+      _.solved.map(_.question).distinct.size
     )
-    assertEquals(Replay(team, silent).firstDifference.map(_.column), Some("headingRad"))
+    val together = trial.recording.decisions.groupBy(_.sequence).values
+    assert(together.sizeIs > 30, together.size)
+    for made <- together do
+      assertEquals(made.map(_.vehicle).toSet, team.agents.map(_.name).toSet)
+      assertEquals(made.map(_.decidedAt).distinct.size, 1)
+      assertEquals(made.map(_.action.contains(Action.Hover)).distinct.size, 1)
+    assertEquals(trial.recording.planned.size, trial.recording.solved.size)
+    assert(trial.byFallback.nonEmpty)
+    // A plan goes on from the last one that was used, and is another where that is not known.
+    assert(trial.events(EventKind.SolverRestarted).nonEmpty)
+    assert(Replay(team, unsaid(trial.recording), SolverTrial.planning).firstDifference.isDefined)
+
+  test("a prediction is made for when the command of a plan acts that was made elsewhere"):
+    def ahead(hopMs: Double) =
+      val fate: (To, Int) => Seq[Span] = (_, _) => Seq(Span.ofMillis(hopMs))
+      val made = checked(SolverTrial.fly(kind = LoopKind.Plan, fate = fate)()).recording.decisions
+        .filter(_.vehicle == "Pursuer")
+        .drop(20)
+      made.map(decision =>
+        decision.predicted.get.actsAt.since(decision.own.state.validAt).toMillis
+      ).sum / made.size
+    assertEqualsDouble(ahead(15) - ahead(5), 20, 3)
 
   test("equal seeds give equal recordings"):
     assertEquals(SolverTrial.fly(seed = 3)().recording, SolverTrial.fly(seed = 3)().recording)

@@ -5,6 +5,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
 import skein.loop.*
+import skein.loop.planning.CountedPlanWorkers
 import skein.policy.Fleet
 import skein.record.{EventKind, MemoryRecorder, Recording, Samples}
 import skein.scenario.PaperDuel
@@ -35,6 +36,9 @@ object SolverTrial:
     case Solver, Flight
 
   val within: Span = Span.ofMillis(100)
+
+  /** How loops that plan do: fast, and not well. */
+  val planning: PlanSettings = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
 
   /** What a test does to a trial under way. */
   final class Hand(val system: ActorSystem, start: Long => SolverDesk) extends MessageLink:
@@ -101,7 +105,8 @@ object SolverTrial:
       val clock              = Clock.ofNanos(VirtualTime.clock(system))
       val theirs             = Clock.ofNanos(() => (clock.now() + solverClock).toNanos)
       val world              = FarQuadrotors(fleet, link, seed, clock)
-      val recorder           = MemoryRecorder(Samples.heading)
+      val flown              = Samples.heading.flight.copy(loop = kind.label, seed = seed)
+      val recorder           = MemoryRecorder(Samples.heading.copy(flight = flown))
       val asked              = Vector.newBuilder[(solver: Long, vehicle: Int, number: Long)]
       def hold(solver: Long)(question: Question) =
         asked += ((solver = solver, vehicle = question.vehicle, number = question.number))
@@ -111,9 +116,13 @@ object SolverTrial:
         if at > Span.ofSeconds(seconds - 10) && at <= Span.ofSeconds(seconds) then
           sum += states(0).positionNed.horizontalDistance(states(1).positionNed)
           steps += 1
+      def deciders =
+        val plans = Option.when(kind == LoopKind.Plan)(JointPlanning.of(fleet, planning, seed)).flatten
+        val by    = CountedPlanWorkers(planning.searches, planning.slices)
+        FlightDeciders(fleet, plans.map(FlightDeciders.Plans(_, planning.deadline, by)))
       val hand = Hand(
         system,
-        id => SolverDesk(id, "same", _ => Right(fleet), theirs, system.dispatcher, hold(id))
+        id => SolverDesk(id, "same", _ => Right(deciders), theirs, system.dispatcher, hold(id))
       )
       hand.fate = fate
       hand.start(1)
@@ -129,7 +138,8 @@ object SolverTrial:
         (kind, vehicle, detail) =>
           recorder.offer(skein.record.Event(clock.now(), kind, vehicle.map(fleet.agents(_).name), detail))
       )
-      val settings = LoopSettings(deadline = Some(Deadline(within, otherwise)))
+      val settings =
+        LoopSettings(deadline = Some(Deadline(within, otherwise)), planning = planning, seed = seed)
       client.ready(Span.ofSeconds(5)).flatMap: _ =>
         val team = Team(fleet, world.ports, clock, recorder, settings, solver = Some(client))
         Flight

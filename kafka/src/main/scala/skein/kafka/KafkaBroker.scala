@@ -1,6 +1,6 @@
 package skein.kafka
 
-import java.io.{IOException, OutputStream, PrintStream}
+import java.io.{OutputStream, PrintStream}
 import java.net.{InetAddress, ServerSocket}
 import java.nio.file.{Files, Path}
 import java.util.{Comparator, Properties}
@@ -13,8 +13,8 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** Kafka's own broker in this process, one node that is its own controller: for tests, and for the first try. On this
-  * machine's loopback alone; what it holds lies in a folder.
+/** Kafka's own broker in this process, one node that is its own controller: for tests, and for labs that have no other.
+  * What it holds lies in a folder.
   */
 final class KafkaBroker private (server: KafkaRaftServer, val address: Address) extends AutoCloseable:
 
@@ -29,24 +29,31 @@ object KafkaBroker:
     *
     * @param folder
     *   for what it holds; one that a broker of before has left goes on
-    * @param port
-    *   0 takes a free one
+    * @param at
+    *   where clients find it, which it tells them; port 0 takes a free one
+    * @param certificates
+    *   of [[KafkaCertificates]]: it shows its own, and asks clients for theirs. Without them it speaks to everybody who
+    *   gets there
     * @return
     *   or why it cannot be had
     */
-  def start(folder: Path, port: Int): Either[String, KafkaBroker] =
+  def start(
+      folder: Path,
+      at: Address,
+      certificates: Map[String, String] = Map.empty
+  ): Either[String, KafkaBroker] =
     try
-      val (own, controllers) = (freed(port), freed(0))
-      val settings           = Properties()
-      settings.putAll(configuration(folder, own, controllers).asJava)
+      val own         = at.copy(port = freed(at))
+      val controllers = freed(Address(Inside, 0))
+      val settings    = Properties()
+      settings.putAll(configuration(folder, own, controllers, certificates).asJava)
       if !Files.exists(folder.resolve("meta.properties")) then format(folder)
       val server = KafkaRaftServer(KafkaConfig.fromProps(settings, false), Time.SYSTEM)
       server.startup()
-      Right(KafkaBroker(server, Address(Host, own)))
+      Right(KafkaBroker(server, own))
     catch
       case NonFatal(error) =>
-        val why = Iterator.iterate[Throwable](error)(_.getCause).takeWhile(_ != null).toVector.last
-        Left(s"cannot start a broker at $Host:$port: ${Option(why.getMessage).getOrElse(why.toString)}")
+        Left(s"cannot start a broker at $at: ${KafkaTopics.rootOf(error)}")
 
   /** Takes away what a broker that has ended held. */
   def delete(folder: Path): Unit =
@@ -55,11 +62,11 @@ object KafkaBroker:
         Files.walk(folder)
       )(_.sorted(Comparator.reverseOrder).forEach(Files.deleteIfExists(_): Unit))
 
-  private val Host = "127.0.0.1"
+  /** Where it speaks to itself as its controller. */
+  private val Inside = "127.0.0.1"
 
-  private def freed(port: Int): Int =
-    try Using.resource(ServerSocket(port, 1, InetAddress.getByName(Host)))(_.getLocalPort)
-    catch case _: IOException => throw IOException(s"port $port is taken")
+  private def freed(at: Address): Int =
+    Using.resource(ServerSocket(at.port, 1, InetAddress.getByName(at.host)))(_.getLocalPort)
 
   private def format(folder: Path): Unit =
     Formatter()
@@ -72,14 +79,22 @@ object KafkaBroker:
       .run()
 
   /** As little as one node needs: every topic of internal use has one partition, and starts without waiting for others. */
-  private def configuration(folder: Path, port: Int, controllers: Int): Map[String, String] = Map(
-    "process.roles"                            -> "broker,controller",
-    "node.id"                                  -> "1",
-    "listeners"                                -> s"PLAINTEXT://$Host:$port,CONTROLLER://$Host:$controllers",
-    "advertised.listeners"                     -> s"PLAINTEXT://$Host:$port",
-    "controller.listener.names"                -> "CONTROLLER",
-    "listener.security.protocol.map"           -> "PLAINTEXT:PLAINTEXT,CONTROLLER:PLAINTEXT",
-    "controller.quorum.voters"                 -> s"1@$Host:$controllers",
+  private def configuration(
+      folder: Path,
+      at: Address,
+      controllers: Int,
+      certificates: Map[String, String]
+  ): Map[String, String] = certificates.removed(KafkaCertificates.Protocol) ++ Map(
+    "process.roles"                  -> "broker,controller",
+    "node.id"                        -> "1",
+    "listeners"                      -> s"CLIENTS://$at,CONTROLLER://$Inside:$controllers",
+    "advertised.listeners"           -> s"CLIENTS://$at",
+    "inter.broker.listener.name"     -> "CLIENTS",
+    "controller.listener.names"      -> "CONTROLLER",
+    "listener.security.protocol.map" ->
+      s"CLIENTS:${certificates.getOrElse(KafkaCertificates.Protocol, "PLAINTEXT")},CONTROLLER:PLAINTEXT",
+    "ssl.client.auth"                          -> "required",
+    "controller.quorum.voters"                 -> s"1@$Inside:$controllers",
     "log.dirs"                                 -> folder.toString,
     "auto.create.topics.enable"                -> "false",
     "offsets.topic.replication.factor"         -> "1",

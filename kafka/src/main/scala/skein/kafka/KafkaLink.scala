@@ -3,6 +3,7 @@ package skein.kafka
 import java.util.concurrent.atomic.AtomicReference
 import org.apache.pekko.Done
 import scala.concurrent.{ExecutionContext, Future}
+import scala.util.{Failure, Success}
 import skein.solver.{LinkNews, MessageLink, OpenLink}
 import skein.units.Expect
 
@@ -16,7 +17,7 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
 
   def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink =
     val isDown = AtomicReference(Option.empty[String])
-    val away   = s"no Kafka broker answers at ${topics.broker}"
+    val away   = AtomicReference(s"no Kafka broker answers at ${topics.broker}")
     val pipe   = KafkaPipe(
       topics,
       from = topics.answers,
@@ -28,11 +29,17 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
       reason =>
         val why = s"the broker at ${topics.broker} does not take messages: $reason"
         if isDown.getAndSet(Some(why)).isEmpty then news(LinkNews.Down(why))
+      ,
+      away.set
     )
     pipe.start()
-    pipe.ready.foreach(_ => news(LinkNews.Up))
+    pipe.ready.onComplete:
+      case Success(_)     => news(LinkNews.Up)
+      case Failure(error) => news(LinkNews.Refused(error.getMessage))
     new OpenLink:
       def send(message: Array[Byte]): Either[String, Unit] =
         // What is said while it is down is how the broker is found to be back.
-        Expect.that(pipe.ready.isCompleted && pipe.send(message))(isDown.get.getOrElse(away))
+        Expect.that(
+          pipe.ready.value.exists(_.isSuccess) && pipe.send(message)
+        )(isDown.get.getOrElse(away.get))
       def close(): Future[Done] = pipe.close().map(_ => Done)

@@ -1,5 +1,6 @@
 package skein.kafka
 
+import java.io.IOException
 import java.time.Duration
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.{ArrayBlockingQueue, TimeUnit}
@@ -8,6 +9,7 @@ import org.apache.kafka.clients.producer.{KafkaProducer, ProducerRecord}
 import org.apache.kafka.common.TopicPartition
 import org.apache.kafka.common.errors.{RetriableException, WakeupException}
 import org.apache.kafka.common.serialization.{ByteArrayDeserializer, ByteArraySerializer}
+import scala.annotation.tailrec
 import scala.concurrent.{Future, Promise}
 import scala.jdk.CollectionConverters.*
 import scala.util.control.NonFatal
@@ -19,13 +21,16 @@ import scala.util.control.NonFatal
   *   told of what came at once, in its order
   * @param lost
   *   told why a message was not written in time
+  * @param absent
+  *   told why the broker cannot be used yet, whenever that is another reason
   */
 private[kafka] final class KafkaPipe(
     topics: KafkaTopics,
     from: String,
     to: String,
     received: Seq[Array[Byte]] => Unit,
-    lost: String => Unit
+    lost: String => Unit,
+    absent: String => Unit
 ):
   import KafkaPipe.*
 
@@ -40,7 +45,9 @@ private[kafka] final class KafkaPipe(
   // Since a message was not written. A broker that is back may be a new one, without topics.
   @volatile private var isDoubtful = false
 
-  /** Completes when what is written from now on by others will be read; fails where there is no broker. */
+  /** Completes when what is written from now on by others will be read; fails where the broker refuses, and is then not
+    * tried again.
+    */
   def ready: Future[Unit] = reading.future
 
   def start(): Unit =
@@ -66,13 +73,21 @@ private[kafka] final class KafkaPipe(
     started.setDaemon(true)
     started.start()
 
+  /** Whether the broker can be used, once it is there. */
+  @tailrec
+  private def isReached(told: String = ""): Boolean = !closing.get && (topics.made() match
+    case Right(()) => true
+    case Left(no)  =>
+      if no.isFinal then
+        val _ = reading.tryFailure(IOException(no.reason))
+        false
+      else
+        if no.reason != told then absent(no.reason)
+        Thread.sleep(TryEveryMs)
+        isReached(no.reason))
+
   private def read(): Unit =
-    val made =
-      Iterator.continually(topics.made()).map: answer =>
-        if answer.isLeft && !closing.get then Thread.sleep(TryEveryMs)
-        answer
-      .find(answer => answer.isRight || closing.get)
-    if made.exists(_.isRight) then
+    if isReached() then
       val settings = KafkaTopics.settings(topics)(
         "fetch.max.wait.ms"      -> "100",
         "fetch.min.bytes"        -> "1",

@@ -6,17 +6,23 @@ import skein.solver.SolverDesk
 /** A solver behind a Kafka broker. One at a prefix: a second one would answer everything once more.
   *
   * @param told
-  *   a line for a person, of what could not be written
+  *   a line for a person, of why the broker cannot be used yet, or what could not be written
   */
 final class KafkaSolver(topics: KafkaTopics, desk: SolverDesk, told: String => Unit):
-  private val pipe: KafkaPipe =
-    KafkaPipe(topics, from = topics.questions, to = topics.answers, came => taken(came), told)
+  private val pipe: KafkaPipe = KafkaPipe(
+    topics,
+    from = topics.questions,
+    to = topics.answers,
+    came => taken(came),
+    reason => told(s"the broker at ${topics.broker} does not take answers: $reason"),
+    told
+  )
 
   // What is no message is counted there; the next ones are read.
   private def taken(came: Seq[Array[Byte]]): Unit =
     desk.received(came, message => pipe.send(message): Unit): Unit
 
-  /** Completes when it takes questions; it waits for a broker that is not there yet. */
+  /** Completes when it takes questions; it waits for a broker that is not there yet, and fails where one refuses it. */
   def start(): Future[Unit] =
     pipe.start()
     pipe.ready

@@ -3,7 +3,12 @@ package skein.kafka
 import java.util.Properties
 import java.util.concurrent.{ExecutionException, TimeUnit}
 import org.apache.kafka.clients.admin.{Admin, NewTopic}
-import org.apache.kafka.common.errors.TopicExistsException
+import org.apache.kafka.common.errors.{
+  AuthenticationException,
+  AuthorizationException,
+  SslAuthenticationException,
+  TopicExistsException
+}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import scala.util.control.NonFatal
@@ -25,7 +30,7 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
     * @return
     *   or why the broker cannot be used
     */
-  private[kafka] def made(): Either[String, Unit] =
+  private[kafka] def made(): Either[KafkaTopics.Absent, Unit] =
     val settings =
       KafkaTopics.settings(this)("default.api.timeout.ms" -> "5000", "request.timeout.ms" -> "2000")
     try
@@ -33,15 +38,44 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
         for name <- Seq(questions, answers) do
           val short = Map("retention.ms" -> "600000", "segment.bytes" -> "16777216").asJava
           val topic = NewTopic(name, 1, 1.toShort).configs(short)
-          try admin.createTopics(java.util.List.of(topic)).all.get(5, TimeUnit.SECONDS): Unit
+          // It says by itself what it waited for in vain, before that.
+          try admin.createTopics(java.util.List.of(topic)).all.get(8, TimeUnit.SECONDS): Unit
           catch case exists: ExecutionException if exists.getCause.isInstanceOf[TopicExistsException] => ()
       Right(())
     catch
-      case NonFatal(error) =>
-        val why = Option(error.getCause).getOrElse(error)
-        Left(s"no Kafka broker at $broker: ${Option(why.getMessage).getOrElse(why.toString)}")
+      case NonFatal(error) => Left(KafkaTopics.Absent.of(this, error))
 
 object KafkaTopics:
+
+  /** A broker that cannot be used.
+    *
+    * @param isFinal
+    *   whether it was there and refused, so that to try again helps nobody
+    */
+  private[kafka] final case class Absent(reason: String, isFinal: Boolean)
+
+  private[kafka] object Absent:
+    def of(topics: KafkaTopics, error: Throwable): Absent =
+      val at = topics.broker
+      causes(error).collectFirst {
+        case _: SslAuthenticationException =>
+          s"no trusted connection to the Kafka broker at $at: ${rootOf(error)}; expected certificates of one set at both " +
+            "sides, which name the host"
+        case _: AuthenticationException | _: AuthorizationException =>
+          s"the Kafka broker at $at refuses: ${rootOf(error)}"
+      } match
+        case Some(reason) => Absent(reason, isFinal = true)
+        case None         =>
+          val plain = if topics.security.isEmpty then "; does one listen there, without TLS?" else ""
+          Absent(s"no Kafka broker at $at: ${rootOf(error)}$plain", isFinal = false)
+
+  private def causes(error: Throwable): Iterator[Throwable] =
+    Iterator.iterate(error)(_.getCause).takeWhile(_ != null)
+
+  /** The words of what began it. */
+  private[kafka] def rootOf(error: Throwable): String =
+    val root = causes(error).toVector.last
+    Option(root.getMessage).getOrElse(root.toString)
 
   /** Of a client: it comes back soon when a broker does. */
   private[kafka] def settings(topics: KafkaTopics)(own: (String, String)*): Properties =

@@ -27,7 +27,7 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
   private var broker = Option.empty[KafkaBroker]
 
   private def started(port: Int): KafkaBroker =
-    val one = KafkaBroker.start(folder, port).fold(fail(_), identity)
+    val one = KafkaBroker.start(folder, Address("127.0.0.1", port)).fold(fail(_), identity)
     broker = Some(one)
     one
 
@@ -57,7 +57,13 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
       solver = Some(SolverChoice.Kafka(at, prefix))
     )
     val solvers = (1 to repeats).map: id =>
-      val desk = SolverDesk(id, "same", Briefing.plan(_).map(_.fleet), Clock.system, system.dispatcher)
+      val desk = SolverDesk(
+        id,
+        "same",
+        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+        Clock.system,
+        system.dispatcher
+      )
       KafkaSolver(topics, desk, _ => ())
     Await.result(Future.traverse(solvers)(_.start()), 60.seconds): Unit
     val assembler = FlightAssembler(
@@ -125,6 +131,6 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
   test("a broker whose port is taken is not started, and says so"):
     val at    = broker.get.address
     val other = Files.createTempDirectory("kafka-other")
-    val no    = KafkaBroker.start(other, at.port)
+    val no    = KafkaBroker.start(other, at)
     KafkaBroker.delete(other)
-    assertEquals(no.map(_ => ()), Left(s"cannot start a broker at $at: port ${at.port} is taken"))
+    assertEquals(no.map(_ => ()), Left(s"cannot start a broker at $at: Address already in use"))

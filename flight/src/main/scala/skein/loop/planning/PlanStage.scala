@@ -4,7 +4,7 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.Flow
-import scala.concurrent.Future
+import scala.concurrent.{ExecutionContext, Future}
 import skein.planning.{JointPlan, JointPlanner, Part, PlanProblem, PlannerSettings}
 import skein.units.Span
 
@@ -40,6 +40,22 @@ object PlanStage:
           )
       Answer(best, found.map(_.slices), unsearchedS)
 
+  /** Searches until the deadline from what is left of the last plans, by the workers.
+    *
+    * @param planner
+    *   of whoever asks, who waits for one search before the next
+    */
+  def searched(
+      problem: PlanProblem,
+      last: Option[Answer],
+      deadline: Span,
+      workers: PlanWorkers,
+      planner: JointPlanner
+  )(using system: ActorSystem): Future[Answer] =
+    import system.dispatcher
+    val search = workers.begin(problem, planner.resumed(problem, last.map(_.best)))
+    after(deadline.toDuration, system.scheduler)(Future(Answer.of(search.finish(), problem, last)))
+
   /** Plans upon each element for several vehicles together, or for one: searches until the deadline from what is left of
     * the last plans, and then decides with the best found. The search never runs on the stream's thread, unless the
     * workers are [[CountedPlanWorkers]].
@@ -62,17 +78,14 @@ object PlanStage:
       pose: (M, O) => Vector[Part],
       decide: (M, O, Vector[Part], Answer) => (M, D)
   )(using system: ActorSystem): Flow[O, D, NotUsed] =
-    import system.dispatcher
-    val planner = JointPlanner()
+    given ExecutionContext = ExecutionContext.parasitic
+    val planner            = JointPlanner()
     Flow[O]
       .scanAsync(Turn[M, D](start, None, None)): (turn, element) =>
         val problem = PlanProblem(settings, pose(turn.memory, element))
-        val search  = workers.begin(problem, planner.resumed(problem, turn.last.map(_.best)))
-        after(deadline.toDuration, system.scheduler):
-          Future:
-            val answer             = Answer.of(search.finish(), problem, turn.last)
-            val (memory, decision) = decide(turn.memory, element, problem.parts, answer)
-            Turn(memory, Some(answer), Some(decision))
+        searched(problem, turn.last, deadline, workers, planner).map: answer =>
+          val (memory, decision) = decide(turn.memory, element, problem.parts, answer)
+          Turn(memory, Some(answer), Some(decision))
       .collect(Function.unlift(_.decision))
 
   /** @param last

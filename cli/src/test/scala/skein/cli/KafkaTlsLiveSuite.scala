@@ -1,0 +1,127 @@
+package skein.cli
+
+import java.nio.file.Path
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, Promise}
+import skein.cluster.Certificates
+import skein.flight.{FlightAssembler, Solvers}
+import skein.kafka.{KafkaBroker, KafkaLink, KafkaSolver, KafkaTopics}
+import skein.link.{Address, TcpTransport}
+import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.record.MemoryRecorder
+import skein.scenario.Scenarios
+import skein.settings.{FlySettings, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.solver.*
+import skein.testing.{TemporaryFolders, Unhurried}
+import skein.units.*
+
+/** A Kafka broker that shows a certificate, and asks for one, on loopback. */
+class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+  private given system: ActorSystem = ActorSystem("KafkaTlsLiveSuite")
+  private given Scenarios           = Scenarios.ours
+
+  private def certificates(): Map[String, String] =
+    val folder = Certificates.make(temporaryFolder(), Seq("127.0.0.1")).fold(fail(_), _.head)
+    securityOf(folder)
+
+  /** What `--tls` comes to. */
+  private def securityOf(folder: Path): Map[String, String] =
+    SolverSecurity(Some(folder.toString), None)
+      .checked(Some(SolverChoice.Kafka(loopback, "skein")))
+      .fold(fail(_), _.kafka)
+
+  private lazy val loopback = Address("127.0.0.1", 0)
+  private lazy val own      = certificates()
+  private lazy val stranger = certificates()
+  private lazy val held     = temporaryFolder()
+  private lazy val broker   = KafkaBroker.start(held, loopback, own).fold(fail(_), identity)
+
+  override def afterAll(): Unit =
+    broker.close()
+    KafkaBroker.delete(held)
+    Await.result(system.terminate(), 20.seconds): Unit
+    super.afterAll()
+
+  private def solver(topics: KafkaTopics)(told: String => Unit) =
+    KafkaSolver(
+      topics,
+      SolverDesk(
+        1,
+        "same",
+        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+        Clock.system,
+        system.dispatcher
+      ),
+      told
+    )
+
+  /** A short flight, or why it was not flown. */
+  private def flown(
+      prefix: String,
+      security: Map[String, String],
+      patience: Span
+  ): Either[String, MemoryRecorder] =
+    val settings = FlySettings(
+      List(LoopKind.Stream),
+      List(LatencyProfile.none),
+      duration = Span.ofSeconds(3),
+      period = Span.ofMillis(100),
+      seed = 7,
+      fallback = Fallback.Hover,
+      solver = Some(SolverChoice.Kafka(broker.address, prefix))
+    )
+    val topics    = KafkaTopics(broker.address, prefix)(security)
+    val assembler = FlightAssembler(
+      TcpTransport(),
+      Clock.system,
+      settings,
+      None,
+      solvers = Solvers("same", _ => Right(KafkaLink(topics)), patience)
+    )
+    val plan     = settings.plans.last
+    val recorder = MemoryRecorder(assembler.heading(plan, "real"))
+    Await.result(assembler.start(plan, recorder), 60.seconds).map: flying =>
+      assertEquals(Await.result(flying.landed, 60.seconds).outcome, Outcome.Completed)
+      recorder
+
+  test("with certificates of one set a flight is decided by a solver behind a broker"):
+    val topics = KafkaTopics(broker.address, "trusted")(own)
+    val serves = solver(topics)(_ => ())
+    Await.result(serves.start(), 60.seconds)
+    val recorder = flown("trusted", own, Span.ofSeconds(30)).fold(fail(_), identity)
+    Await.result(serves.close(), 20.seconds)
+    assert(recorder.recording.solved.sizeIs > 10, recorder.recording.solved.size)
+
+  /** Why a solver gives up. */
+  private def refused(at: Address, security: Map[String, String]): String =
+    val serves = solver(KafkaTopics(at, "refused")(security))(_ => ())
+    val why    = Await.result(serves.start().failed, 30.seconds).getMessage
+    Await.result(serves.close(), 20.seconds)
+    why
+
+  private def notTrusted(at: Address) = s"no trusted connection to the Kafka broker at $at: "
+
+  test("who shows no certificate, or one of another set, is refused at once, and told why"):
+    val silent = own.filterNot((key, _) => key.startsWith("ssl.key"))
+    for shown <- Seq(silent, stranger) do
+      assert(clue(refused(broker.address, shown)).startsWith(notTrusted(broker.address)))
+
+  test("a broker that is called by a name which its certificate does not have is told nothing"):
+    val other = Address("localhost", broker.address.port)
+    assert(clue(refused(other, own)).startsWith(notTrusted(other)))
+
+  test("a flight that the broker refuses is not flown, long before its patience ends, and says why"):
+    val patience = Span.ofSeconds(600)
+    val why      = flown("stranger", stranger, patience).swap.getOrElse(fail("it was flown"))
+    assert(clue(why).contains(notTrusted(broker.address)))
+
+  test("who does not speak TLS hears nothing, and is told where it looked"):
+    val told   = Promise[String]()
+    val serves = solver(KafkaTopics(broker.address, "plain")())(line => told.trySuccess(line): Unit)
+    val never  = serves.start()
+    val why    = Await.result(told.future, 60.seconds)
+    assert(clue(why).startsWith(s"no Kafka broker at ${broker.address}: "))
+    assert(!never.isCompleted)
+    Await.result(serves.close(), 20.seconds)

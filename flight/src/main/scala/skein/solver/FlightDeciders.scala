@@ -1,0 +1,92 @@
+package skein.solver
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.loop.{Chosen, Decider, JointPlanning, LoopKind, PlanSettings}
+import skein.loop.planning.{PlanStage, PlanWorkers}
+import skein.planning.{JointPlanner, PlanProblem}
+import skein.policy.Fleet
+import skein.settings.RecordedPlan
+import skein.units.*
+
+/** Who decides for one flight elsewhere, as its own process would: the vehicles' policies, and, where its loop plans, a
+  * planner for those that plan.
+  *
+  * @param plans
+  *   absent where nobody plans
+  */
+final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans] = None):
+
+  // Whoever plans is asked one question at a time.
+  private val planner = JointPlanner()
+
+  /** Those with whom a vehicle is decided for, in their order; itself alone unless it plans. */
+  def together(vehicle: Int): Vector[Int] =
+    plans.map(_.planning.vehicles).filter(_.contains(vehicle)).getOrElse(Vector(vehicle))
+
+  /** Decides on this thread, or plans until the deadline of plans.
+    *
+    * @param held
+    *   what is remembered of the answer that the question goes on from; absent where nothing is
+    * @param now
+    *   on the controller's clock
+    * @return
+    *   for each vehicle that is asked for, with what is to be remembered
+    */
+  def decide(question: Question, held: Option[Any], now: Instant)(using
+      ActorSystem
+  ): Future[(Vector[Chosen], Any)] =
+    plans.filter(_.planning.vehicles.contains(question.vehicle)) match
+      case Some(plans) =>
+        // A memory is this planner's own.
+        planned(plans, question, held.map(_.asInstanceOf[PlanStage.Answer]), now)
+      case None =>
+        val decider          = Decider(fleet, question.vehicle)
+        val memory           = question.deciders.head.memory.copy(held = held.getOrElse(decider.start.held))
+        val (next, decision) = decider.decide(memory, question.view, now)
+        Future.successful((Vector(Chosen.of(decision)), next.held))
+
+  private def planned(
+      plans: FlightDeciders.Plans,
+      question: Question,
+      last: Option[PlanStage.Answer],
+      now: Instant
+  )(using ActorSystem): Future[(Vector[Chosen], PlanStage.Answer)] =
+    import plans.planning
+    // A policy that decides in a plan's place remembers nothing.
+    val memories =
+      question.deciders.map((vehicle, memory) => memory.copy(held = Decider(fleet, vehicle).start.held))
+    val views   = memories.map(_ => question.view)
+    val problem = PlanProblem(planning.planner, planning.pose(memories, views, now))
+    PlanStage
+      .searched(problem, last, plans.deadline, plans.workers, planner)
+      .map { answer =>
+        val (_, made) = planning.decide(memories, views, now, problem.parts, answer)
+        (made.map(one => Chosen.of(one.decision, Some(one.report(answer.slices)))), answer)
+      }(using ExecutionContext.parasitic)
+
+  /** Ends what it plans with. */
+  def close(): Unit = plans.foreach(_.workers.close())
+
+object FlightDeciders:
+
+  /** @param deadline
+    *   from a question until its plans are used, whatever was found by then
+    */
+  final case class Plans(planning: JointPlanning, deadline: Span, workers: PlanWorkers)
+
+  /** Those of a flight.
+    *
+    * @param workers
+    *   what a flight that plans searches with
+    */
+  def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): FlightDeciders =
+    val fleet = flown.plan.fleet(flown.settings)
+    val how   = flown.settings.planningByModel
+    val plans =
+      if flown.plan.loop != LoopKind.Plan then None
+      else
+        JointPlanning
+          .of(fleet, how, flown.plan.seed)
+          .map(Plans(_, how.deadline, workers(how)))
+    FlightDeciders(fleet, plans)
