@@ -2,7 +2,7 @@ package skein.airsim
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
-import skein.policy.{Action, Yaw as ActionYaw}
+import skein.policy.{Action, Yaw}
 import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
@@ -19,7 +19,6 @@ import skein.units.*
   */
 final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using system: ActorSystem)
     extends VehiclePort:
-  import AirSimVehicle.*
   import VehicleErrors.errorOf
   import system.dispatcher
 
@@ -34,13 +33,13 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]] = action match
     case Action.VelocityAt(north, east, down, yaw) =>
       val velocity = Vector3(north, east, 0)
-      sent(withdrawn => multirotor.moveByVelocityZ(velocity, down, lasts, yawOf(yaw), Some(withdrawn)))
+      sent(withdrawn => multirotor.moveByVelocityZ(velocity, down, lasts, yaw, Some(withdrawn)))
     case Action.Velocity(velocityNed, yaw) =>
-      sent(withdrawn => multirotor.moveByVelocity(velocityNed, lasts, yawOf(yaw), Some(withdrawn)))
+      sent(withdrawn => multirotor.moveByVelocity(velocityNed, lasts, yaw, Some(withdrawn)))
     case Action.Position(positionNed, speed, yaw) =>
-      sent(_ => multirotor.moveToPosition(positionNed, speed, timeout = lasts, yaw = yawOf(yaw)))
-    case Action.Turn(ActionYaw.Towards(heading))   => sent(_ => multirotor.rotateToYaw(heading, lasts))
-    case Action.Turn(ActionYaw.Turning(rate))      => sent(_ => multirotor.rotateByYawRate(rate, lasts))
+      sent(_ => multirotor.moveToPosition(positionNed, speed, timeout = lasts, yaw = yaw))
+    case Action.Turn(Yaw.Towards(heading))         => sent(_ => multirotor.rotateToYaw(heading, lasts))
+    case Action.Turn(Yaw.Turning(rate))            => sent(_ => multirotor.rotateByYawRate(rate, lasts))
     case Action.Turn(_)                            => hover()
     case Action.Attitude(roll, pitch, yaw, thrust) =>
       sent(_ => multirotor.moveByRollPitchYawThrottle(roll, pitch, yaw, thrust, lasts))
@@ -54,13 +53,6 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
   private def sent(
       call: Future[Unit] => Future[Either[RpcError, Boolean]]
   ): Future[Either[VehicleError, Boolean]] = moves.send(call).map(_.left.map(errorOf))
-
-object AirSimVehicle:
-  private def yawOf(yaw: ActionYaw): Yaw = yaw match
-    case ActionYaw.Still            => Yaw.Still
-    case ActionYaw.Towards(heading) => Yaw.Towards(heading)
-    case ActionYaw.Turning(rate)    => Yaw.Turning(rate)
-    case ActionYaw.Forward          => Yaw.Forward
 
 /** AirSim's own pause and steps. */
 final class AirSimTime(client: AirSimClient) extends SteppedTime:

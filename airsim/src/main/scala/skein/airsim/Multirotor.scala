@@ -2,6 +2,7 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
+import skein.policy.Yaw
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -21,6 +22,7 @@ final class Multirotor(
     connectionKey: Int = 0
 ) extends VehicleClient(client, name, originNed, connectionKey),
       AttitudeMoves:
+  import Multirotor.*
   private given ExecutionContext = ExecutionContext.parasitic
 
   // ---- state
@@ -229,3 +231,13 @@ object Multirotor:
   /** The vehicle of this name; its origin is read from the simulator's settings. */
   def named(client: AirSimClient, name: String): Future[Either[AirSimError, Multirotor]] =
     VehicleClient.named(client, name, Multirotor(client, name, _, _))
+
+  extension (yaw: Yaw)
+    private def mode: YawMode = yaw match
+      case Yaw.Still            => YawMode.Still
+      case Yaw.Towards(heading) => YawMode(is_rate = false, math.toDegrees(heading.value).toFloat)
+      case Yaw.Turning(rate)    => YawMode(is_rate = true, math.toDegrees(rate).toFloat)
+      case Yaw.Forward          => YawMode(is_rate = false, 0)
+
+    /** AirSim's: 1 forward only, 0 any direction. */
+    private def drivetrain: Int = if yaw == Yaw.Forward then 1 else 0

@@ -1,9 +1,8 @@
 package skein.airsim
 
-import scala.util.control.NonFatal
 import skein.scenario.Equipment
 import skein.units.*
-import ujson.{Num, Obj, Value}
+import ujson.Obj
 
 /** Where a vehicle starts, which is where its own frame has its origin.
   *
@@ -52,15 +51,6 @@ final case class WorldSettings(
   def defaultVehicle: VehicleSettings =
     vehicles.filter(_.firstPerson).maxByOption(_.name).getOrElse(vehicles.minBy(_.name))
 
-/** Why a `settings.json` cannot be used: `path` names the key. */
-enum SettingsError:
-  case NotJson(reason: String)
-  case Unexpected(path: String, expected: String, found: String)
-
-  def message: String = this match
-    case NotJson(reason)                   => s"not JSON: $reason"
-    case Unexpected(path, expected, found) => s"$path: expected $expected, found $found"
-
 object WorldSettings:
 
   /** The default vehicle's type and name in AirSim. */
@@ -77,32 +67,7 @@ object WorldSettings:
   val Default: WorldSettings = WorldSettings(Vector(VehicleSettings(SimpleFlight)))
 
   /** Reads a `settings.json`. Without vehicles there is one, named after its type, as in AirSim. */
-  def parse(text: String): Either[SettingsError, WorldSettings] =
-    try
-      ujson.read(text) match
-        case root: Obj => Right(read(root, text))
-        case other     => Left(SettingsError.Unexpected("the whole", "an object", kindOf(other)))
-    catch
-      case e: Misfit   => Left(e.error)
-      case NonFatal(e) => Left(notJson(text, e))
-
-  /** Where a text stopped to be JSON, and what is wrong there.
-    *
-    * @param mistake
-    *   of `ujson`, which names the mistake in its cause, and before it the whole path to it
-    */
-  def notJson(text: String, mistake: Throwable): SettingsError =
-    Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {
-      case wrong: ujson.ParseException =>
-        val line = text.take(wrong.index).count(_ == '\n') + 1
-        s"${wrong.clue}, in line $line"
-      case _: ujson.IncompleteParseException => "it ends too early"
-    } match
-      case Some(reason) => SettingsError.NotJson(reason)
-      case None         => SettingsError.NotJson(s"${mistake.getMessage}".take(MostOfReason))
-
-  private val MostCauses   = 16
-  private val MostOfReason = 200
+  def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
   /** A `settings.json` with these vehicles, and what they carry to see by. */
   def render(vehicles: Seq[VehicleSettings], equipment: Seq[Equipment] = Nil): String =
@@ -146,114 +111,60 @@ object WorldSettings:
     )
   )
 
-  /** Leaves the reading at the first value that does not fit. */
-  final private class Misfit(val error: SettingsError) extends RuntimeException(error.message)
-
-  private def read(root: Obj, text: String): WorldSettings =
-    val unless   = sensors(root, "", "DefaultSensors", SensorKind.Default)
-    val usual    = if string(root, "", "SimMode", "") == CarMode then PhysXCar else SimpleFlight
-    val vehicles = section(root, "Vehicles").value.toVector.map: (name, value) =>
-      vehicle(name, asObject(s"Vehicles.$name", value), usual, unless)
-    val origin = section(root, "OriginGeopoint")
+  private def read(root: SettingsSection, text: String): WorldSettings =
+    val unless   = sensors(root.sections("DefaultSensors"), SensorKind.Default)
+    val usual    = if root.text("SimMode", "") == CarMode then PhysXCar else SimpleFlight
+    val vehicles = root.sections("Vehicles").map((name, fields) => vehicle(name, fields, usual, unless))
+    val origin   = root.section("OriginGeopoint")
     WorldSettings(
       if vehicles.isEmpty then Vector(VehicleSettings(usual, vehicleType = usual)) else vehicles,
       GeoLocation(
-        number(origin, "OriginGeopoint", "Latitude", DefaultOrigin.latitudeDeg),
-        number(origin, "OriginGeopoint", "Longitude", DefaultOrigin.longitudeDeg),
-        Metres(number(origin, "OriginGeopoint", "Altitude", DefaultOrigin.altitude.value))
+        origin.number("Latitude", DefaultOrigin.latitudeDeg),
+        origin.number("Longitude", DefaultOrigin.longitudeDeg),
+        Metres(origin.number("Altitude", DefaultOrigin.altitude.value))
       ),
-      vector(section(root, "Wind"), "Wind"),
+      root.section("Wind").vector,
       clockSpeed(root),
       text
     )
 
-  private def clockSpeed(root: Obj): Double =
-    val speed = number(root, "", "ClockSpeed", 1.0)
-    if speed > 0 then speed
-    else throw Misfit(SettingsError.Unexpected("ClockSpeed", "a number above 0", speed.toString))
+  private def clockSpeed(root: SettingsSection): Double =
+    val speed = root.number("ClockSpeed", 1.0)
+    if speed > 0 then speed else root.fail("ClockSpeed", "a number above 0", speed.toString)
 
   private def vehicle(
       name: String,
-      fields: Obj,
+      fields: SettingsSection,
       usual: String,
       unless: Map[String, SensorKind]
   ): VehicleSettings =
-    val path = s"Vehicles.$name"
     VehicleSettings(
       name,
-      vector(fields, path),
-      Radians(math.toRadians(number(fields, path, "Yaw", 0))),
-      string(fields, path, "VehicleType", usual) match
+      fields.vector,
+      Radians(math.toRadians(fields.number("Yaw", 0))),
+      fields.text("VehicleType", usual) match
         case ""   => usual
-        case kind => kind
+        case kind =>
+          kind
       ,
-      flag(fields, path, "IsFpvVehicle", default = false),
-      string(fields, path, "DefaultVehicleState", "Armed") match
+      fields.flag("IsFpvVehicle", unless = false),
+      fields.text("DefaultVehicleState", "Armed") match
         case "Armed"                 => true
         case "Inactive" | "Disarmed" => false
-        case other                   =>
-          val expected = "Armed, Inactive or Disarmed"
-          throw Misfit(SettingsError.Unexpected(s"$path.DefaultVehicleState", expected, s"'$other'"))
+        case other => fields.fail("DefaultVehicleState", "Armed, Inactive or Disarmed", s"'$other'")
       ,
-      sensors(fields, path, "Sensors", unless)
+      sensors(fields.sections("Sensors"), unless)
     )
 
-  /** Those listed under `key` that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that
-    * are not known, which forks have, are passed over.
+  /** Those that are enabled, and of the kinds that none is listed of, those of `unless`. Kinds that are not known, which
+    * forks have, are passed over.
     */
   private def sensors(
-      fields: Obj,
-      path: String,
-      key: String,
+      all: Vector[(String, SettingsSection)],
       unless: Map[String, SensorKind]
   ): Map[String, SensorKind] =
     val listed =
-      for (name, value) <- section(fields, key, path).value.toVector yield
-        val at     = s"$path.$key.$name".stripPrefix(".")
-        val sensor = asObject(at, value)
-        (
-          name,
-          SensorKind.of(number(sensor, at, "SensorType", 0)),
-          flag(sensor, at, "Enabled", default = false)
-        )
+      for (name, sensor) <- all
+      yield (name, SensorKind.of(sensor.number("SensorType", 0)), sensor.flag("Enabled", unless = false))
     unless.filterNot((_, kind) => listed.exists(_._2.contains(kind))) ++
       listed.collect { case (name, Some(kind), true) => name -> kind }
-
-  private def vector(fields: Obj, path: String): Vector3 =
-    Vector3(number(fields, path, "X", 0), number(fields, path, "Y", 0), number(fields, path, "Z", 0))
-
-  private def number(fields: Obj, path: String, key: String, default: Double): Double =
-    fields.value.get(key) match
-      case Some(Num(value)) => value
-      case None             => default
-      case Some(other)      =>
-        throw Misfit(SettingsError.Unexpected(s"$path.$key".stripPrefix("."), "a number", kindOf(other)))
-
-  private def string(fields: Obj, path: String, key: String, default: String): String =
-    fields.value.get(key) match
-      case Some(ujson.Str(value)) => value
-      case None                   => default
-      case Some(other)            =>
-        throw Misfit(SettingsError.Unexpected(s"$path.$key".stripPrefix("."), "a string", kindOf(other)))
-
-  private def flag(fields: Obj, path: String, key: String, default: Boolean): Boolean =
-    fields.value.get(key) match
-      case Some(ujson.Bool(value)) => value
-      case None                    => default
-      case Some(other)             =>
-        throw Misfit(SettingsError.Unexpected(s"$path.$key", "true or false", kindOf(other)))
-
-  private def section(root: Obj, key: String, path: String = ""): Obj =
-    root.value.get(key).fold(Obj())(asObject(s"$path.$key".stripPrefix("."), _))
-
-  private def asObject(path: String, value: Value): Obj = value match
-    case fields: Obj => fields
-    case other       => throw Misfit(SettingsError.Unexpected(path, "an object", kindOf(other)))
-
-  private def kindOf(value: Value): String = value match
-    case _: Obj        => "an object"
-    case _: ujson.Arr  => "an array"
-    case _: ujson.Str  => "a string"
-    case _: Num        => "a number"
-    case _: ujson.Bool => "a boolean"
-    case ujson.Null    => "null"

@@ -1,12 +1,11 @@
 package skein.budget
 
-import java.nio.ByteBuffer
 import scala.collection.immutable.ArraySeq
+import skein.bytes.Codec
 import skein.optimise.RunningStats
-import skein.search.{JsonText, StatsBytes}
+import skein.search.BlockBytes
+import skein.search.BlockBytes.given
 import skein.signal.LatencyDistribution
-import skein.units.Span
-import upickle.default.{ReadWriter, readwriter}
 
 /** Some cells of a budget's map, which any process that was asked the same question flies to the same bits.
   *
@@ -15,12 +14,11 @@ import upickle.default.{ReadWriter, readwriter}
   * @param episodes
   *   of each link
   */
-final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int)
-    derives ReadWriter:
+final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int):
 
-  def bytes: ArraySeq[Byte] = JsonText.bytes(this)
+  def bytes: ArraySeq[Byte] = BlockBytes.of(this)
 
-  /** Of each link what it came to, as [[StatsBytes]].
+  /** Of each link what it came to.
     *
     * @return
     *   or why there is none
@@ -29,22 +27,18 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
     for
       one <- subjects.lift(number).toRight(s"expected one of ${subjects.size} subjects, came number $number")
       tallies <- one.tallies(BudgetCells(links, episodes))
-    yield StatsBytes.write(tallies)
+    yield BlockBytes.of(tallies)
 
   /** What an answer says. */
   def tallies(answer: ArraySeq[Byte]): Either[String, Vector[RunningStats]] =
-    val expected = StatsBytes.Each * links.size
-    val in       = ByteBuffer.wrap(answer.toArray)
-    Either.cond(
-      answer.length == expected,
-      Vector.fill(links.size)(StatsBytes.read(in)),
-      s"expected an answer of $expected bytes to a block, came ${answer.length}"
-    )
+    BlockBytes
+      .read[Vector[RunningStats]](answer, "an answer to a block of a budget")
+      .filterOrElse(_.size == links.size, s"expected an answer for ${links.size} cells, came one for others")
 
 object BudgetBlock:
-  private given ReadWriter[Span]                = readwriter[Long].bimap(_.toNanos, Span.ofNanos)
-  private given ReadWriter[LatencyDistribution] = ReadWriter.derived
+  private given Codec[LatencyDistribution] = Codec.derived
+  private given Codec[BudgetBlock]         = Codec.derived
 
   /** @return or what was expected, and what came */
   def read(bytes: ArraySeq[Byte]): Either[String, BudgetBlock] =
-    JsonText.read[BudgetBlock](bytes, "a block of a budget")
+    BlockBytes.read[BudgetBlock](bytes, "a block of a budget")

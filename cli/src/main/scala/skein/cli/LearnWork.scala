@@ -1,13 +1,13 @@
 package skein.cli
 
-import java.nio.charset.StandardCharsets.UTF_8
-import java.nio.{BufferUnderflowException, ByteBuffer}
 import scala.collection.immutable.ArraySeq
+import skein.bytes.Codec
 import skein.cluster.{Solver, Solvers}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios
 import skein.search.*
+import skein.search.BlockBytes.given
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile}
 import skein.training.{LearnQuestion, LearnSetup}
 import skein.units.{Expect, Span}
@@ -46,17 +46,16 @@ private[cli] object LearnWork:
   private def answer(setup: LearnSetup, by: Judge => ValueEvaluator, work: ArraySeq[Byte])(using
       Scenarios
   ): ArraySeq[Byte] =
-    def refuse(wrong: String) = throw IllegalArgumentException(wrong)
-    work.headOption match
-      case Some(Episodes) => SearchBlock.read(work.drop(1)).fold(refuse, _.answer(by))
-      case Some(Flight)   => flightAnswer(setup, work.drop(1)).fold(refuse, identity)
-      case other          => refuse(s"expected a block of learning, came one of the kind $other")
+    val answered = BlockBytes.read[Block](work, "a block of learning").flatMap:
+      case Block.Episodes(block)         => SearchBlock.read(block).map(_.answer(by))
+      case Block.Flight(number, numbers) => landed(setup, number, numbers).map(BlockBytes.of(_))
+    answered.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
   /** Blocks of episodes, among others. */
   def episodes(run: BlockExecutor): BlockExecutor = new BlockExecutor:
     def cancel(): Unit                                                           = run.cancel()
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
-      run.compute(works.map(_.prepended(Episodes)), onAnswer)
+      run.compute(works.map(work => BlockBytes.of(Block.Episodes(work))), onAnswer)
 
   /** Flights of the scenario with a policy in the place of its own, as the commands fly it.
     *
@@ -91,43 +90,34 @@ private[cli] object LearnWork:
   def distances(run: BlockExecutor, policy: PolicyFile, count: Int)(
       onWait: => Unit
   ): Either[String, Vector[Option[Double]]] =
-    val numbers = policy.parameters
-    val blocks  = Vector.tabulate(count): number =>
-      val out = ByteBuffer.allocate(1 + 8 + 8 * numbers.size).put(Flight).putLong(number)
-      numbers.foreach(out.putDouble)
-      ArraySeq.unsafeWrapArray(out.array)
+    val blocks = Vector.tabulate(count)(number => BlockBytes.of(Block.Flight(number, policy.parameters)))
     run
       .computed(blocks)(onWait)
       .flatMap(_.toRight("no worker is left"))
       .flatMap(Expect.each(_)(distance))
 
-  private def flightAnswer(setup: LearnSetup, work: ArraySeq[Byte])(using
+  private def landed(setup: LearnSetup, number: Int, parameters: Vector[Double])(using
       Scenarios
-  ): Either[String, ArraySeq[Byte]] =
-    val in = ByteBuffer.wrap(work.toArray)
-    try
-      val number  = in.getLong.toInt
-      val weights = Vector.fill(in.remaining / 8)(in.getDouble)
-      for (settings, plans) <-
-          flights(setup, PolicyFile(setup.role, setup.family, weights), number + 1)
-      yield SpreadFlights.one(settings, plans(number)) match
-        case Left(missing) =>
-          ArraySeq.from(missing.message.take(MostReason).getBytes(UTF_8)).prepended(NotFlown)
-        case Right(flown) =>
-          val out = ByteBuffer.allocate(9).put(Flown)
-          setup.game.came(flown).foreach(out.putDouble)
-          ArraySeq.unsafeWrapArray(out.array.take(out.position()))
-    catch case _: BufferUnderflowException => Left(s"a flight's block is cut off after ${work.length} bytes")
+  ): Either[String, Landed] =
+    for (settings, plans) <- flights(setup, PolicyFile(setup.role, setup.family, parameters), number + 1)
+    yield SpreadFlights.one(settings, plans(number)) match
+      case Left(missing) => Landed.NotFlown(missing.message.take(MostReason))
+      case Right(flown)  => Landed.Flown(setup.game.came(flown))
 
   private def distance(answer: ArraySeq[Byte]): Either[String, Option[Double]] =
-    answer.headOption match
-      case Some(Flown) if answer.length == 9 => Right(Some(ByteBuffer.wrap(answer.toArray).getDouble(1)))
-      case Some(Flown) if answer.length == 1 => Right(None)
-      case Some(NotFlown)                    => Left(String(answer.tail.toArray, UTF_8))
-      case other => Left(s"expected a flight's distance, came ${answer.length} bytes of the kind $other")
+    BlockBytes.read[Landed](answer, "a flight's distance").flatMap:
+      case Landed.Flown(came)      => Right(came)
+      case Landed.NotFlown(reason) => Left(reason)
 
-  private val Episodes: Byte = 0
-  private val Flight: Byte   = 1
-  private val Flown: Byte    = 0
-  private val NotFlown: Byte = 1
-  private val MostReason     = 16 << 10
+  private enum Block derives Codec:
+    /** Of a search. */
+    case Episodes(block: ArraySeq[Byte])
+
+    /** One flight with a policy of these parameters. */
+    case Flight(number: Int, parameters: Vector[Double])
+
+  private enum Landed derives Codec:
+    case Flown(came: Option[Double])
+    case NotFlown(reason: String)
+
+  private val MostReason = 16 << 10

@@ -1,15 +1,15 @@
 package skein.cli
 
 import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigRenderOptions}
-import java.nio.ByteBuffer
-import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import scala.jdk.CollectionConverters.*
+import skein.bytes.Codec
 import skein.cluster.{Solver, Solvers}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
-import skein.search.{BlockExecutor, JsonText}
+import skein.search.BlockBytes.given
+import skein.search.{BlockBytes, BlockExecutor, JsonText}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.units.{Expect, Span}
 import upickle.default.ReadWriter
@@ -84,47 +84,47 @@ private[cli] object SpreadQuestion:
       val flown = flights(seeds)
       by.computed(blocks(seeds), onAnswer = _ => onLanded)(onWait)
         .flatMap(_.toRight("no worker is left"))
+        .flatMap(Expect.each(_)(BlockBytes.read[Landed](_, "a flight's answer")))
         .flatMap: answers =>
-          val large = answers.count(_.headOption.contains(TooLarge))
+          val large = answers.count(_ == Landed.TooLarge)
           if large > 0 then
             tell(s"$large of ${flown.size} flights are too large for a message and are flown here again")
           Expect.each(flown.zip(answers))(landed(_, _))
 
     private def blocks(seeds: Int): Vector[ArraySeq[Byte]] =
       for place <- plans.indices.toVector; number <- Vector.range(0, seeds)
-      yield ArraySeq.unsafeWrapArray(
-        ByteBuffer.allocate(BlockBytes).putInt(place).putLong(settings.seed + number).array
-      )
+      yield BlockBytes.of((place, settings.seed + number))
 
-    /** A byte for the kind; then a summary, or why there is none. */
     def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
-      require(block.length == BlockBytes, s"expected a block of $BlockBytes bytes, came ${block.length}")
-      val in            = ByteBuffer.wrap(block.toArray)
-      val (place, seed) = (in.getInt, in.getLong)
+      val (place, seed) = BlockBytes
+        .read[(Int, Long)](block, "a flight's place and seed")
+        .fold(wrong => throw IllegalArgumentException(wrong), identity)
       require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, came $place")
-      SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
-        case Left(missing) =>
-          ArraySeq.from(missing.reason.take(MostReason).getBytes(UTF_8)).prepended(Missing)
-        case Right(summary) =>
-          val bytes = SummaryBytes.write(summary)
-          if bytes.length > MostBytes then ArraySeq(TooLarge) else bytes.prepended(Flown)
+      BlockBytes.of:
+        SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
+          case Left(missing)  => Landed.NotFlown(missing.reason.take(MostReason))
+          case Right(summary) =>
+            val bytes = SummaryBytes.write(summary)
+            if bytes.length > MostBytes then Landed.TooLarge else Landed.Flown(bytes)
 
     private def landed(
         plan: FlightPlan,
-        answer: ArraySeq[Byte]
-    ): Either[String, Either[NotFlown, FlightSummary]] =
-      answer.headOption match
-        case Some(Flown)    => SummaryBytes.read(answer.tail, Some(settings.scenario)).map(Right(_))
-        case Some(Missing)  => Right(Left(NotFlown(plan, String(answer.tail.toArray, UTF_8))))
-        case Some(TooLarge) => Right(SpreadFlights.one(settings, plan))
-        case other          => Left(s"expected a flight's answer, came one of the kind $other")
+        answer: Landed
+    ): Either[String, Either[NotFlown, FlightSummary]] = answer match
+      case Landed.Flown(summary)   => SummaryBytes.read(summary, Some(settings.scenario)).map(Right(_))
+      case Landed.NotFlown(reason) => Right(Left(NotFlown(plan, reason)))
+      case Landed.TooLarge         => Right(SpreadFlights.one(settings, plan))
 
-  private val BlockBytes = 12
+  /** What came of a flight. */
+  private[cli] enum Landed derives Codec:
+    /** As [[SummaryBytes]]. */
+    case Flown(summary: ArraySeq[Byte])
+    case NotFlown(reason: String)
+
+    /** For a message. */
+    case TooLarge
+
   private val MostReason = 16 << 10
 
   /** Of an answer: what fits into a message. */
   private val MostBytes = 600 << 10
-
-  private val Flown: Byte    = 0
-  private val Missing: Byte  = 1
-  private val TooLarge: Byte = 2

@@ -1,9 +1,9 @@
 package skein.cli
 
-import java.nio.ByteBuffer
 import scala.collection.immutable.ArraySeq
+import skein.bytes.Codec
 import skein.scenario.{Scenario, Scenarios}
-import skein.search.JsonText
+import skein.search.{BlockBytes, JsonText}
 import skein.settings.NamedScene
 import skein.torture.{Torture, Verdict}
 import skein.units.{Expect, Span}
@@ -60,26 +60,23 @@ private[cli] object TortureQuestion:
     /** Has them flown elsewhere, in blocks of so many. */
     def blocks(first: Long, seeds: Int, atMost: Int): Vector[ArraySeq[Byte]] =
       Vector.range(0, seeds, atMost).map: from =>
-        val out = ByteBuffer.allocate(BlockBytes).putLong(first + from).putInt(atMost.min(seeds - from))
-        ArraySeq.unsafeWrapArray(out.array)
+        BlockBytes.of((first + from, atMost.min(seeds - from)))
 
-    /** Of each of a block's seeds the rules that its flight broke, as JSON. */
+    /** Of each of a block's seeds the rules that its flight broke. */
     def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
-      require(block.length == BlockBytes, s"expected a block of $BlockBytes bytes, came ${block.length}")
-      val in             = ByteBuffer.wrap(block.toArray)
-      val (first, count) = (in.getLong, in.getInt)
+      val (first, count) = told[(Long, Int)](block, "a block of torture")
       val broken         =
-        for seed <- first until first + count
+        for seed <- Vector.range(first, first + count)
         yield seed -> TortureQuestion.short(Torture.of(seed, duration, scenario, scene).violations)
-      JsonText.bytes(broken.toVector)
+      BlockBytes.of(broken)
 
     /** What a block's answer says. */
     def verdicts(answer: ArraySeq[Byte]): Vector[Verdict] =
-      JsonText.read[Vector[(Long, Vector[String])]](answer, "torture's answer") match
-        case Left(wrong)   => throw IllegalArgumentException(wrong)
-        case Right(broken) =>
-          for (seed, violations) <- broken
-          yield Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+      for (seed, violations) <- told[Vector[(Long, Vector[String])]](answer, "torture's answer")
+      yield Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+
+    private def told[A: Codec](bytes: ArraySeq[Byte], what: String): A =
+      BlockBytes.read[A](bytes, what).fold(wrong => throw IllegalArgumentException(wrong), identity)
 
   /** What fits into a message with a block's others. */
   private def short(violations: Vector[String]): Vector[String] =
@@ -88,7 +85,6 @@ private[cli] object TortureQuestion:
       .map(line => if line.length > MostOfLine then line.take(MostOfLine) + "…" else line)
     lines ++ Option.when(violations.size > MostLines)(s"and ${violations.size - MostLines} more")
 
-  private val BlockBytes            = 12
   private val MostLines, MostOfLine = 200
 
   /** Of a block. */

@@ -1,8 +1,10 @@
 package skein.search
 
-import java.nio.{BufferUnderflowException, ByteBuffer}
 import scala.collection.immutable.ArraySeq
+import skein.bytes.Codec
 import skein.optimise.{RunningStats, ValueEvaluator}
+import skein.search.BlockBytes.given
+import skein.units.Expect
 
 /** A part of a call of an evaluator, which any process with the same question answers with the same bits: so many
   * candidates on so many episodes.
@@ -16,32 +18,41 @@ final case class SearchBlock(
     episodes: Range,
     isWhole: Boolean
 ):
-  /** Big-endian: judge and whether it is whole, a byte each; first episode, end, candidates and parameters of each, 4
-    * bytes each; the parameters, 8 bytes each.
-    */
-  def bytes: ArraySeq[Byte] =
-    val axes = candidates.head.size
-    val out  = ByteBuffer.allocate(SearchBlock.Head + 8 * axes * candidates.size)
-    out.put(judge.ordinal.toByte).put(if isWhole then 1: Byte else 0: Byte)
-    out.putInt(episodes.start).putInt(episodes.end).putInt(candidates.size).putInt(axes)
-    for candidate <- candidates; value <- candidate do out.putDouble(value)
-    ArraySeq.unsafeWrapArray(out.array)
+  import SearchBlock.{Answer, given}
 
-  /** Of each candidate its tally ([[StatsBytes]]), or of each candidate and episode its value (8 bytes). */
-  def answer(by: Judge => ValueEvaluator): ArraySeq[Byte] =
-    if isWhole then StatsBytes.write(by(judge).tallies(candidates, episodes))
+  def bytes: ArraySeq[Byte] = BlockBytes.of(this)
+
+  /** Of each candidate its tally, or of one candidate each episode's value. */
+  def answer(by: Judge => ValueEvaluator): ArraySeq[Byte] = BlockBytes.of:
+    if isWhole then Answer.Tallies(by(judge).tallies(candidates, episodes))
     else
       val values = by(judge).valuesUnless(() => false)(candidates, episodes).get
-      val out    = ByteBuffer.allocate(8 * candidates.size * episodes.size)
-      for each <- values; value <- each do out.putDouble(value)
-      ArraySeq.unsafeWrapArray(out.array)
+      Answer.Values(values.flatMap(_.toVector))
 
-  /** Bytes of an answer. */
-  private def expected: Int =
-    candidates.size * (if isWhole then StatsBytes.Each else 8 * episodes.size)
+  /** What an answer says. */
+  private def read(answer: ArraySeq[Byte]): Either[String, Answer] =
+    BlockBytes
+      .read[Answer](answer, "an answer to a block of a search")
+      .filterOrElse(
+        {
+          case Answer.Tallies(of) => isWhole && of.size == candidates.size
+          case Answer.Values(of)  => !isWhole && of.size == episodes.size
+        },
+        s"expected the answer to $candidates on $episodes, came ${answer.length} bytes of another"
+      )
 
 object SearchBlock:
-  private val Head = 18
+  private enum Answer:
+    case Tallies(of: Vector[RunningStats])
+    case Values(of: Vector[Double])
+
+  private given Codec[Judge]  = Codec.derived
+  private given Codec[Range]  = Codec[(Int, Int)].imap[Range](_ until _)(range => (range.start, range.end))
+  private given Codec[Answer] = Codec.derived
+  private given Codec[SearchBlock] = Codec.derived
+
+  /** Bytes of a tally. */
+  private val OfTally = 20
 
   /** Of what a block asks, and of its answer. */
   private val MostBytes = 512 << 10
@@ -67,7 +78,7 @@ object SearchBlock:
       for candidate <- candidates; from <- Vector.range(episodes.start, episodes.end, most)
       yield SearchBlock(judge, Vector(candidate), from until (from + most).min(episodes.end), isWhole = false)
     else
-      val fit     = (MostBytes / (8 * candidates.head.size.max(1))).max(1).min(MostBytes / StatsBytes.Each)
+      val fit     = (MostBytes / (4 + 8 * candidates.head.size)).max(1).min(MostBytes / OfTally)
       val several = (most / episodes.size).max(1).min(fit)
       val group   = if several > Lanes then several / Lanes * Lanes else several
       candidates.grouped(group).map(SearchBlock(judge, _, episodes, isWhole = true)).toVector
@@ -84,42 +95,29 @@ object SearchBlock:
       answers: Vector[ArraySeq[Byte]],
       episodes: Int
   ): Either[String, Vector[RunningStats]] =
-    blocks.zip(answers).find((block, answer) => answer.length != block.expected) match
-      case Some((block, answer)) =>
-        Left(s"expected an answer of ${block.expected} bytes to a block, came ${answer.length}")
-      case None =>
-        val tallies = Vector.newBuilder[RunningStats]
-        var parts   = Vector.empty[Double]
-        for (block, answer) <- blocks.zip(answers) do
-          val in = ByteBuffer.wrap(answer.toArray)
-          if block.isWhole then
-            for _ <- block.candidates do tallies += StatsBytes.read(in)
-          else
-            parts ++= Vector.fill(block.episodes.size)(in.getDouble)
-            if parts.size == episodes then
-              tallies += RunningStats.of(episodes)(parts)
-              parts = Vector.empty
-        Right(tallies.result())
+    for read <- Expect.each(blocks.zip(answers))((block, answer) => block.read(answer))
+    yield
+      val tallies = Vector.newBuilder[RunningStats]
+      var parts   = Vector.empty[Double]
+      read.foreach:
+        case Answer.Tallies(of) => tallies ++= of
+        case Answer.Values(of)  =>
+          parts ++= of
+          if parts.size == episodes then
+            tallies += RunningStats.of(episodes)(parts)
+            parts = Vector.empty
+      tallies.result()
 
   /** @return or what was expected, and what came */
   def read(bytes: ArraySeq[Byte]): Either[String, SearchBlock] =
-    val in = ByteBuffer.wrap(bytes.toArray)
-    try
-      val (judge, whole) = (in.get.toInt, in.get.toInt)
-      val (from, end)    = (in.getInt, in.getInt)
-      val (count, axes)  = (in.getInt, in.getInt)
-      val isSound        =
-        judge >= 0 && judge < Judge.values.length && from >= 0 && end > from && end - from <= MostEpisodes &&
-          count > 0 && axes >= 0 && in.remaining == 8L * count * axes
-      Either.cond(
-        isSound,
-        SearchBlock(
-          Judge.fromOrdinal(judge),
-          Vector.fill(count)(Vector.fill(axes)(in.getDouble)),
-          from until end,
-          whole != 0
-        ),
+    BlockBytes
+      .read[SearchBlock](bytes, "a block of a search")
+      .filterOrElse(
+        block =>
+          import block.{candidates, episodes}
+          val (from, until) = (episodes.start.toLong, episodes.end.toLong)
+          from >= 0 && until > from && until - from <= MostEpisodes &&
+          candidates.nonEmpty && candidates.forall(_.size == candidates.head.size)
+        ,
         s"expected a block of a search, came ${bytes.length} bytes that are none"
       )
-    catch
-      case _: BufferUnderflowException => Left(s"a block of a search is cut off after ${bytes.length} bytes")

@@ -8,7 +8,7 @@ import skein.flight.NotFlown
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.report.{DuelReport, ReportSections, Section}
 import skein.scenario.Scenarios
-import skein.search.BlockExecutor
+import skein.search.{BlockBytes, BlockExecutor}
 import skein.testing.Unhurried
 
 class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
@@ -70,17 +70,17 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
   test("a flight that is too large for a message is flown here, and told; cut-off answers are no flights"):
     val asked = ready(duels)
     var told  = Vector.empty[String]
-    val large = worker(duels)(_ => ArraySeq(2))
+    val large = worker(duels)(_ => BlockBytes.of(SpreadQuestion.Landed.TooLarge))
     val there = asked.elsewhere(large, 1, told :+= _)(())(()).fold(fail(_), identity)
     assertEquals(bytes(there), bytes(Vector(duelsHere(0), duelsHere(2))))
     assertEquals(told.size, 1)
     assert(clue(told.head).startsWith("2 of 2 flights are too large"))
     val cut = asked.elsewhere(worker(duels)(answer => answer.take(answer.length / 2)), 1, _ => ())(())(())
-    assert(clue(cut).left.exists(_.startsWith("expected a flight's summary")))
+    assert(clue(cut).left.exists(_.startsWith("expected a flight's answer")))
 
   test("a flight that could not be flown elsewhere is told with its seed and its reason"):
     val asked  = ready(duels)
-    val failed = worker(duels)(_ => ArraySeq.from("no rotor turned".getBytes(UTF_8)).prepended(1))
+    val failed = worker(duels)(_ => BlockBytes.of(SpreadQuestion.Landed.NotFlown("no rotor turned")))
     val there  = asked.elsewhere(failed, 2, line => fail(line))(())(()).fold(fail(_), identity)
     assertEquals(
       there.map(_.left.map(_.message)).last,

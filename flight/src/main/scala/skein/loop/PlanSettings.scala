@@ -1,5 +1,7 @@
 package skein.loop
 
+import scala.compiletime.{constValueTuple, summonAll}
+import scala.deriving.Mirror
 import skein.planning.*
 import skein.scenario.{Fence, Kept}
 import skein.units.*
@@ -122,7 +124,10 @@ final case class PlanSettings(
       case _ => ownM.max(leastM.getOrElse(ownM)).min(mostM.getOrElse(Double.PositiveInfinity))
 
   /** As [[PlanSettings.parse]] reads it back, apart from the response. */
-  def text: String = PlanSettings.fields.map(field => s"${field.name}=${field.text(this)}").mkString(" ")
+  def text: String = PlanSettings.words
+    .zip(productIterator)
+    .map { case ((field, word), value) => s"${word.name(field)}=${word.text(value)}" }
+    .mkString(" ")
 
 object PlanSettings:
   val CrossEntropy = "cross-entropy"
@@ -144,56 +149,32 @@ object PlanSettings:
   /** Work for a tenth of a millisecond with lanes, for two without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
-  /** What the text has of settings, and how it is read back. */
-  private final case class Field(
-      name: String,
-      text: PlanSettings => Any,
-      read: (PlanSettings, String) => Option[PlanSettings]
-  )
+  /** A setting as a word of the text. */
+  private final class Word[A](suffix: String, val text: A => String, parse: String => Option[A]):
+    def name(field: String): String                                 = field + suffix
+    def read(values: Map[String, String], field: String): Option[A] = values.get(name(field)).flatMap(parse)
 
-  private val fields = Vector(
-    Field(
-      "deadlineNs",
-      _.deadline.toNanos,
-      (to, ns) => ns.toLongOption.map(n => to.copy(deadline = Span.ofNanos(n)))
-    ),
-    Field(
-      "horizonSteps",
-      _.horizonSteps,
-      (to, count) => count.toIntOption.map(n => to.copy(horizonSteps = n))
-    ),
-    Field("stepNs", _.step.toNanos, (to, ns) => ns.toLongOption.map(n => to.copy(step = Span.ofNanos(n)))),
-    Field("method", _.method, (to, name) => Some(to.copy(method = name))),
-    Field("behaviours", _.behaviours, (to, count) => count.toIntOption.map(n => to.copy(behaviours = n))),
-    Field("searches", _.searches, (to, count) => count.toIntOption.map(n => to.copy(searches = n))),
-    Field("slices", _.slices, (to, count) => count.toIntOption.map(n => to.copy(slices = n))),
-    Field(
-      "blocksPerSlice",
-      _.blocksPerSlice,
-      (to, count) => count.toIntOption.map(n => to.copy(blocksPerSlice = n))
-    ),
-    Field(
-      "turningRadiusM",
-      _.turningRadiusM,
-      (to, m) => m.toDoubleOption.map(n => to.copy(turningRadiusM = n))
-    ),
-    Field(
-      "slowestShare",
-      _.slowestShare,
-      (to, share) => share.toDoubleOption.map(n => to.copy(slowestShare = n))
-    ),
-    Field("separationM", _.separationM, (to, m) => m.toDoubleOption.map(n => to.copy(separationM = n))),
-    Field("geofenceM", _.geofenceM, (to, m) => m.toDoubleOption.map(n => to.copy(geofenceM = n)))
-  )
+  private given Word[Span]   = Word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
+  private given Word[Int]    = Word("", _.toString, _.toIntOption)
+  private given Word[Double] = Word("", _.toString, _.toDoubleOption)
+  private given Word[String] = Word("", identity, Some(_))
+
+  private val mirror = summon[Mirror.ProductOf[PlanSettings]]
+
+  /** All settings but the last two, by their names. */
+  private val words: Vector[(String, Word[Any])] =
+    constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
+      summonAll[Tuple.Map[
+        Tuple.Take[mirror.MirroredElemTypes, 12],
+        Word
+      ]].toList.asInstanceOf[List[Word[Any]]]
+    )
 
   /** Reads settings back from their text; absent where that is no such text. */
   def parse(text: String): Option[PlanSettings] =
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
-    fields
-      .foldLeft(Option(PlanSettings())): (read, field) =>
-        for
-          settings <- read
-          value    <- values.get(field.name)
-          next     <- field.read(settings, value)
-        yield next
+    val read   = words.flatMap((field, word) => word.read(values, field))
+    Option
+      .when(read.size == words.size)(PlanSettings())
+      .map(usual => mirror.fromProduct(Tuple.fromArray((read ++ Seq(usual.kept, usual.response)).toArray)))
       .filter(_.mistakes.isEmpty)

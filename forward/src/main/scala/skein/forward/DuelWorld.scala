@@ -183,21 +183,21 @@ private[skein] final class DuelWorld(
 
 private[skein] object DuelWorld:
   // Kinds of events.
-  val ScoreNow     = 0
-  val Tick         = 1
-  val Sampled      = 2
-  val Answered     = 3
-  val TimedOut     = 4
-  val Arrived      = 5
-  val Acts         = 6
-  val Acknowledged = 7
-  val Wake         = 8
-  val Patience     = 9
-  val Due          = 10
-  val Look         = 11
-  val Exposed      = 12
-  val Pictured     = 13
-  val Recognised   = 14
+  val ScoreNow      = 0
+  val Tick          = 1
+  val Sampled       = 2
+  val Answered      = 3
+  val TimedOut      = 4
+  val Arrived       = 5
+  val Acts          = 6
+  val Acknowledged  = 7
+  val Wake          = 8
+  val Patience      = 9
+  val Due           = 10
+  val Look          = 11
+  val Exposed       = 12
+  val ImageReceived = 13
+  val Recognised    = 14
 
   def kindOf(event: Long): Int    = (event >>> 40).toInt
   def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff
@@ -268,11 +268,11 @@ trait LoopObserver:
   /** A command has reached the vehicle and taken the place of the one before; it acts after the vehicle's dead time. */
   def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 
-  /** Who sees takes a picture now. */
-  private[skein] def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit = ()
+  /** Who sees takes an image now. */
+  private[skein] def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit = ()
 
-  /** What a picture showed is known now. */
-  private[skein] def recognised(vehicle: Int, picture: Int, atNs: Long): Unit = ()
+  /** What an image showed is known now. */
+  private[skein] def recognised(vehicle: Int, image: Int, atNs: Long): Unit = ()
 
 object LoopObserver:
   val Nobody: LoopObserver = new LoopObserver {}

@@ -24,13 +24,13 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     standsStill = timing.isInstanceOf[LoopTiming.Paused],
     ringOf(timing, engagement.agents.size)
   )
-  private val sights = Array.tabulate(engagement.agents.size)(agent =>
+  private val trackers = Array.tabulate(engagement.agents.size)(agent =>
     engagement.agents(agent).eye.map: eye =>
       val rivals = engagement.assignment.rivals(agent)
       require(rivals.sizeIs == 1, s"an eye looks for one opponent, vehicle $agent has ${rivals.size}")
-      Sight(world, agent, rivals.head, eye, link)
+      CameraTracker(world, agent, rivals.head, eye, link)
   )
-  for agent <- sights.indices do world.views(agent) = sights(agent)
+  for agent <- trackers.indices do world.views(agent) = trackers(agent)
 
   private val loop     = LoopRuns.of(timing, world)
   private val periodNs = Nanos.of(timing.periodS)
@@ -61,7 +61,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   ): Unit =
     tallies = judged.map(_ => Score(captureRadiusM, engagement.durationS))
     world.start(worldKey, observer)
-    for sight <- sights; eye <- sight do eye.start(worldKey)
+    for tracker <- trackers; eye <- tracker do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
     for controller <- loop.controllers do controller.start()
     loop.start()
@@ -118,7 +118,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       case Wake     => loop.controllers(vehicle).goOn()
       case Patience => loop.patienceOver()
       case Due      => loop.due(number)
-      case kind     => sights(vehicle).foreach(Rollout.seeing(kind, number, _))
+      case kind     => trackers(vehicle).foreach(Rollout.seeing(kind, number, _))
 
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
@@ -140,12 +140,12 @@ object Rollout:
 
   private[skein] val Never: Long = Long.MaxValue
 
-  /** What happens to a vehicle's pictures. */
-  private def seeing(kind: Int, number: Int, sight: Sight): Unit = kind match
-    case DuelWorld.Look       => sight.look(number)
-    case DuelWorld.Exposed    => sight.exposed(number)
-    case DuelWorld.Pictured   => sight.pictured(number)
-    case DuelWorld.Recognised => sight.recognised(number)
+  /** What happens to a vehicle's images. */
+  private def seeing(kind: Int, number: Int, tracker: CameraTracker): Unit = kind match
+    case DuelWorld.Look          => tracker.look(number)
+    case DuelWorld.Exposed       => tracker.exposed(number)
+    case DuelWorld.ImageReceived => tracker.imageReceived(number)
+    case DuelWorld.Recognised    => tracker.recognised(number)
 
   /** Places of the random sequence that belong to one step; the kernels use the same. */
   private[skein] val Places: Int       = Delays.Lines

@@ -170,8 +170,8 @@ private final class TimetableFlyer(
       model,
       pursuers,
       evaders,
-      eyes.pursuer.map(EyeLanes(_, duel.pursuer, duel.evader)).orNull,
-      eyes.evader.map(EyeLanes(_, duel.evader, duel.pursuer)).orNull
+      eyes.pursuer.map(CameraTrackerLanes(_, duel.pursuer, duel.evader)).orNull,
+      eyes.evader.map(CameraTrackerLanes(_, duel.evader, duel.pursuer)).orNull
     )
     private var timetable: Timetable = null
 
@@ -195,7 +195,10 @@ private final class TimetableFlyer(
     protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 
 /** By which alone the two of a duel know of one another, where they are not told. */
-private final case class DuelEyes(evader: Option[EyeLanes.Forms], pursuer: Option[EyeLanes.Forms]):
+private final case class DuelEyes(
+    evader: Option[CameraTrackerLanes.Forms],
+    pursuer: Option[CameraTrackerLanes.Forms]
+):
   def isNobody: Boolean = evader.isEmpty && pursuer.isEmpty
 
 private object DuelEyes:
@@ -204,7 +207,10 @@ private object DuelEyes:
     */
   def of(duel: Duel): Either[String, DuelEyes] =
     def forms(eye: Option[SensorModel]) =
-      eye.fold[Either[String, Option[EyeLanes.Forms]]](Right(None))(EyeLanes.of(_).map(Some(_)))
+      eye.fold[Either[
+        String,
+        Option[CameraTrackerLanes.Forms]
+      ]](Right(None))(CameraTrackerLanes.of(_).map(Some(_)))
     for
       evader  <- forms(duel.evader.eye)
       pursuer <- forms(duel.pursuer.eye)

@@ -1,6 +1,15 @@
 package skein.lanes
 
-import skein.forward.{Delays, Duelist, Engagement, LoopTiming, Rollout, Sight, Vehicle, VelocityResponse}
+import skein.forward.{
+  Delays,
+  Duelist,
+  Engagement,
+  LoopTiming,
+  Rollout,
+  CameraTracker,
+  Vehicle,
+  VelocityResponse
+}
 import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 import skein.vehicle.ConstantVelocity
@@ -19,8 +28,8 @@ import skein.vehicle.ConstantVelocity
   * @param times
   *   [[Timetable.Numbers]] numbers each: of what happens to a vehicle, what its [[VehicleClock]] tells; of a decision, the
   *   time since the one before, and in a duel the ages of the own and of the opponent's reading; by who sees, the age of
-  *   the own reading, the time, and until when a belief is carried ([[EyeLanes.look]]); of a picture what
-  *   [[EyeLanes.expose]] takes; of a score, the time; s
+  *   the own reading, the time, and until when a belief is carried ([[CameraTrackerLanes.look]]); of a picture what
+  *   [[CameraTrackerLanes.expose]] takes; of a score, the time; s
   * @param views
   *   what is decided and scored upon: the places of all vehicles' readings, one view after the other
   * @param courses
@@ -249,7 +258,7 @@ private final class TimetableCompiler(
 
   private def expose(event: Note, at: Int): Unit =
     val view = event.view
-    operation(EXPOSE, event.agent, tell(view), event.number % Sight.Ring)
+    operation(EXPOSE, event.agent, tell(view), event.number % CameraTracker.Ring)
     times(size * Numbers + 1) = event.elapsedS.toFloat
     times(size * Numbers + 2) = event.ownAgeS.toFloat
     times(size * Numbers + 3) = event.opponentAgeS.toFloat
@@ -260,9 +269,9 @@ private final class TimetableCompiler(
     operation(
       JOIN,
       event.agent,
-      event.number % Sight.Ring,
+      event.number % CameraTracker.Ring,
       event.opponent,
-      event.from.max(0) % Sight.Ring
+      event.from.max(0) % CameraTracker.Ring
     )
     size += 1
 

@@ -19,8 +19,8 @@ private[lanes] final class TimetableDuels(
     model: LaneDynamics,
     pursuerPolicy: LanePolicy,
     evaderPolicy: LanePolicy,
-    pursuerEye: EyeLanes = null,
-    evaderEye: EyeLanes = null
+    pursuerEye: CameraTrackerLanes = null,
+    evaderEye: CameraTrackerLanes = null
 ) extends DuelKernel:
   private val scores = LaneScores(duel.durationS, timing.periodS, this)
   private val kernel = TimetableKernel(

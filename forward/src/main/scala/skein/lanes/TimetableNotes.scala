@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
-import skein.forward.{Grounds, LoopObserver, Sight}
+import skein.forward.{Grounds, LoopObserver, CameraTracker}
 import skein.fusion.{Exposure, SensorModel}
 import skein.units.Instant
 
@@ -97,7 +97,7 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
         forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
   // By vehicle: when its pictures were taken, and which of them joined last and before that.
-  private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else Sight.Ring)
+  private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else CameraTracker.Ring)
   private val newest, runnerUp = Array.fill(vehicles)(-1)
 
   override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
@@ -107,11 +107,11 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
     noted.elapsedS = SensorModel.normal(picture.bearing)
     noted.ownAgeS = SensorModel.normal(picture.range)
     noted.opponentAgeS = if picture.found < eyes(vehicle).detection then 1 else 0
-    exposedNs(vehicle)(number % Sight.Ring) = atNs
+    exposedNs(vehicle)(number % CameraTracker.Ring) = atNs
 
   override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
     def takenNs(number: Int) =
-      if number < 0 then Long.MinValue else exposedNs(vehicle)(number % Sight.Ring)
+      if number < 0 then Long.MinValue else exposedNs(vehicle)(number % CameraTracker.Ring)
     val isOlder = takenNs(picture) < takenNs(newest(vehicle))
     // Two are on the way at most, and whichever is overtaken twice is dropped.
     require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")

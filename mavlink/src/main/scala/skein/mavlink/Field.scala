@@ -2,6 +2,7 @@ package skein.mavlink
 
 import java.nio.ByteBuffer
 import java.nio.charset.StandardCharsets.UTF_8
+import scala.compiletime.ops.int.S
 
 /** How one field of a message lies on the wire, little-endian.
   *
@@ -27,7 +28,16 @@ final class Field[A] private (
 
   def extension: Field[A] = new Field(typeName, size, count, true, read, write)
 
+  /** So many such fields, one after the other. */
+  def times[N <: Int & Singleton](count: N): Field.Repeated[N, A] =
+    Tuple.fromArray(Array.fill(count)(this)).asInstanceOf[Field.Repeated[N, A]]
+
 object Field:
+  /** A tuple of fields of one type. */
+  type Repeated[N <: Int, A] <: Tuple = N match
+    case 0    => EmptyTuple
+    case S[n] => Field[A] *: Repeated[n, A]
+
   val u8: Field[Int]    = one("uint8_t", 1)(_.get() & 0xff, (to, value) => to.put(value.toByte))
   val i8: Field[Int]    = one("int8_t", 1)(_.get().toInt, (to, value) => to.put(value.toByte))
   val u16: Field[Int]   = one("uint16_t", 2)(_.getShort() & 0xffff, (to, value) => to.putShort(value.toShort))

@@ -1,6 +1,8 @@
 package skein.record
 
 import java.sql.{ResultSet, SQLException}
+import java.util.Locale
+import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
 import skein.policy.Action
 import skein.signal.{Kinematics, Stamped}
@@ -41,25 +43,40 @@ private[record] final class Cells(row: ResultSet):
       None
     else Some(read)
 
-private[record] object Columns:
+/** How fields of a type lie in columns, by the field's name: the columns' is that with the unit behind it. */
+private[record] trait FieldColumns[A]:
+  def apply(name: String): Columns[A]
 
-  def text(name: String): Columns[String] = single(name, "VARCHAR", _.text(_), _.getString(_))
+private[record] object FieldColumns:
+  import Columns.*
 
-  def long(name: String): Columns[Long] = single(name, "BIGINT", _.long(_), _.getLong(_))
+  given FieldColumns[String] = single(_, "VARCHAR", _.text(_), _.getString(_))
 
-  def double(name: String): Columns[Double] = single(
-    name,
-    "DOUBLE",
-    _.double(_),
-    (row, column) =>
-      val value = row.getDouble(column)
-      if value.isFinite then value else throw SQLException(s"$name: expected a finite number, came $value")
-  )
+  given long: FieldColumns[Long] = single(_, "BIGINT", _.long(_), _.getLong(_))
 
-  def longs(name: String): Columns[Vector[Long]] =
-    single(name, "BIGINT[]", _.longs(_), (row, column) => toLongs(row.getArray(column)))
+  given double: FieldColumns[Double] = name =>
+    single(
+      name,
+      "DOUBLE",
+      _.double(_),
+      (row, column) =>
+        val value = row.getDouble(column)
+        if value.isFinite then value
+        else throw SQLException(s"$name: expected a finite number, came $value")
+    )
 
-  def doubles(name: String): Columns[Vector[Double]] =
+  given longs: FieldColumns[Vector[Long]] = name =>
+    single(
+      name,
+      "BIGINT[]",
+      _.longs(_),
+      (row, column) =>
+        listed(row.getArray(column)).map:
+          case number: Number => number.longValue
+          case other          => throw SQLException(s"expected whole numbers in a list, came $other")
+    )
+
+  given doubles: FieldColumns[Vector[Double]] = name =>
     single(
       name,
       "DOUBLE[]",
@@ -70,46 +87,97 @@ private[record] object Columns:
           case other => throw SQLException(s"$name: expected finite numbers, came $other")
     )
 
-  def texts(name: String): Columns[Vector[String]] =
-    single(name, "VARCHAR[]", _.texts(_), (row, column) => listed(row.getArray(column)).map(_.toString))
+  given texts: FieldColumns[Vector[String]] =
+    single(_, "VARCHAR[]", _.texts(_), (row, column) => listed(row.getArray(column)).map(_.toString))
 
   /** Compressed by Zstandard. */
-  def blob(name: String): Columns[Blob] = single(
-    name,
-    "BLOB",
-    _.blob(_),
-    (row, column) =>
-      Blob.ofPacked(row.getBytes(column)).fold(why => throw SQLException(s"$name: $why"), identity)
-  )
+  given FieldColumns[Blob] = name =>
+    single(
+      name,
+      "BLOB",
+      _.blob(_),
+      (row, column) =>
+        Blob.ofPacked(row.getBytes(column)).fold(why => throw SQLException(s"$name: $why"), identity)
+    )
+
+  given FieldColumns[Instant] = name => long(name + "Ns").as(Instant.ofNanos, _.toNanos)
+
+  /** Milliseconds, exact up to 2^53 ns, 104 days; clocks may be further from one another. */
+  given FieldColumns[Span] = name =>
+    if name.endsWith("Offset") then long(name + "Ns").as(Span.ofNanos, _.toNanos)
+    else double(name + "Ms").as(millis => Span.ofNanos(math.round(millis * 1e6)), _.toNanos / 1e6)
+
+  given FieldColumns[Metres] = name => double(name + "M").as(Metres(_), _.value)
+
+  given FieldColumns[MetresPerSecond] = name => double(name + "Mps").as(MetresPerSecond(_), _.value)
+
+  given FieldColumns[Radians] = name => double(name + "Rad").as(Radians(_), _.value)
+
+  given FieldColumns[EventKind] = oneOf(_, EventKind.values)
+
+  given FieldColumns[EndingKind] = oneOf(_, EndingKind.values)
+
+  /** Directions stand in the place of the frame that ends the name. */
+  given FieldColumns[Vector3] = name =>
+    val unit =
+      if name.startsWith("angularVelocity") then "RadPerS"
+      else if name.toLowerCase(Locale.ROOT).contains("velocity") then "Mps"
+      else "M"
+    val (quantity, directions) =
+      if name.endsWith("Frd") then (name.stripSuffix("Frd"), Seq("Front", "Right", "Down"))
+      else (name.stripSuffix("Ned"), Seq("North", "East", "Down"))
+    columns[Vector3](directions.map(direction => s"$quantity$direction$unit")*)
+
+  given FieldColumns[Quaternion] = name => columns[Quaternion](Seq("W", "X", "Y", "Z").map(name + _)*)
+
+  given FieldColumns[Kinematics] = _ => columns[Kinematics]()
+
+  given FieldColumns[Stamped[Kinematics]] = _ => columns[Stamped[Kinematics]]()
+
+  given FieldColumns[ReadingRow] = prefixed(_, columns[ReadingRow]())
+
+  given FieldColumns[Observations] = _ => columns[Observations]()
+
+  given FieldColumns[TrueAge] = _ =>
+    columns[TrueAge]("ownTrueAge", "opponentTrueAge", "clockOffset", "uncertainty")
+
+  given FieldColumns[Predicted] = _ =>
+    columns[Predicted](
+      "actsAt",
+      "ownPredictedPositionNed",
+      "ownPredictedVelocityNed",
+      "opponentPredictedPositionNed",
+      "opponentPredictedVelocityNed"
+    )
+
+  given FieldColumns[PredictedMotion] = prefixed(_, columns[PredictedMotion]())
+
+  given FieldColumns[Course] = _ => columns[Course]("courseNorthM", "courseEastM", "courseStep")
+
+  given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
+
+  /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s, or of a place,
+    * m; of [[Action.VelocityAt]] the third is an altitude, m; of [[Action.Attitude]] they are roll, pitch and yaw, rad,
+    * and `actionAmount` is the thrust; else that is a speed, m/s. `actionYaw` is rad, or rad/s where it is `Turning`.
+    */
+  given FieldColumns[Action] = _ =>
+    columns[ActionCells](
+      "action",
+      "actionX",
+      "actionY",
+      "actionZ",
+      "actionAmount",
+      "actionYawMode",
+      "actionYaw"
+    ).as(_.action, ActionCells.of)
+
+  given option[A](using one: FieldColumns[A]): FieldColumns[Option[A]] = name => optional(one(name))
 
   private def listed(list: java.sql.Array): Vector[Object] =
     list.getArray.asInstanceOf[Array[Object]].toVector
 
-  private def toLongs(list: java.sql.Array): Vector[Long] =
-    listed(list).map:
-      case number: Number => number.longValue
-      case other          => throw SQLException(s"expected whole numbers in a list, came $other")
-
-  def instantNs(name: String): Columns[Instant] = long(name + "Ns").as(Instant.ofNanos, _.toNanos)
-
-  /** Exact up to 2^53 ns, 104 days. */
-  def spanMs(name: String): Columns[Span] =
-    double(name + "Ms").as(millis => Span.ofNanos(math.round(millis * 1e6)), _.toNanos / 1e6)
-
-  def spanNs(name: String): Columns[Span] = long(name + "Ns").as(Span.ofNanos, _.toNanos)
-
-  def metres(name: String): Columns[Metres] = double(name + "M").as(Metres(_), _.value)
-
-  def speed(name: String): Columns[MetresPerSecond] = double(name + "Mps").as(MetresPerSecond(_), _.value)
-
-  def radians(name: String): Columns[Radians] = double(name + "Rad").as(Radians(_), _.value)
-
-  def eventKind(name: String): Columns[EventKind] = oneOf(name, EventKind.values)
-
-  def endingKind(name: String): Columns[EndingKind] = oneOf(name, EndingKind.values)
-
   /** A case by its name. */
-  private def oneOf[A](name: String, cases: Array[A]): Columns[A] = text(name).as(
+  private def oneOf[A](name: String, cases: Array[A]): Columns[A] = summon[FieldColumns[String]](name).as(
     read =>
       cases
         .find(_.toString == read)
@@ -117,56 +185,44 @@ private[record] object Columns:
     _.toString
   )
 
-  def ned(name: String, unit: String): Columns[Vector3] = product[Vector3]:
-    (double(s"${name}North$unit"), double(s"${name}East$unit"), double(s"${name}Down$unit"))
+  private def single[A](
+      name: String,
+      sqlType: String,
+      write: (RowWriter, A) => Unit,
+      get: (ResultSet, Int) => A
+  ): Columns[A] = new Columns[A]:
+    val definitions: Vector[Column]           = Vector(Column(name, sqlType))
+    def append(value: A, to: RowWriter): Unit = write(to, value)
+    def read(cells: Cells): A                 = cells.next(get)
 
-  def frd(name: String, unit: String): Columns[Vector3] = product[Vector3]:
-    (double(s"${name}Front$unit"), double(s"${name}Right$unit"), double(s"${name}Down$unit"))
+private[record] object Columns:
 
-  def quaternion(name: String): Columns[Quaternion] = product[Quaternion]:
-    (double(name + "W"), double(name + "X"), double(name + "Y"), double(name + "Z"))
-
-  val stampedKinematics: Columns[Stamped[Kinematics]] = product[Stamped[Kinematics]]:
-    (
-      product[Kinematics]:
-        (
-          ned("position", "M"),
-          ned("velocity", "Mps"),
-          quaternion("orientation"),
-          frd("angularVelocity", "RadPerS")
-        )
-      ,
-      instantNs("validAt"),
-      instantNs("sentAt"),
-      instantNs("receivedAt")
+  /** The columns of a case class: those of its fields, one after the other.
+    *
+    * @param names
+    *   in the place of the fields' own, if any
+    */
+  inline def columns[A](names: String*)(using mirror: Mirror.ProductOf[A]): Columns[A] =
+    ofFields(
+      mirror,
+      if names.isEmpty then constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString) else names,
+      summonAll[Tuple.Map[
+        mirror.MirroredElemTypes,
+        FieldColumns
+      ]].toList.asInstanceOf[List[FieldColumns[Any]]]
     )
 
-  /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s, or of a place,
-    * m; of [[Action.VelocityAt]] the third is an altitude, m; of [[Action.Attitude]] they are roll, pitch and yaw, rad,
-    * and `actionAmount` is the thrust; else that is a speed, m/s. `actionYaw` is rad, or rad/s where it is `Turning`.
-    */
-  lazy val action: Columns[Action] =
-    product[ActionCells]((
-      text("action"),
-      double("actionX"),
-      double("actionY"),
-      double("actionZ"),
-      double("actionAmount"),
-      text("actionYawMode"),
-      double("actionYaw")
-    )).as(_.action, ActionCells.of)
-
-  /** The columns of a case class: those of its fields, one after the other. */
-  def product[A <: Product](using
-      mirror: Mirror.ProductOf[A]
-  )(
-      fields: Tuple.Map[mirror.MirroredElemTypes, Columns]
+  private[record] def ofFields[A](
+      mirror: Mirror.ProductOf[A],
+      names: Seq[String],
+      fields: List[FieldColumns[Any]]
   ): Columns[A] =
-    val parts = fields.toList.asInstanceOf[List[Columns[Any]]].toVector
+    val parts = fields.lazyZip(names).map(_(_)).toVector
     new Columns[A]:
       val definitions: Vector[Column]           = parts.flatMap(_.definitions)
       def append(value: A, to: RowWriter): Unit =
-        for index <- parts.indices do parts(index).append(value.productElement(index), to)
+        for index <- parts.indices do
+          parts(index).append(value.asInstanceOf[Product].productElement(index), to)
       def read(cells: Cells): A = mirror.fromProduct(Tuple.fromArray(parts.map(_.read(cells)).toArray))
 
   /** All null where the value is absent. */
@@ -199,18 +255,8 @@ private[record] object Columns:
     def append(value: A, to: RowWriter): Unit = columns.append(value, to)
     def read(cells: Cells): A                 = columns.read(cells)
 
-  private def single[A](
-      name: String,
-      sqlType: String,
-      write: (RowWriter, A) => Unit,
-      get: (ResultSet, Int) => A
-  ): Columns[A] = new Columns[A]:
-    val definitions: Vector[Column]           = Vector(Column(name, sqlType))
-    def append(value: A, to: RowWriter): Unit = write(to, value)
-    def read(cells: Cells): A                 = cells.next(get)
-
   extension [A](columns: Columns[A])
-    private def as[B](from: A => B, to: B => A): Columns[B] = new Columns[B]:
+    def as[B](from: A => B, to: B => A): Columns[B] = new Columns[B]:
       val definitions: Vector[Column]            = columns.definitions
       def append(value: B, row: RowWriter): Unit = columns.append(to(value), row)
       def read(cells: Cells): B                  = from(columns.read(cells))

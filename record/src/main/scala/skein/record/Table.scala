@@ -2,17 +2,23 @@ package skein.record
 
 import java.sql.{Connection, SQLException}
 import org.duckdb.DuckDBConnection
+import scala.deriving.Mirror
+import scala.reflect.ClassTag
 import scala.util.Using
+import skein.policy.Action
 import skein.record.Columns.*
 
 /** A table of a recording: the type of its rows, its name and its columns.
   *
+  * @param rows
+  *   their class
   * @param since
   *   the format that it came with: files of an older one do not have it, which reads as no rows
   */
 private[record] final case class Table[A <: Record](
     name: String,
     columns: Columns[A],
+    rows: Class[?],
     since: Int = RecordingFormat.oldest
 ):
 
@@ -75,250 +81,44 @@ private[record] final case class Table[A <: Record](
       )
 
 private[record] object Table:
-  private val readingColumns = product[ReadingRow]((long("sequence"), text("vehicle"), stampedKinematics))
+  // What came with a later format than its table.
+  private given action: FieldColumns[Option[Action]] =
+    name => added(optional(summon[FieldColumns[Action]](name)))
+  private given course: FieldColumns[Option[Course]] =
+    name => added(optional(summon[FieldColumns[Course]](name)))
 
-  val flight: Table[FlightRow] = Table(
-    "flight",
-    product[FlightRow]:
-      (
-        text("id"),
-        text("loop"),
-        text("link"),
-        long("seed"),
-        spanMs("period"),
-        spanMs("duration"),
-        text("clock"),
-        text("simulator"),
-        text("scenario"),
-        text("version"),
-        instantNs("startedAt")
-      )
-  )
+  val flight: Table[FlightRow]                = table("flight")
+  val parameter: Table[Parameter]             = table("parameter")
+  val vehicle: Table[Vehicle]                 = table("vehicle")
+  val reading: Table[ReadingRow]              = table("reading")
+  val decision: Table[DecisionRow]            = table("decision")
+  val sighting: Table[Sighting]               = table("sighting", since = 3)
+  val measurement: Table[Measurement]         = table("measurement", since = 5)
+  val sensing: Table[Sensing]                 = table("sensing", since = 5)
+  val picture: Table[CameraImage]             = table("image", since = 6)
+  val cloud: Table[Cloud]                     = table("cloud", since = 6)
+  val solved: Table[SolvedRow]                = table("solved", since = 6)
+  val prediction: Table[Prediction]           = table("prediction")
+  val command: Table[Command]                 = table("command")
+  val acknowledgement: Table[Acknowledgement] = table("acknowledgement")
+  val latency: Table[Latency]                 = table("latency")
+  val truth: Table[Truth]                     = table("truth")
+  val ending: Table[Ending]                   = table("ending", since = 4)
 
-  val parameter: Table[Parameter] = Table("parameter", product[Parameter]((text("name"), text("value"))))
+  val planned: Table[Planned] =
+    given FieldColumns[Vector[Long]] = name =>
+      migrated(FieldColumns.longs(name), s"string_split($name, ',')::BIGINT[]")
+    table("plan", since = 3)
 
-  val vehicle: Table[Vehicle] =
-    Table("vehicle", product[Vehicle]((text("name"), text("role"), speed("speed"), ned("start", "M"))))
+  val event: Table[Event] =
+    // Up to format 4, only the text of the event said which decision a fallback had made.
+    val inDetail = "try_cast(regexp_extract(detail, '^decision ([0-9]+) by the fallback: ', 1) AS BIGINT)"
+    given FieldColumns[Option[Long]] = name => added(migrated(optional(FieldColumns.long(name)), inDetail))
+    table("event")
 
-  val reading: Table[ReadingRow] = Table("reading", readingColumns)
-
-  val decision: Table[DecisionRow] = Table(
-    "decision",
-    product[DecisionRow]:
-      (
-        long("sequence"),
-        text("vehicle"),
-        instantNs("decidedAt"),
-        prefixed("own", readingColumns),
-        prefixed("opponent", readingColumns),
-        metres("relativeX"),
-        metres("relativeY"),
-        radians("headingBefore"),
-        radians("opponentHeading"),
-        radians("heading"),
-        spanMs("elapsed"),
-        product[Observations]:
-          (
-            spanMs("ownAge"),
-            spanMs("opponentAge"),
-            optional(spanMs("sinceOwnMove")),
-            optional(spanMs("sinceOpponentMove"))
-          )
-        ,
-        optional(
-          product[TrueAge]:
-            (spanMs("ownTrueAge"), spanMs("opponentTrueAge"), spanNs("clockOffset"), spanMs("uncertainty"))
-        ),
-        optional(
-          product[Predicted]:
-            (
-              instantNs("actsAt"),
-              ned("ownPredictedPosition", "M"),
-              ned("ownPredictedVelocity", "Mps"),
-              ned("opponentPredictedPosition", "M"),
-              ned("opponentPredictedVelocity", "Mps")
-            )
-        ),
-        optional(speed("speed")),
-        added(optional(action))
-      )
-  )
-
-  val sighting: Table[Sighting] = Table(
-    "sighting",
-    product[Sighting]:
-      (
-        text("decider"),
-        long("decision"),
-        text("vehicle"),
-        long("reading"),
-        optional(product[PredictedMotion]:
-          (ned("predictedPosition", "M"), ned("predictedVelocity", "Mps")))
-      )
-    ,
-    since = 3
-  )
-
-  val measurement: Table[Measurement] = Table(
-    "measurement",
-    product[Measurement]:
-      (
-        long("sequence"),
-        text("vehicle"),
-        text("sensor"),
-        texts("quantities"),
-        doubles("numbers"),
-        instantNs("validAt"),
-        instantNs("sentAt"),
-        instantNs("receivedAt")
-      )
-    ,
-    since = 5
-  )
-
-  val sensing: Table[Sensing] = Table(
-    "sensing",
-    product[Sensing]((text("vehicle"), long("decision"), text("sensor"), long("measurement"))),
-    since = 5
-  )
-
-  val picture: Table[CameraImage] = Table(
-    "image",
-    product[CameraImage]:
-      (
-        long("sequence"),
-        text("vehicle"),
-        text("camera"),
-        text("kind"),
-        text("encoding"),
-        long("width"),
-        long("height"),
-        optional(radians("fov")),
-        ned("position", "M"),
-        quaternion("orientation"),
-        instantNs("validAt"),
-        instantNs("sentAt"),
-        instantNs("receivedAt"),
-        blob("pixels")
-      )
-    ,
-    since = 6
-  )
-
-  val cloud: Table[Cloud] = Table(
-    "cloud",
-    product[Cloud]:
-      (
-        long("sequence"),
-        text("vehicle"),
-        text("lidar"),
-        long("points"),
-        ned("position", "M"),
-        quaternion("orientation"),
-        instantNs("validAt"),
-        instantNs("sentAt"),
-        instantNs("receivedAt"),
-        blob("xyz")
-      )
-    ,
-    since = 6
-  )
-
-  val planned: Table[Planned] = Table(
-    "plan",
-    product[Planned]:
-      (
-        text("vehicle"),
-        long("decision"),
-        long("candidates"),
-        migrated(longs("slices"), "string_split(slices, ',')::BIGINT[]"),
-        optional(double("cost")),
-        spanMs("took"),
-        long("breaches"),
-        added(optional(
-          product[Course]((doubles("courseNorthM"), doubles("courseEastM"), spanMs("courseStep")))
-        ))
-      )
-    ,
-    since = 3
-  )
-
-  val solved: Table[SolvedRow] = Table(
-    "solved",
-    product[SolvedRow]:
-      (
-        text("vehicle"),
-        long("decision"),
-        long("question"),
-        instantNs("askedAt"),
-        instantNs("receivedAt"),
-        spanMs("thinking"),
-        optional(product[SolverClock]((spanNs("solverClockOffset"), spanMs("solverClockUncertainty"))))
-      )
-    ,
-    since = 6
-  )
-
-  val prediction: Table[Prediction] = Table(
-    "prediction",
-    product[Prediction]:
-      (
-        text("decider"),
-        text("vehicle"),
-        instantNs("madeAt"),
-        instantNs("predictedFor"),
-        spanMs("age"),
-        ned("position", "M"),
-        metres("error")
-      )
-  )
-
-  val command: Table[Command] = Table(
-    "command",
-    product[Command]:
-      (
-        long("sequence"),
-        text("vehicle"),
-        optional(long("decision")),
-        speed("velocityNorth"),
-        speed("velocityEast"),
-        metres("down"),
-        instantNs("sentAt")
-      )
-  )
-
-  val acknowledgement: Table[Acknowledgement] = Table(
-    "acknowledgement",
-    product[Acknowledgement]((text("vehicle"), long("command"), instantNs("endedAt"), text("outcome")))
-  )
-
-  val latency: Table[Latency] =
-    Table("latency", product[Latency]((text("link"), instantNs("sentAt"), spanMs("roundTrip"))))
-
-  /** Up to format 4, only the text of the event said which decision a fallback had made. */
-  private val decisionInDetail =
-    "try_cast(regexp_extract(detail, '^decision ([0-9]+) by the fallback: ', 1) AS BIGINT)"
-
-  val event: Table[Event] = Table(
-    "event",
-    product[Event]((
-      instantNs("at"),
-      eventKind("kind"),
-      optional(text("vehicle")),
-      text("detail"),
-      added(migrated(optional(long("decision")), decisionInDetail))
-    ))
-  )
-
-  val truth: Table[Truth] =
-    Table("truth", product[Truth]((text("vehicle"), instantNs("validAt"), ned("position", "M"))))
-
-  val ending: Table[Ending] =
-    Table(
-      "ending",
-      product[Ending]((instantNs("at"), endingKind("how"), optional(text("reason")))),
-      since = 4
-    )
+  private inline def table[A <: Record: ClassTag](name: String, since: Int = RecordingFormat.oldest)(using
+      Mirror.ProductOf[A]
+  ): Table[A] = Table(name, columns[A](), summon[ClassTag[A]].runtimeClass, since)
 
   val all: Vector[Table[? <: Record]] =
     Vector(
@@ -343,29 +143,12 @@ private[record] object Table:
       ending
     )
 
+  private val byRows: Map[Class[?], Table[? <: Record]] = all.map(table => table.rows -> table).toMap
+
   /** How a record lies in its table. */
   def columnsOf(record: Record): Columns[Record] =
     // The table that `of` gives is that of the record's own type.
     of(record).columns.asInstanceOf[Columns[Record]]
 
   /** The table that a record belongs to. */
-  def of(record: Record): Table[? <: Record] = record match
-    case _: FlightRow       => flight
-    case _: Parameter       => parameter
-    case _: Vehicle         => vehicle
-    case _: ReadingRow      => reading
-    case _: DecisionRow     => decision
-    case _: Sighting        => sighting
-    case _: Measurement     => measurement
-    case _: Sensing         => sensing
-    case _: CameraImage     => picture
-    case _: Cloud           => cloud
-    case _: Planned         => planned
-    case _: SolvedRow       => solved
-    case _: Prediction      => prediction
-    case _: Command         => command
-    case _: Acknowledgement => acknowledgement
-    case _: Latency         => latency
-    case _: Event           => event
-    case _: Truth           => truth
-    case _: Ending          => ending
+  def of(record: Record): Table[? <: Record] = byRows(record.getClass)

@@ -4,7 +4,7 @@ package skein.scene
   * cells, 587 tags, any two of which differ in 11 cells and more however they are turned.
   */
 object AprilTag:
-  /** Cells of a tag's picture across: six of data, a black border and a white margin of one each. */
+  /** Cells of a tag's pattern across: six of data, a black border and a white margin of one each. */
   val Cells = 10
 
   /** Each tag's cells row by row from the upper left one, the highest of 36 bits first; one is white. */
@@ -16,7 +16,7 @@ object AprilTag:
   def count: Int = codes.length
 
   /** Whether each cell is white, row by row from the upper left, margin and border included. */
-  private[scene] def picture(number: Int): Array[Boolean] =
+  private[scene] def pattern(number: Int): Array[Boolean] =
     Array.tabulate(Cells * Cells): i =>
       val (row, column)     = (i / Cells, i % Cells)
       def within(edge: Int) = Seq(row, column).forall(at => at >= edge && at < Cells - edge)

@@ -42,7 +42,7 @@ object Shape:
   private val Sides  = 8
   private val PlateM = 0.002
 
-  /** The front comes first: it bears a tag's picture. */
+  /** The front comes first: it bears a tag's pattern. */
   private def box(half: Vector3): (Array[Vector3], Array[Array[Int]]) =
     val corners = Array.tabulate(8): i =>
       def side(bit: Int, length: Double) = if (i & bit) == 0 then -length else length

@@ -48,7 +48,7 @@ private[skein] object Solid:
       val d: Double,
       val loop: Array[Int],
       val rgb: Int,
-      val picture: Picture | Null
+      val pattern: Pattern | Null
   )
 
   /** Cells painted on a face.
@@ -59,7 +59,7 @@ private[skein] object Solid:
     *   from it to the next column's, over the squared length of a cell: a place's column is its product with this;
     *   `down` likewise
     */
-  final class Picture(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
+  final class Pattern(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
 
   def apply(item: Int, shape: Shape, place: Placement, rgb: Int): Solid =
     val (own, loops) = shape.polyhedron
@@ -69,10 +69,10 @@ private[skein] object Solid:
       val normal         = (b - a).cross(c - a) * (1 / (b - a).cross(c - a).norm)
       val outwards       = normal.dot(a - place.position) > 0
       val n              = if outwards then normal else normal * -1
-      val picture        = shape match
+      val pattern        = shape match
         case Shape.Tag(number, side) if index == 0 => painted(number, side, place)
         case _                                     => null
-      Face(n.x, n.y, n.z, n.dot(a), if outwards then loop else loop.reverse, lit(rgb, n), picture)
+      Face(n.x, n.y, n.z, n.dot(a), if outwards then loop else loop.reverse, lit(rgb, n), pattern)
     new Solid(
       item,
       corners.flatMap(c => Array(c.x, c.y, c.z)),
@@ -95,11 +95,11 @@ private[skein] object Solid:
     )
 
   /** As one sees it who faces it: its columns run to the plate's left. */
-  private def painted(number: Int, side: Double, place: Placement): Picture =
+  private def painted(number: Int, side: Double, place: Placement): Pattern =
     val cell = side / 8
     val half = cell * AprilTag.Cells / 2
-    Picture(
-      AprilTag.picture(number),
+    Pattern(
+      AprilTag.pattern(number),
       place.outside(Vector3(0, half, -half)),
       place.right * (-1 / cell),
       place.down * (1 / cell)

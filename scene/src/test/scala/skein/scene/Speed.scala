@@ -5,7 +5,7 @@ import java.util.zip.CRC32
 import skein.scene.render.*
 import skein.units.Vector3
 
-/** CPU time of pictures and scans, beside a witness of what was drawn: `scene/Test/runMain skein.scene.speed`. */
+/** CPU time of images and scans, beside a witness of what was drawn: `scene/Test/runMain skein.scene.speed`. */
 @main def speed(): Unit =
   val threads = ManagementFactory.getThreadMXBean
   val view    = View(Placement.turned(Vector3(0, 0, -3), 2, -5, 10), 1280, 720, 90)
@@ -29,8 +29,8 @@ import skein.units.Vector3
 
   def draw(moment: Moment, kinds: Kind*): Long =
     Renderer.draw(moment, view, kinds.toSet, item => item & 255).values.map:
-      case Picture.Bytes(bytes)    => crc(bytes)
-      case Picture.Numbers(values) => values(values.length / 2).toInt.toLong
+      case Image.Bytes(bytes)    => crc(bytes)
+      case Image.Numbers(values) => values(values.length / 2).toInt.toLong
     .sum
 
   row("1280 × 720, 60 boxes: Scene")(draw(Scenes.Sixty, Kind.Scene))
@@ -43,8 +43,8 @@ import skein.units.Vector3
   row("  DepthPerspective")(draw(Scenes.Sixty, Kind.DepthPerspective))
   row("  forest: Scene")(draw(forest, Kind.Scene))
   val scene = Renderer.draw(Scenes.Sixty, view, Set(Kind.Scene), identity)(Kind.Scene) match
-    case Picture.Bytes(bytes) => bytes
-    case _                    => Array.emptyByteArray
+    case Image.Bytes(bytes) => bytes
+    case _                  => Array.emptyByteArray
   row(s"  PNG of Scene")(Png.encode(scene, 1280, 720).length)
   val lidar = Lidar()
   row("lidar, a turn of 10,000 rays, 60 boxes"):

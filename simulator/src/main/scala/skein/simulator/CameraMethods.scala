@@ -158,8 +158,7 @@ private[simulator] object CameraMethods:
       change: Camera => Camera
   ): Outcome =
     of(simulation, camera, name, external): (index, camera) =>
-      simulation.cameras(index, camera) = change(cameraOf(simulation, index, camera))
-      Nil
+      done(simulation.cameras(index, camera) = change(cameraOf(simulation, index, camera)))
 
   private def detecting(simulation: Simulated, camera: String, kind: Int, name: String, external: Boolean)(
       change: Detection => Either[String, Detection]
@@ -171,8 +170,7 @@ private[simulator] object CameraMethods:
         change(simulation.cameras.detection(index, camera, kind)) match
           case Left(refusal) => Outcome.Threw(refusal)
           case Right(filter) =>
-            simulation.cameras.setDetection(index, camera, kind, filter)
-            Nil
+            done(simulation.cameras.setDetection(index, camera, kind, filter))
 
   /** The vehicle's index and the camera's own name. AirSim ends itself on a camera that is not there. */
   private def of(simulation: Simulated, camera: String, name: String, external: Boolean)(

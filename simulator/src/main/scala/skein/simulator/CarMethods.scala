@@ -9,9 +9,7 @@ private[simulator] object CarMethods:
   val all: Seq[Method] = Seq(
     many[(CarControls, String)]("setCarControls"):
       case (simulation, (controls, name)) =>
-        car(simulation, name): (_, car) =>
-          car.setControls(controls)
-          Nil
+        car(simulation, name)((_, car) => done(car.setControls(controls)))
     ,
     one[String]("getCarControls")((simulation, name) =>
       car(simulation, name)((_, car) => answer(car.controls))

@@ -1,10 +1,7 @@
 package skein.simulator
 
-import scala.util.control.NonFatal
-import skein.airsim.{SensorKind, SettingsError, WorldSettings}
+import skein.airsim.{SensorKind, SettingsError, SettingsSection}
 import skein.scene.{Lidar, Placement}
-import skein.units.Vector3
-import ujson.{Num, Obj, Str, Value}
 
 /** What vehicles carry by a `settings.json`: cameras, lidars and distance sensors. Keys and defaults are AirSim's; of a
   * lidar there are three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh` (a scan of the instant at which it is asked
@@ -50,25 +47,18 @@ private[simulator] object Equipment:
   val None: Equipment = Equipment(Map.empty, Map.empty, Map.empty, Map.empty)
 
   /** Reads it from the file's text, which is JSON. */
-  def read(text: String): Either[SettingsError, Equipment] =
-    try
-      ujson.read(text) match
-        case root: Obj => Right(of(Section(root, "")))
-        case _         => Right(None)
-    catch
-      case e: Misfit   => Left(e.error)
-      case NonFatal(e) => Left(WorldSettings.notJson(text, e))
+  def read(text: String): Either[SettingsError, Equipment] = SettingsSection.read(text)(of)
 
-  private def of(root: Section): Equipment =
-    val vehicles                                         = root.sections("Vehicles")
-    val unless                                           = root.sections("DefaultSensors")
-    def sensors[A](kind: SensorKind)(read: Section => A) = vehicles.map: (name, vehicle) =>
+  private def of(root: SettingsSection): Equipment =
+    val vehicles                                                 = root.sections("Vehicles")
+    val unless                                                   = root.sections("DefaultSensors")
+    def sensors[A](kind: SensorKind)(read: SettingsSection => A) = vehicles.map: (name, vehicle) =>
       // As for other kinds, what a vehicle lists of a kind stands for what the defaults list of it.
-      def listed(all: Vector[(String, Section)]) =
+      def listed(all: Vector[(String, SettingsSection)]) =
         all.filter((_, sensor) => sensor.number("SensorType", 0) == kind.number.toDouble)
       val own = listed(vehicle.sections("Sensors"))
       name -> (if own.nonEmpty then own else listed(unless))
-        .filter((_, sensor) => sensor.flag("Enabled", default = false))
+        .filter((_, sensor) => sensor.flag("Enabled", unless = false))
         .map((sensorName, sensor) => sensorName -> read(sensor))
     .toMap
     Equipment(
@@ -78,15 +68,15 @@ private[simulator] object Equipment:
       ).toMap,
       sensors(SensorKind.Lidar)(lidar),
       sensors(SensorKind.Distance)(sensor =>
-        Ranger(sensor.place, sensor.number("MinDistance", 0.2), sensor.number("MaxDistance", 40))
+        Ranger(placeOf(sensor), sensor.number("MinDistance", 0.2), sensor.number("MaxDistance", 40))
       )
     )
 
-  private def camera(section: Section): Carried =
+  private def camera(section: SettingsSection): Carried =
     val placed = Seq("X", "Y", "Z", "Roll", "Pitch", "Yaw").exists(section.has)
-    Carried(Option.when(placed)(section.place), captures(section, Capture()))
+    Carried(Option.when(placed)(placeOf(section)), captures(section, Capture()))
 
-  private def captures(section: Section, unless: Capture): Map[Int, Capture] =
+  private def captures(section: SettingsSection, unless: Capture): Map[Int, Capture] =
     section.list("CaptureSettings").map: capture =>
       val width  = capture.number("Width", unless.width, 1, 8192).toInt
       val height = capture.number("Height", unless.height, 1, 8192).toInt
@@ -96,7 +86,7 @@ private[simulator] object Equipment:
         Capture(width, height, capture.number("FOV_Degrees", unless.fovDeg, 1, 179).toFloat)
     .toMap
 
-  private def lidar(section: Section): Lidar =
+  private def lidar(section: SettingsSection): Lidar =
     val unless = Lidar()
     Lidar(
       channels = section.number("NumberOfChannels", unless.channels, 1, 1024).toInt,
@@ -111,7 +101,7 @@ private[simulator] object Equipment:
         section.number("VerticalFOVLower", unless.verticalFovDeg._1, -90, 90),
         section.number("VerticalFOVUpper", unless.verticalFovDeg._2, -90, 90)
       ),
-      place = section.place,
+      place = placeOf(section),
       sensorFrame = section.text("DataFrame", "VehicleInertialFrame") match
         case "VehicleInertialFrame" => false
         case "SensorLocalFrame"     => true
@@ -119,59 +109,13 @@ private[simulator] object Equipment:
       ,
       noiseM = section.number("RangeNoise", 0, 0, 100),
       seed = section.number("NoiseSeed", 0, -1e15, 1e15).toLong,
-      fresh = section.flag("Fresh", default = false)
+      fresh = section.flag("Fresh", unless = false)
     )
 
-  final private class Misfit(val error: SettingsError)
-      extends RuntimeException(
-        error.message,
-        null, /* enableSuppression = */ false, /* writableStackTrace = */ false
-      )
-
-  /** An object of the file, and where it stands. */
-  final private class Section(fields: Obj, path: String):
-    def has(key: String): Boolean = fields.value.contains(key)
-
-    def fail(key: String, expected: String, found: String): Nothing =
-      throw Misfit(SettingsError.Unexpected(s"$path.$key".stripPrefix("."), expected, found))
-
-    def number(key: String, unless: Double, least: Double = -1e9, most: Double = 1e9): Double =
-      fields.value.get(key) match
-        case Some(Num(value)) if value >= least && value <= most => value
-        case Some(other) => fail(key, s"a number from $least to $most", other.render())
-        case scala.None  => unless
-
-    def text(key: String, unless: String): String = fields.value.get(key) match
-      case Some(Str(value)) => value
-      case Some(other)      => fail(key, "a string", other.render())
-      case scala.None       => unless
-
-    def flag(key: String, default: Boolean): Boolean = fields.value.get(key) match
-      case Some(ujson.Bool(value)) => value
-      case Some(other)             => fail(key, "true or false", other.render())
-      case scala.None              => default
-
-    def section(key: String): Section = fields.value.get(key).fold(Section(Obj(), path))(of(key, _))
-
-    def sections(key: String): Vector[(String, Section)] =
-      val inner = section(key)
-      inner.all.map((name, value) => name -> inner.of(name, value))
-
-    def list(key: String): Vector[Section] = fields.value.get(key) match
-      case Some(values: ujson.Arr) => values.value.toVector.map(of(key, _))
-      case Some(other)             => fail(key, "a list", other.render())
-      case scala.None              => Vector.empty
-
-    def place: Placement = Placement.turned(
-      Vector3(number("X", 0), number("Y", 0), number("Z", 0)),
-      number("Roll", 0),
-      number("Pitch", 0),
-      number("Yaw", 0)
+  private def placeOf(section: SettingsSection): Placement =
+    Placement.turned(
+      section.vector,
+      section.number("Roll", 0),
+      section.number("Pitch", 0),
+      section.number("Yaw", 0)
     )
-
-    private def all: Vector[(String, Value)] =
-      if path == "" && fields.value.isEmpty then Vector.empty else fields.value.toVector
-
-    private def of(key: String, value: Value): Section = value match
-      case inner: Obj => Section(inner, s"$path.$key".stripPrefix("."))
-      case other      => fail(key, "an object", other.render())

@@ -57,6 +57,11 @@ private[simulator] object Method:
 
   def answer[A: Writer](value: A): Outcome = Outcome.Answered(writeMsg(value))
 
+  /** Does what answers nothing. */
+  def done(effect: => Unit): Outcome =
+    effect
+    Nil
+
   val Nil: Outcome = Outcome.Answered(upack.Null)
 
   /** The vehicle of this name, or the default one if it is empty. */

@@ -24,8 +24,7 @@ private[simulator] object SceneMethods:
               "kinematics within 1000 km, 10 km/s, 1000 rad/s, 1000 km/s² and 1000000 rad/s² are wanted"
             )
           else
-            vehicle.setKinematics(state, simulation.world.now)
-            Nil
+            done(vehicle.setKinematics(state, simulation.world.now))
     ,
     one[String]("simListSceneObjects"): (simulation, regex) =>
       val pattern = NamePattern(regex)

@@ -1,10 +1,10 @@
 package skein.simulator
 
 import skein.airsim.wire.*
-import skein.scene.render.{Kind, Picture, Png, Renderer, View}
+import skein.scene.render.{Kind, Image, Png, Renderer, View}
 import skein.scene.{Moment, Placement}
 
-/** Pictures that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
+/** Images that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
   * Taken once, on any thread.
   */
 final private[simulator] class Shots private (
@@ -20,23 +20,23 @@ final private[simulator] class Shots private (
       view -> Renderer.draw(moment, view, shots.map(_.kind).toSet, ids(_), except = moment.itemOf(vehicle))
     wanted.map(shot => response(shot, drawn(shot.view)(shot.kind)))
 
-  private def response(shot: Wanted, picture: Picture): ImageResponse =
+  private def response(shot: Wanted, image: Image): ImageResponse =
     val view  = shot.view
     val empty = shot.response.copy(width = view.width, height = view.height)
-    if shot.response.pixels_as_float then empty.copy(image_data_float = numbers(picture))
+    if shot.response.pixels_as_float then empty.copy(image_data_float = numbers(image))
     else if shot.response.compress then
-      empty.copy(image_data_uint8 = Png.encode(bytes(picture), view.width, view.height))
-    else empty.copy(image_data_uint8 = bytes(picture))
+      empty.copy(image_data_uint8 = Png.encode(bytes(image), view.width, view.height))
+    else empty.copy(image_data_uint8 = bytes(image))
 
-  /** Of a coloured picture the red, from 0 to 1, as AirSim. */
-  private def numbers(picture: Picture): Array[Float] = picture match
-    case Picture.Numbers(values) => values
-    case Picture.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
+  /** Of a coloured image the red, from 0 to 1, as AirSim. */
+  private def numbers(image: Image): Array[Float] = image match
+    case Image.Numbers(values) => values
+    case Image.Bytes(bgr)      => Array.tabulate(bgr.length / 3)(i => (bgr(3 * i + 2) & 0xff) / 255f)
 
-  /** Of a picture of numbers a grey that is white from 1 on, as AirSim. */
-  private def bytes(picture: Picture): Array[Byte] = picture match
-    case Picture.Bytes(bgr)      => bgr
-    case Picture.Numbers(values) => values.flatMap: value =>
+  /** Of an image of numbers a grey that is white from 1 on, as AirSim. */
+  private def bytes(image: Image): Array[Byte] = image match
+    case Image.Bytes(bgr)      => bgr
+    case Image.Numbers(values) => values.flatMap: value =>
         val grey = (math.min(1f, value) * 255 + 0.5f).toByte
         Array(grey, grey, grey)
 
@@ -47,7 +47,7 @@ private[simulator] object Shots:
   final case class Wanted(view: View, kind: Kind, response: ImageResponse)
 
   /** Of one call. */
-  val MostPictures = 64
+  val MostImages = 64
 
   /** Of one answer: what a client of ours takes. */
   val MostBytes: Long = 60L << 20
@@ -77,14 +77,14 @@ private[simulator] object Shots:
       fovDeg(seen)
     )
 
-  /** Films and lenses can be set to what no picture has. */
+  /** Films and lenses can be set to what no image has. */
   private def fovDeg(camera: Camera): Double = math.max(0.01, math.min(179.9, camera.fovDeg.toDouble))
 
   def of(simulation: Simulated, vehicle: Int, requests: Seq[ImageRequest]): Either[String, Shots] =
     val asked = requests.map(wanted(simulation, vehicle, _))
     val size  = asked.iterator.collect { case Right(shot) => bytesOf(shot) }.sum
-    if requests.size > MostPictures then
-      Left(s"at most $MostPictures images are rendered at once, not ${requests.size}")
+    if requests.size > MostImages then
+      Left(s"at most $MostImages images are rendered at once, not ${requests.size}")
     else if size > MostBytes then Left(s"images of $size bytes in one answer; at most $MostBytes are sent")
     else
       asked.collectFirst { case Left(refusal) => refusal }.toLeft:

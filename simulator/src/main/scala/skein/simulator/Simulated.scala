@@ -20,8 +20,6 @@ private[simulator] trait Simulated:
 
   private[simulator] def equipment: Equipment
 
-  private[simulator] def appearance: Appearance
-
   /** Whether a client has asked for AirSim's own recording. Nothing is written: Skein's recordings are the controller's. */
   private[simulator] def recording: Boolean
 

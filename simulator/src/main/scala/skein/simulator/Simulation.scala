@@ -42,10 +42,9 @@ final class Simulation(
   val world: World =
     World(settings.world, startedAt, settings.multirotors, scene = settings.scene, equipment = equipment)
 
-  private[simulator] val objects    = SceneObjects(world)
-  private[simulator] val cameras    = Cameras(equipment)
-  private[simulator] val appearance = Appearance()
-  private[simulator] var recording  = false
+  private[simulator] val objects   = SceneObjects(world)
+  private[simulator] val cameras   = Cameras(equipment)
+  private[simulator] var recording = false
 
   /** Of its clock, against that whose times it is told. */
   private[simulator] val speed: Double = settings.speed * settings.world.clockSpeed

@@ -11,25 +11,17 @@ private[simulator] object SimulatorMethods:
     none("ping")(_ => answer(true)),
     none("getServerVersion")(_ => answer(1)),
     none("getMinRequiredClientVersion")(_ => answer(1)),
-    one[Boolean]("simPause"): (simulation, on) =>
-      simulation.setPaused(on)
-      Nil
-    ,
+    one[Boolean]("simPause")((simulation, on) => done(simulation.setPaused(on))),
     none("simIsPaused")(simulation => answer(simulation.isPaused)),
     one[Double]("simContinueForTime")((_, seconds) => steps(Span.ofSeconds(math.min(seconds, LongestStepS)))),
     one[Argument.Unsigned32]("simContinueForFrames")((simulation, frames) =>
       steps(simulation.world.step * math.min(frames, LongestStepS.toLong * 1000))
     ),
-    none("reset"): simulation =>
-      simulation.world.reset()
-      Nil
-    ,
+    none("reset")(simulation => done(simulation.world.reset())),
     // AirSim keeps them sorted by name.
     none("listVehicles")(simulation => answer(simulation.world.vehicles.map(_.settings.name).sorted)),
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
-    one[Vector3r]("simSetWind"): (simulation, wind) =>
-      simulation.world.setWind(wind.toVector)
-      Nil
+    one[Vector3r]("simSetWind")((simulation, wind) => done(simulation.world.setWind(wind.toVector)))
   )
 
   /** A day: far beyond use, and far below what would overflow a clock. */

@@ -4,6 +4,7 @@ import skein.airsim.SensorKind
 import skein.airsim.wire.*
 import skein.scene.Rays
 import skein.units.*
+import upickle.default.Writer
 
 /** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay; AirSim's GPS
   * tells it 0.2 s late.
@@ -14,9 +15,7 @@ private[simulator] object VehicleMethods:
   val all: Seq[Method] = Seq(
     many[(Boolean, String)]("enableApiControl"):
       case (simulation, (on, name)) =>
-        vehicle(simulation, name): (_, vehicle) =>
-          vehicle.setApiControl(on)
-          Nil
+        vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
     ,
     one[String]("isApiControlEnabled")((simulation, name) =>
       vehicle(simulation, name)((_, vehicle) => answer(vehicle.apiControl))
@@ -26,38 +25,23 @@ private[simulator] object VehicleMethods:
     ,
     many[(RcData, String)]("moveByRC"):
       case (simulation, (sticks, name)) =>
-        multirotor(simulation, name): (_, vehicle) =>
-          vehicle.steer(sticks)
-          Nil
+        multirotor(simulation, name)((_, vehicle) => done(vehicle.steer(sticks)))
     ,
-    one[String]("cancelLastTask"): (simulation, name) =>
-      vehicle(simulation, name): (index, _) =>
-        simulation.world.cancelMove(index)
-        Nil
-    ,
-    one[String]("getMultirotorState")((simulation, name) =>
-      multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, simulation.world.now)))
+    one[String]("cancelLastTask")((simulation, name) =>
+      vehicle(simulation, name)((index, _) => done(simulation.world.cancelMove(index)))
     ),
-    one[String]("getRotorStates")((simulation, name) =>
-      multirotor(simulation, name)((_, vehicle) => answer(rotors(vehicle, simulation.world.now)))
-    ),
+    read("getMultirotorState", multirotor)(state),
+    read("getRotorStates", multirotor)(rotors),
     one[String]("getHomeGeoPoint")((simulation, name) =>
       vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
     ),
-    one[String]("simGetGroundTruthKinematics")((simulation, name) =>
-      simulated(simulation, name)((_, vehicle) => answer(kinematics(vehicle, simulation.world.now)))
-    ),
-    one[String]("simGetGroundTruthEnvironment")((simulation, name) =>
-      simulated(simulation, name)((_, vehicle) => answer(environment(vehicle, simulation.world.now)))
-    ),
-    one[String]("simGetVehiclePose")((simulation, name) =>
-      simulated(simulation, name)((_, vehicle) => answer(pose(vehicle, simulation.world.now)))
-    ),
+    read("simGetGroundTruthKinematics", simulated)(kinematics),
+    read("simGetGroundTruthEnvironment", simulated)(environment),
+    read("simGetVehiclePose", simulated)(pose),
     many[(Pose, Boolean, String)]("simSetVehiclePose"):
       case (simulation, (pose, _, name)) =>
         simulated(simulation, name): (_, vehicle) =>
-          vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now)
-          Nil
+          done(vehicle.place(pose.position.toVector, pose.orientation.toQuaternion, simulation.world.now))
     ,
     one[String]("simGetCollisionInfo")((simulation, name) =>
       simulated(simulation, name)((_, vehicle) => answer(collision(vehicle.takeTouch())))
@@ -71,17 +55,12 @@ private[simulator] object VehicleMethods:
             Outcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
           else
             val turn = pose.orientation.toQuaternion
-            vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now)
-            Nil
+            done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
     ,
-    sensor("getImuData", SensorKind.Imu, "IMU")((vehicle, at) => answer(imu(vehicle, at))),
-    sensor("getGpsData", SensorKind.Gps, "gps")((vehicle, at) => answer(Gps.read(vehicle, at))),
-    sensor("getBarometerData", SensorKind.Barometer, "barometer")((vehicle, at) =>
-      answer(barometer(vehicle, at))
-    ),
-    sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")((vehicle, at) =>
-      answer(magnetometer(vehicle, at))
-    ),
+    sensor("getImuData", SensorKind.Imu, "IMU")(imu),
+    sensor("getGpsData", SensorKind.Gps, "gps")(Gps.read),
+    sensor("getBarometerData", SensorKind.Barometer, "barometer")(barometer),
+    sensor("getMagnetometerData", SensorKind.Magnetometer, "magnetometer")(magnetometer),
     many[(String, String)]("getLidarData"):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (index, vehicle) =>
@@ -101,16 +80,23 @@ private[simulator] object VehicleMethods:
             ranger => answer(distance(simulation, index, ranger))
   )
 
+  /** What is so of a vehicle that is found by its name, now. */
+  private def read[V, A: Writer](
+      method: String,
+      find: (Simulated, String) => ((Int, V) => Outcome) => Outcome
+  )(value: (V, Instant) => A): Method =
+    one[String](method): (simulation, name) =>
+      find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
+
   /** The empty name means the first of its kind. */
-  private def sensor(method: String, kind: SensorKind, called: String)(
-      read: (SimulatedVehicle, Instant) => Outcome
+  private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
+      value: (SimulatedVehicle, Instant) => A
   ): Method =
     many[(String, String)](method):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (_, vehicle) =>
           if vehicle.settings.sensors.exists((has, is) => is == kind && (sensor.isEmpty || sensor == has))
-          then
-            read(vehicle, simulation.world.now)
+          then answer(value(vehicle, simulation.world.now))
           else missing(called, sensor)
 
   /** To what the sensor's front points to, at most its greatest distance. */

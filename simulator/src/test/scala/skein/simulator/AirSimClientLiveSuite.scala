@@ -3,8 +3,9 @@ package skein.simulator
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
-import skein.airsim.{AirSimClient, Lookahead, Multirotor, VehiclePose, VehicleSettings, WorldSettings, Yaw}
+import skein.airsim.{AirSimClient, Lookahead, Multirotor, VehiclePose, VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport, TransportError}
+import skein.policy.Yaw
 import skein.rpc.{RpcClient, RpcError, RpcSettings}
 import skein.units.*
 

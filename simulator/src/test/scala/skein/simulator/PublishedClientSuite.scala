@@ -35,7 +35,7 @@ class PublishedClientSuite extends munit.FunSuite:
 
   test("the page lists every function once, and none that does not exist"):
     assertEquals(told.map(_._1).sorted, Simulation.methodNames.toSeq.sorted)
-    assertEquals(told.map(_._2).toSet, Set("true", "kept", "refused"))
+    assertEquals(told.map(_._2).toSet, Set("true", "kept", "checked", "refused"))
 
   test("what the page says is refused is refused, and nothing else is"):
     for (name, how) <- told do

@@ -27,21 +27,21 @@ private[render] object Layer:
     def bytes: Array[Byte] = flat.bytes
 
     def fill(face: Int, row: Int, from: Int, until: Int): Unit =
-      val picture = if face == Sky then null else surfaces.faces(face).picture
-      if picture == null then flat.fill(face, row, from, until)
-      else paintPicture(picture, face, row, from, until)
+      val pattern = if face == Sky then null else surfaces.faces(face).pattern
+      if pattern == null then flat.fill(face, row, from, until)
+      else paintPattern(pattern, face, row, from, until)
 
-    /** A place on the plate is c + p/i, where p is linear on the picture and i the inverse depth. */
-    private def paintPicture(picture: Solid.Picture, face: Int, row: Int, from: Int, until: Int): Unit =
+    /** A place on the plate is c + p/i, where p is linear on the image and i the inverse depth. */
+    private def paintPattern(pattern: Solid.Pattern, face: Int, row: Int, from: Int, until: Int): Unit =
       val shade    = surfaces.faces(face).rgb
-      val toCamera = view.place.position - picture.origin
-      val column0  = dot(picture.across, toCamera)
-      val line0    = dot(picture.down, toCamera)
-      val columnX  = dot(picture.across, view.place.right) / view.focalPx
-      val lineX    = dot(picture.down, view.place.right) / view.focalPx
+      val toCamera = view.place.position - pattern.origin
+      val column0  = dot(pattern.across, toCamera)
+      val line0    = dot(pattern.down, toCamera)
+      val columnX  = dot(pattern.across, view.place.right) / view.focalPx
+      val lineX    = dot(pattern.down, view.place.right) / view.focalPx
       val v        = (row + 0.5 - view.height / 2.0) / view.focalPx
-      val columnY  = dot(picture.across, view.place.front) + dot(picture.across, view.place.down) * v
-      val lineY    = dot(picture.down, view.place.front) + dot(picture.down, view.place.down) * v
+      val columnY  = dot(pattern.across, view.place.front) + dot(pattern.across, view.place.down) * v
+      val lineY    = dot(pattern.down, view.place.front) + dot(pattern.down, view.place.down) * v
       val inverse0 = surfaces.c(face) + surfaces.b(face) * (row + 0.5)
       var x        = from
       var at       = (row * view.width + from) * 3
@@ -50,7 +50,7 @@ private[render] object Layer:
         val depth  = 1 / (inverse0 + surfaces.a(face) * (x + 0.5))
         val column = cell(column0 + depth * (columnY + columnX * u))
         val line   = cell(line0 + depth * (lineY + lineX * u))
-        val colour = if picture.white(line * Cells + column) then shade else Ink
+        val colour = if pattern.white(line * Cells + column) then shade else Ink
         bytes(at) = colour.toByte
         bytes(at + 1) = (colour >> 8).toByte
         bytes(at + 2) = (colour >> 16).toByte

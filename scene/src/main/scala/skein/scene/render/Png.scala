@@ -5,8 +5,8 @@ import java.nio.ByteBuffer
 import java.util.Arrays
 import java.util.zip.CRC32
 
-/** PNG files of pictures of few colours, fast, and the same bytes on every machine: each pixel less the one above it, in
-  * one deflate block of fixed codes whose only matches are runs. What is as in the row above, most of a drawn picture, is
+/** PNG files of images of few colours, fast, and the same bytes on every machine: each pixel less the one above it, in
+  * one deflate block of fixed codes whose only matches are runs. What is as in the row above, most of a drawn image, is
   * found by comparing arrays.
   */
 object Png:
@@ -39,7 +39,7 @@ object Png:
     out.write(content)
     out.write(ByteBuffer.allocate(4).putInt(crc.getValue.toInt).array)
 
-  /** The zlib stream of a picture (RFC 1950, RFC 1951). */
+  /** The zlib stream of an image (RFC 1950, RFC 1951). */
   final private class Stream(bgr: Array[Byte], width: Int, height: Int):
     private var bytes = new Array[Byte](bgr.length / 16 + 1024)
     private var used  = 0

@@ -3,7 +3,7 @@ package skein.scene.render
 import skein.scene.{Item, Moment, Solid}
 import skein.units.Vector3
 
-/** Draws what a camera sees of a moment, in one pass for all kinds of pictures. Flat colours in one light: no shadows, no
+/** Draws what a camera sees of a moment, in one pass for all kinds of images. Flat colours in one light: no shadows, no
   * haze, no lens. Deterministic: the same moment and view give the same bytes on every machine, as only additions,
   * products, quotients and square roots of floating-point numbers decide them. Cost of 1280 × 720 with 60 boxes: below
   * 1.5 ms of one core for [[Kind.Scene]].
@@ -21,13 +21,13 @@ object Renderer:
       kinds: Set[Kind],
       idOf: Int => Int,
       except: Int = Item.Nothing
-  ): Map[Kind, Picture] =
+  ): Map[Kind, Image] =
     val surfaces                 = seen(moment, view, except)
     val needed                   = kinds.map(_.drawnAs)
     val layers: Map[Kind, Layer] =
       needed.iterator.map(kind => kind -> layerOf(kind, moment, view, surfaces, idOf)).toMap
     Sweep(view, surfaces).run(layers.values.toArray)
-    kinds.iterator.map(kind => kind -> pictureOf(kind, view, layers(kind.drawnAs))).toMap
+    kinds.iterator.map(kind => kind -> imageOf(kind, view, layers(kind.drawnAs))).toMap
 
   /** The items of which something is seen, each with the least box around its pixels.
     *
@@ -53,24 +53,24 @@ object Renderer:
 
   private def layerOf(kind: Kind, moment: Moment, view: View, surfaces: Surfaces, idOf: Int => Int): Layer =
     kind match
-      case Kind.DepthPlanar      => Layer.Planar(view, surfaces, Picture.BeyondM)
-      case Kind.DepthPerspective => Layer.Perspective(view, surfaces, Picture.BeyondM)
+      case Kind.DepthPlanar      => Layer.Planar(view, surfaces, Image.BeyondM)
+      case Kind.DepthPerspective => Layer.Perspective(view, surfaces, Image.BeyondM)
       case Kind.Segmentation     =>
         Layer.Flat(view, surfaces, Palette.rgb(0), (_, item) => Palette.rgb(idOf(item)))
       case Kind.Infrared       => Layer.Flat(view, surfaces, 0, (_, item) => idOf(item) * 0x010101)
       case Kind.SurfaceNormals => Layer.Flat(view, surfaces, 0x808080, (face, _) => normalRgb(face))
       case _                   => Layer.Lit(view, surfaces, moment.scene.skyRgb)
 
-  private def pictureOf(kind: Kind, view: View, layer: Layer): Picture = (kind, layer) match
-    case (Kind.DepthVis, depth: Layer.Planar) => Picture.Bytes(grey(depth.metres, _ / Picture.WhiteM))
+  private def imageOf(kind: Kind, view: View, layer: Layer): Image = (kind, layer) match
+    case (Kind.DepthVis, depth: Layer.Planar)            => Image.Bytes(grey(depth.metres, _ / Image.WhiteM))
     case (Kind.DisparityNormalized, depth: Layer.Planar) =>
-      val most = (Picture.BaselineM * view.focalPx / view.width).toFloat
-      Picture.Numbers(depth.metres.map(most / _))
-    case (_, depth: Layer.Planar)      => Picture.Numbers(depth.metres)
-    case (_, depth: Layer.Perspective) => Picture.Numbers(depth.metres)
-    case (_, flat: Layer.Flat)         => Picture.Bytes(flat.bytes)
-    case (_, lit: Layer.Lit)           => Picture.Bytes(lit.bytes)
-    case (_, other)                    => throw IllegalStateException(s"no picture of $other")
+      val most = (Image.BaselineM * view.focalPx / view.width).toFloat
+      Image.Numbers(depth.metres.map(most / _))
+    case (_, depth: Layer.Planar)      => Image.Numbers(depth.metres)
+    case (_, depth: Layer.Perspective) => Image.Numbers(depth.metres)
+    case (_, flat: Layer.Flat)         => Image.Bytes(flat.bytes)
+    case (_, lit: Layer.Lit)           => Image.Bytes(lit.bytes)
+    case (_, other)                    => throw IllegalStateException(s"no image of $other")
 
   private inline def grey(values: Array[Float], inline brightness: Float => Float): Array[Byte] =
     val bytes = new Array[Byte](values.length * 3)

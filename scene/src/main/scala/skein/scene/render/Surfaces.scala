@@ -4,7 +4,7 @@ import skein.scene.Solid
 import skein.units.Vector3
 
 /** The faces that a view may show, projected: for each the rows that it covers, where it begins and ends in each, and its
-  * inverse depth, which is linear on the picture: a·x + b·y + c at the pixel (x, y)'s upper left corner, 1/m.
+  * inverse depth, which is linear on the image: a·x + b·y + c at the pixel (x, y)'s upper left corner, 1/m.
   *
   * A pixel belongs to a face if its middle does, so that faces that share an edge neither overlap there nor leave a gap.
   */
@@ -112,7 +112,7 @@ final private[render] class Surfaces(view: View):
       i += 1
     corners
 
-  /** Notes the rows that a polygon on the picture covers, and where; whether it covers any. */
+  /** Notes the rows that a polygon on the image covers, and where; whether it covers any. */
   private def trace(corners: Int): Boolean =
     var area     = 0.0
     var (x0, x1) = (Double.PositiveInfinity, Double.NegativeInfinity)
@@ -156,7 +156,7 @@ final private[render] class Surfaces(view: View):
       spans(offset + 2 * (row - firstRow)) = pixel(x, width)
       row += 1
 
-  /** The first pixel whose middle lies at or behind this, within the picture. */
+  /** The first pixel whose middle lies at or behind this, within the image. */
   private def pixel(at: Double, size: Int): Int = math.max(0, math.min(size, math.ceil(at - 0.5).toInt))
 
   private def grow(): Unit =

@@ -10,5 +10,5 @@ import skein.scene.Placement
 final case class View(place: Placement, width: Int, height: Int, fovDeg: Double):
   require(width > 0 && height > 0 && fovDeg > 0 && fovDeg < 180, s"no view: $width × $height, $fovDeg°")
 
-  /** Pixels from the camera to the picture. */
+  /** Pixels from the camera to the image. */
   val focalPx: Double = width / 2.0 / StrictMath.tan(StrictMath.toRadians(fovDeg) / 2)

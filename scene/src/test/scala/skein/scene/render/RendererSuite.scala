@@ -19,24 +19,24 @@ class RendererSuite extends munit.FunSuite:
   private def draw(moment: Moment, view: View, kinds: Kind*) =
     Renderer.draw(moment, view, kinds.toSet, idOf = item => 1 + item)
 
-  private def bgr(pictures: Map[Kind, Picture], kind: Kind) = pictures(kind) match
-    case Picture.Bytes(bytes) => bytes
-    case other                => fail(s"$kind came as $other")
+  private def bgr(images: Map[Kind, Image], kind: Kind) = images(kind) match
+    case Image.Bytes(bytes) => bytes
+    case other              => fail(s"$kind came as $other")
 
-  private def numbers(pictures: Map[Kind, Picture], kind: Kind) = pictures(kind) match
-    case Picture.Numbers(values) => values
-    case other                   => fail(s"$kind came as $other")
+  private def numbers(images: Map[Kind, Image], kind: Kind) = images(kind) match
+    case Image.Numbers(values) => values
+    case other                 => fail(s"$kind came as $other")
 
   test("every pixel shows what a ray through its middle meets, as far away as it meets it"):
     for seed <- 1 to 6 do
-      val moment   = Moment(Scenes.boxes(40, seed), Vector.empty)
-      val view     = eye(seed)
-      val pictures = draw(moment, view, Kind.DepthPerspective, Kind.DepthPlanar, Kind.Infrared)
-      val far      = numbers(pictures, Kind.DepthPerspective)
-      val planar   = numbers(pictures, Kind.DepthPlanar)
-      val ids      = bgr(pictures, Kind.Infrared)
-      val rays     = Rays(moment, view.place.position, 1e5, Item.Nothing)
-      var others   = 0
+      val moment = Moment(Scenes.boxes(40, seed), Vector.empty)
+      val view   = eye(seed)
+      val images = draw(moment, view, Kind.DepthPerspective, Kind.DepthPlanar, Kind.Infrared)
+      val far    = numbers(images, Kind.DepthPerspective)
+      val planar = numbers(images, Kind.DepthPlanar)
+      val ids    = bgr(images, Kind.Infrared)
+      val rays   = Rays(moment, view.place.position, 1e5, Item.Nothing)
+      var others = 0
       for y <- 0 until view.height by 3; x <- 0 until view.width by 3 do
         val own     = Vector3(view.focalPx, x + 0.5 - view.width / 2.0, y + 0.5 - view.height / 2.0)
         val way     = view.place.turned(own * (1 / own.norm))
@@ -52,18 +52,18 @@ class RendererSuite extends munit.FunSuite:
       assert(others <= 2, s"seed $seed: $others pixels differ")
 
   test("the same scene and view give the same bytes, on every machine"):
-    val view     = View(Placement.turned(Vector3(0, 0, -3), 2, -5, 10), 320, 180, 90)
-    val kinds    = Kind.values.toSeq
-    val pictures = draw(Moment(Scenes.boxes(60, seed = 1), Vector.empty), view, kinds*)
-    val digest   = MessageDigest.getInstance("SHA-256")
+    val view   = View(Placement.turned(Vector3(0, 0, -3), 2, -5, 10), 320, 180, 90)
+    val kinds  = Kind.values.toSeq
+    val images = draw(Moment(Scenes.boxes(60, seed = 1), Vector.empty), view, kinds*)
+    val digest = MessageDigest.getInstance("SHA-256")
     for kind <- kinds do
-      pictures(kind) match
-        case Picture.Bytes(bytes)    => digest.update(bytes)
-        case Picture.Numbers(values) =>
+      images(kind) match
+        case Image.Bytes(bytes)    => digest.update(bytes)
+        case Image.Numbers(values) =>
           val bytes = java.nio.ByteBuffer.allocate(4 * values.length)
           values.foreach(bytes.putFloat)
           digest.update(bytes.array)
-    digest.update(Png.encode(bgr(pictures, Kind.Scene), 320, 180))
+    digest.update(Png.encode(bgr(images, Kind.Scene), 320, 180))
     assertEquals(digest.digest.map(b => f"$b%02x").mkString.take(16), "31eaba862189aeaf")
 
   test("a kind drawn beside others is as drawn alone"):
@@ -93,7 +93,7 @@ class RendererSuite extends munit.FunSuite:
       SceneObject("T", Shape.Tag(3, 0.8), Placement.turned(Vector3(2, 0, -2), 0, 0, 180), 0xffffff, None)
     val view  = View(Placement(Vector3(0, 0, -2)), 200, 200, 53.130102354) // 2 m across at 2 m
     val bytes = bgr(draw(Moment(Scene(Vector(tag)), Vector.empty), view, Kind.Scene), Kind.Scene)
-    val cells = AprilTag.picture(3)
+    val cells = AprilTag.pattern(3)
     for row <- 0 until AprilTag.Cells; column <- 0 until AprilTag.Cells do
       // A cell is 0.1 m, 10 pixels; the plate's upper left corner is at pixel 50, 50.
       val at = 3 * ((50 + 10 * row + 5) * 200 + 50 + 10 * column + 5)

@@ -17,9 +17,6 @@ import java.util.UUID;
 import java.util.concurrent.ThreadLocalRandom;
 import java.util.concurrent.TimeUnit;
 import java.util.random.RandomGenerator;
-import java.util.stream.DoubleStream;
-import java.util.stream.IntStream;
-import java.util.stream.LongStream;
 
 /**
  * Where rewritten call sites lead. A thread that has an {@link Environment} is answered by it; any other thread gets
@@ -121,7 +118,8 @@ public final class Redirect {
     return Instant.ofEpochSecond(Math.floorDiv(nanos, 1_000_000_000L), Math.floorMod(nanos, 1_000_000_000L));
   }
 
-  private static RandomGenerator random(RandomGenerator real) {
+  /** What is drawn from in the place of a generator. */
+  public static RandomGenerator random(RandomGenerator real) {
     var environment = ENVIRONMENT.get();
     return environment == null ? real : environment.random();
   }
@@ -148,122 +146,6 @@ public final class Redirect {
   /** In place of what Scala's {@code Random} without a seed draws from: its one instance outlives every run. */
   public static Random governed(Random real) {
     return new GovernedRandom(Redirect::environment);
-  }
-
-  public static int nextInt(ThreadLocalRandom real) {
-    return random(real).nextInt();
-  }
-
-  public static int nextInt(ThreadLocalRandom real, int bound) {
-    return random(real).nextInt(bound);
-  }
-
-  public static int nextInt(ThreadLocalRandom real, int origin, int bound) {
-    return random(real).nextInt(origin, bound);
-  }
-
-  public static long nextLong(ThreadLocalRandom real) {
-    return random(real).nextLong();
-  }
-
-  public static long nextLong(ThreadLocalRandom real, long bound) {
-    return random(real).nextLong(bound);
-  }
-
-  public static long nextLong(ThreadLocalRandom real, long origin, long bound) {
-    return random(real).nextLong(origin, bound);
-  }
-
-  public static double nextDouble(ThreadLocalRandom real) {
-    return random(real).nextDouble();
-  }
-
-  public static double nextDouble(ThreadLocalRandom real, double bound) {
-    return random(real).nextDouble(bound);
-  }
-
-  public static double nextDouble(ThreadLocalRandom real, double origin, double bound) {
-    return random(real).nextDouble(origin, bound);
-  }
-
-  public static double nextGaussian(ThreadLocalRandom real) {
-    return random(real).nextGaussian();
-  }
-
-  public static float nextFloat(ThreadLocalRandom real) {
-    return random(real).nextFloat();
-  }
-
-  public static float nextFloat(ThreadLocalRandom real, float bound) {
-    return random(real).nextFloat(bound);
-  }
-
-  public static float nextFloat(ThreadLocalRandom real, float origin, float bound) {
-    return random(real).nextFloat(origin, bound);
-  }
-
-  public static double nextGaussian(ThreadLocalRandom real, double mean, double deviation) {
-    return random(real).nextGaussian(mean, deviation);
-  }
-
-  public static double nextExponential(ThreadLocalRandom real) {
-    return random(real).nextExponential();
-  }
-
-  public static IntStream ints(ThreadLocalRandom real) {
-    return random(real).ints();
-  }
-
-  public static IntStream ints(ThreadLocalRandom real, long size) {
-    return random(real).ints(size);
-  }
-
-  public static IntStream ints(ThreadLocalRandom real, int origin, int bound) {
-    return random(real).ints(origin, bound);
-  }
-
-  public static IntStream ints(ThreadLocalRandom real, long size, int origin, int bound) {
-    return random(real).ints(size, origin, bound);
-  }
-
-  public static LongStream longs(ThreadLocalRandom real) {
-    return random(real).longs();
-  }
-
-  public static LongStream longs(ThreadLocalRandom real, long size) {
-    return random(real).longs(size);
-  }
-
-  public static LongStream longs(ThreadLocalRandom real, long origin, long bound) {
-    return random(real).longs(origin, bound);
-  }
-
-  public static LongStream longs(ThreadLocalRandom real, long size, long origin, long bound) {
-    return random(real).longs(size, origin, bound);
-  }
-
-  public static DoubleStream doubles(ThreadLocalRandom real) {
-    return random(real).doubles();
-  }
-
-  public static DoubleStream doubles(ThreadLocalRandom real, long size) {
-    return random(real).doubles(size);
-  }
-
-  public static DoubleStream doubles(ThreadLocalRandom real, double origin, double bound) {
-    return random(real).doubles(origin, bound);
-  }
-
-  public static DoubleStream doubles(ThreadLocalRandom real, long size, double origin, double bound) {
-    return random(real).doubles(size, origin, bound);
-  }
-
-  public static boolean nextBoolean(ThreadLocalRandom real) {
-    return random(real).nextBoolean();
-  }
-
-  public static void nextBytes(ThreadLocalRandom real, byte[] bytes) {
-    random(real).nextBytes(bytes);
   }
 
   public static double mathRandom() {

@@ -11,6 +11,7 @@ import java.lang.classfile.CodeElement;
 import java.lang.classfile.CodeTransform;
 import java.lang.classfile.MethodModel;
 import java.lang.classfile.Opcode;
+import java.lang.classfile.TypeKind;
 import java.lang.classfile.constantpool.MemberRefEntry;
 import java.lang.classfile.instruction.InvokeDynamicInstruction;
 import java.lang.classfile.instruction.InvokeInstruction;
@@ -22,16 +23,21 @@ import java.lang.constant.DynamicCallSiteDesc;
 import java.lang.constant.MethodHandleDesc;
 import java.lang.constant.MethodTypeDesc;
 import java.lang.instrument.ClassFileTransformer;
+import java.lang.invoke.MethodHandles;
+import java.lang.invoke.MethodType;
+import java.lang.reflect.Modifier;
 import java.security.ProtectionDomain;
 import java.util.HashMap;
 import java.util.List;
 import java.util.Map;
 import java.util.Set;
 import java.util.function.BiConsumer;
+import java.util.random.RandomGenerator;
 
 /** Leads the calls listed here, inside the given packages, to {@link Redirect}. */
 final class Rewriter implements ClassFileTransformer {
   private static final ClassDesc REDIRECT = Redirect.class.describeConstable().orElseThrow();
+  private static final ClassDesc DRAWS = ClassDesc.of("skein.vtime.agent.Draws");
   private static final ClassDesc RANDOM = ClassDesc.of("java.util.concurrent.ThreadLocalRandom");
   private static final ClassDesc JAVA_RANDOM = ClassDesc.of("java.util.Random");
   private static final ClassDesc DURATION = ClassDesc.of("java.time.Duration");
@@ -64,7 +70,7 @@ final class Rewriter implements ClassFileTransformer {
   private static final String SCALA_RANDOM = "scala/util/Random";
   private static final String UNSEEDED = "java/util/Random.<init>()V";
 
-  private record Target(String name, MethodTypeDesc type) {}
+  private record Target(ClassDesc owner, String name, MethodTypeDesc type) {}
 
   /** What tells the parameter of the other constructor, and what makes the object where a reference stands. */
   private record Making(Target parameter, Target factory) {}
@@ -93,26 +99,15 @@ final class Rewriter implements ClassFileTransformer {
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, DURATION));
     redirectStatic("java.lang.Thread", "sleep", "sleep", MethodTypeDesc.of(CD_void, CD_long, CD_int));
     redirectInstance(TIME_UNIT, "sleep", MethodTypeDesc.of(CD_void, CD_long));
-    redirectDraws("Int", CD_int);
-    redirectDraws("Long", CD_long);
-    redirectDraws("Float", CD_float);
-    redirectDraws("Double", CD_double);
-    redirectStreams("ints", ClassDesc.of("java.util.stream.IntStream"), CD_int);
-    redirectStreams("longs", ClassDesc.of("java.util.stream.LongStream"), CD_long);
-    redirectStreams("doubles", ClassDesc.of("java.util.stream.DoubleStream"), CD_double);
-    redirectDraw("nextGaussian", MethodTypeDesc.of(CD_double, CD_double, CD_double));
-    redirectDraw("nextExponential", MethodTypeDesc.of(CD_double));
-    redirectDraw("nextGaussian", MethodTypeDesc.of(CD_double));
-    redirectDraw("nextBoolean", MethodTypeDesc.of(CD_boolean));
-    redirectDraw("nextBytes", MethodTypeDesc.of(CD_void, CD_byte.arrayType()));
+    redirectDraws();
   }
 
   private static void redirectStatic(String owner, String name, String target, MethodTypeDesc type) {
-    CALLS.put(owner.replace('.', '/') + "." + name + type.descriptorString(), new Target(target, type));
+    CALLS.put(owner.replace('.', '/') + "." + name + type.descriptorString(), new Target(REDIRECT, target, type));
   }
 
   private static void redirectInstance(ClassDesc owner, String name, MethodTypeDesc type) {
-    var target = new Target(name, type.insertParameterTypes(0, owner));
+    var target = new Target(REDIRECT, name, type.insertParameterTypes(0, owner));
     CALLS.put(internalName(owner) + "." + name + type.descriptorString(), target);
   }
 
@@ -120,26 +115,41 @@ final class Rewriter implements ClassFileTransformer {
   private static void redirectMaking(String owner, String parameter, String factory) {
     var made = ClassDesc.of(owner);
     var target =
-        new Making(new Target(parameter, MethodTypeDesc.of(CD_long)), new Target(factory, MethodTypeDesc.of(made)));
+        new Making(
+            new Target(REDIRECT, parameter, MethodTypeDesc.of(CD_long)),
+            new Target(REDIRECT, factory, MethodTypeDesc.of(made)));
     MAKINGS.put(internalName(made) + ".<init>()V", target);
   }
 
-  /** {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it. */
-  private static void redirectDraw(String name, MethodTypeDesc type) {
-    redirectInstance(RANDOM, name, type);
+  /**
+   * {@code ThreadLocalRandom} is final, so not the generator is replaced but each draw from it: by a static method of a
+   * class that is made here, since all do the same.
+   */
+  private static void redirectDraws() {
+    var bytes = ClassFile.of().build(DRAWS, made -> {
+      made.withFlags(ClassFile.ACC_PUBLIC | ClassFile.ACC_FINAL);
+      for (var draw : RandomGenerator.class.getMethods()) {
+        var type = MethodType.methodType(draw.getReturnType(), draw.getParameterTypes()).describeConstable().orElseThrow();
+        var target = new Target(DRAWS, draw.getName(), type.insertParameterTypes(0, RANDOM));
+        if (!Modifier.isStatic(draw.getModifiers())) {
+          CALLS.put(internalName(RANDOM) + "." + draw.getName() + type.descriptorString(), target);
+          made.withMethodBody(
+              target.name(), target.type(), ClassFile.ACC_PUBLIC | ClassFile.ACC_STATIC, code -> draw(code, target.name(), type));
+        }
+      }
+    });
+    try {
+      MethodHandles.lookup().defineClass(bytes);
+    } catch (IllegalAccessException impossible) {
+      throw new AssertionError(impossible);
+    }
   }
 
-  private static void redirectDraws(String kind, ClassDesc number) {
-    redirectDraw("next" + kind, MethodTypeDesc.of(number));
-    redirectDraw("next" + kind, MethodTypeDesc.of(number, number));
-    redirectDraw("next" + kind, MethodTypeDesc.of(number, number, number));
-  }
-
-  private static void redirectStreams(String name, ClassDesc stream, ClassDesc number) {
-    redirectDraw(name, MethodTypeDesc.of(stream));
-    redirectDraw(name, MethodTypeDesc.of(stream, CD_long));
-    redirectDraw(name, MethodTypeDesc.of(stream, number, number));
-    redirectDraw(name, MethodTypeDesc.of(stream, CD_long, number, number));
+  private static void draw(CodeBuilder code, String name, MethodTypeDesc type) {
+    code.aload(0).invokestatic(REDIRECT, "random", MethodTypeDesc.of(GENERATOR, GENERATOR));
+    for (int i = 0; i < type.parameterCount(); i++)
+      code.loadLocal(TypeKind.from(type.parameterType(i)), code.parameterSlot(i + 1));
+    code.invokeinterface(GENERATOR, name, type).return_(TypeKind.from(type.returnType()));
   }
 
   private static String internalName(ClassDesc type) {
@@ -282,7 +292,8 @@ final class Rewriter implements ClassFileTransformer {
     if (!(argument instanceof DirectMethodHandleDesc handle)) return argument;
     var key = internalName(handle.owner()) + "." + handle.methodName() + handle.lookupDescriptor();
     var target = MAKINGS.containsKey(key) ? MAKINGS.get(key).factory() : CALLS.get(key);
-    return target == null ? argument : MethodHandleDesc.ofMethod(Kind.STATIC, REDIRECT, target.name(), target.type());
+    if (target == null) return argument;
+    return MethodHandleDesc.ofMethod(Kind.STATIC, target.owner(), target.name(), target.type());
   }
 
   /** Replaces the generator that was just made. */
@@ -300,7 +311,7 @@ final class Rewriter implements ClassFileTransformer {
       code.invokestatic(REDIRECT, making.parameter().name(), making.parameter().type());
       code.invokespecial(call.method().owner().asSymbol(), "<init>", MethodTypeDesc.of(CD_void, CD_long));
     } else if (target != null && call.opcode() != Opcode.INVOKESPECIAL) {
-      code.invokestatic(REDIRECT, target.name(), target.type());
+      code.invokestatic(target.owner(), target.name(), target.type());
     } else {
       if (SUBMISSIONS.contains(key)) {
         // Stack: context, task. The context is copied below the task's copy and handed over, the rest is dropped.

@@ -12,8 +12,8 @@ import skein.units.Instant
   * pictures of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
   * lies so near to a threshold that rounding decides.
   */
-class SightAgreementSuite extends munit.FunSuite:
-  import SightAgreementSuite.*
+class CameraTrackerAgreementSuite extends munit.FunSuite:
+  import CameraTrackerAgreementSuite.*
   import AgreementSuite.{Log, Logged}
 
   private val worlds = DuelKernel.WORLDS
@@ -42,7 +42,7 @@ class SightAgreementSuite extends munit.FunSuite:
   do
     test(s"${timing.productPrefix}, episode $episode: the same is found and decided in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)
-      val forms    = EyeLanes.of(camera).fold(fail(_), identity)
+      val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
       val eye      = LoggedEye(forms, duel.pursuer, duel.evader)
       val lanes    = Vector(Logged(evader(0)), Logged(pursuer(0)))
       val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
@@ -95,8 +95,8 @@ class SightAgreementSuite extends munit.FunSuite:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = episode
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = SightAgreementSuite.this.pursuer(world)
-      def evader(world: Int): Policy      = SightAgreementSuite.this.evader(world)
+      def pursuer(world: Int): Policy     = CameraTrackerAgreementSuite.this.pursuer(world)
+      def evader(world: Int): Policy      = CameraTrackerAgreementSuite.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
     assert(told.startsWith("SIMD"), told)
@@ -128,7 +128,7 @@ class SightAgreementSuite extends munit.FunSuite:
           Compared(node, math.abs(bound.value(a) - bound.value(b)), bound.error(a) + bound.error(b))
       Difference(isFound, scalar.found - camera.detection, compared, drawn && bound.undecided(shown).nonEmpty)
 
-private object SightAgreementSuite:
+private object CameraTrackerAgreementSuite:
   /** Of what floats add up to in the vehicles' flight, and in what is believed of the opponent. */
   private val MostOffM   = 5e-3
   private val MostOffRad = 5e-3
@@ -167,7 +167,12 @@ private object SightAgreementSuite:
       looks += 1
 
   /** A picture that the lanes took, by world. */
-  final class Looked(val by: EyeLanes.Forms, axis: Array[Float], places: Vector[Array[Float]], down: Double)(
+  final class Looked(
+      val by: CameraTrackerLanes.Forms,
+      axis: Array[Float],
+      places: Vector[Array[Float]],
+      down: Double
+  )(
       val found: Array[Float]
   ):
     /** As the sensor's formula takes them, without errors. */
@@ -175,8 +180,8 @@ private object SightAgreementSuite:
       def at(i: Int) = places(i)(world).toDouble
       Array(axis(world).toDouble, at(0), at(1), down, at(2), at(3), down, 0, 0)
 
-  final class LoggedEye(forms: EyeLanes.Forms, own: Duelist, opponent: Duelist)
-      extends EyeLanes(forms, own, opponent):
+  final class LoggedEye(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist)
+      extends CameraTrackerLanes(forms, own, opponent):
     val looks: ArrayBuffer[Looked] = ArrayBuffer.empty
 
     override def expose(

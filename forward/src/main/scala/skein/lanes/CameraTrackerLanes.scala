@@ -2,22 +2,22 @@ package skein.lanes
 
 import java.util.Arrays
 import skein.formula.{Formula, Untraceable}
-import skein.forward.{Duelist, Sight}
+import skein.forward.{Duelist, CameraTracker}
 import skein.fusion.{SensorFormulas, SensorModel}
 
-/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same pictures at the same
-  * times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.Sight`. Mutable.
+/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds that take the same images at the same
+  * times. Compiled from [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Mutable.
   */
-private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Duelist):
-  import EyeLanes.*
+private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Duelist, opponent: Duelist):
+  import CameraTrackerLanes.*
   import TimetableAgents.WORLDS
 
   private val expose = forms.pictured.call
   private val update = forms.joined.call
   private val decide = forms.decidedUpon.call
 
-  private val pictures       = Array.fill(Sight.Ring)(Array.emptyFloatArray)
-  private val validS         = Array.ofDim[Float](Sight.Ring)
+  private val images         = Array.fill(CameraTracker.Ring)(Array.emptyFloatArray)
+  private val validS         = Array.ofDim[Float](CameraTracker.Ring)
   private var newest, before = Array.ofDim[Float](Belief * WORLDS)
   private var replayed       = Array.ofDim[Float](Belief * WORLDS)
   private val ownDown        = everywhere(own.altitudeDownM)
@@ -35,15 +35,15 @@ private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Due
   /** Where the camera looks, rad. */
   protected val axis: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** By world, whether a picture shows the opponent: 1 or 0. */
-  protected def found(picture: Int): Array[Float] = Arrays.copyOf(pictures(picture), WORLDS)
+  /** By world, whether an image shows the opponent: 1 or 0. */
+  protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
 
   expose.input(0, axis, 0)
   expose.input(3, ownDown, 0)
   expose.input(6, opponentDown, 0)
   expose.input(7, bearing, 0)
   expose.input(8, range, 0)
-  update.input(Belief + Picture, exposedS, 0)
+  update.input(Belief + Detection, exposedS, 0)
   decide.input(Belief, startX, 0)
   decide.input(Belief + 1, startY, 0)
   decide.input(Belief + 2, opponentDown, 0)
@@ -61,13 +61,13 @@ private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Due
       StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
     )
 
-  /** Takes a picture.
+  /** Takes an image.
     *
     * @param times
     *   from `at` on: when; the errors of the bearing and of the range; whether what is in view is found
     */
   def expose(
-      picture: Int,
+      image: Int,
       ours: TimetableVehicles,
       oursAt: Int,
       theirs: TimetableVehicles,
@@ -75,26 +75,26 @@ private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Due
       times: Array[Float],
       at: Int
   ): Unit =
-    if pictures(picture).length == 0 then pictures(picture) = Array.ofDim[Float](Picture * WORLDS)
-    validS(picture) = times(at)
+    if images(image).length == 0 then images(image) = Array.ofDim[Float](Detection * WORLDS)
+    validS(image) = times(at)
     Arrays.fill(bearing, times(at + 1))
     Arrays.fill(range, times(at + 2))
     expose.input(1, ours.seenX, oursAt)
     expose.input(2, ours.seenY, oursAt)
     expose.input(4, theirs.seenX, theirsAt)
     expose.input(5, theirs.seenY, theirsAt)
-    expose.outputs(Picture, pictures(picture), 0)
+    expose.outputs(Detection, images(image), 0)
     expose()
-    if times(at + 3) == 0 then Arrays.fill(pictures(picture), 0, WORLDS, 0f)
+    if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
 
-  /** What a picture showed enters the belief.
+  /** What an image showed enters the belief.
     *
     * @param isOlder
     *   whether it was taken before the one that entered last
     */
-  def join(picture: Int, isOlder: Boolean, last: Int): Unit =
+  def join(image: Int, isOlder: Boolean, last: Int): Unit =
     if isOlder then
-      step(before, picture, replayed)
+      step(before, image, replayed)
       step(replayed, last, newest)
       val free = before
       before = replayed
@@ -103,12 +103,12 @@ private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Due
       val free = before
       before = newest
       newest = free
-      step(before, picture, newest)
+      step(before, image, newest)
 
-  private def step(from: Array[Float], picture: Int, into: Array[Float]): Unit =
-    Arrays.fill(exposedS, validS(picture))
+  private def step(from: Array[Float], image: Int, into: Array[Float]): Unit =
+    Arrays.fill(exposedS, validS(image))
     update.inputs(0, Belief, from, 0)
-    update.inputs(Belief, Picture, pictures(picture), 0)
+    update.inputs(Belief, Detection, images(image), 0)
     update.outputs(Belief, into, 0)
     update()
 
@@ -129,10 +129,10 @@ private[lanes] class EyeLanes(forms: EyeLanes.Forms, own: Duelist, opponent: Due
 
   private def everywhere(value: Double) = Array.fill(WORLDS)(value.toFloat)
 
-private[lanes] object EyeLanes:
+private[lanes] object CameraTrackerLanes:
   /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Pictured]]. */
-  private val Belief  = 35
-  private val Picture = 13
+  private val Belief    = 35
+  private val Detection = 13
 
   /** Below, what floats leave of a covariance is no covariance. */
   private val LeastSd = 2e-4
@@ -157,7 +157,7 @@ private[lanes] object EyeLanes:
     else
       (for
         pictured    <- form("pictured", 9)
-        joined      <- form("joined", Belief + Picture + 1)
+        joined      <- form("joined", Belief + Detection + 1)
         decidedUpon <- form("decidedUpon", Belief + 8)
       yield Forms(pictured, joined, decidedUpon)).left
         .map((why: Untraceable) => s"the sensor is no formula: ${why.getMessage}")

@@ -1,6 +1,6 @@
 package skein.scene.render
 
-/** Kinds of pictures.
+/** Kinds of images.
   *
   * @param drawnAs
   *   the kind that it is derived from
@@ -15,10 +15,10 @@ enum Kind:
   /** Metres from the camera. */
   case DepthPerspective
 
-  /** Grey by depth along the axis: white from [[Picture.WhiteM]] on. */
+  /** Grey by depth along the axis: white from [[Image.WhiteM]] on. */
   case DepthVis
 
-  /** How far a point is apart in the pictures of two cameras 25 cm apart, over their width. */
+  /** How far a point is apart in the images of two cameras 25 cm apart, over their width. */
   case DisparityNormalized
 
   /** Colours of the items' ids, by [[Palette]]. */
@@ -35,14 +35,14 @@ enum Kind:
     case other                          => other
 
 /** Rows from the top, without gaps. */
-enum Picture:
+enum Image:
   /** Three a pixel: blue, green, red. */
   case Bytes(bgr: Array[Byte])
 
   /** One a pixel. */
   case Numbers(values: Array[Float])
 
-object Picture:
+object Image:
   /** The depth of the sky: the greatest that a half-precision float holds, as AirSim's depth is one. */
   val BeyondM = 65504f
 

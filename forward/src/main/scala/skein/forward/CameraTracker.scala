@@ -5,24 +5,24 @@ import skein.policy.CameraPursuer
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** What a vehicle believes of its opponent by a [[SensorModel]] while it flies: pictures on their way, in recognition, and
+/** What a vehicle believes of its opponent by a [[SensorModel]] while it flies: images on their way, in recognition, and
   * what came of them. Mutable; allocates.
   *
   * @param opponent
   *   whom it looks for
   */
-private[skein] final class Sight(
+private[skein] final class CameraTracker(
     world: DuelWorld,
     agent: Int,
     opponent: Int,
     model: SensorModel,
     link: Delays
 ) extends OpponentView:
-  import Sight.*
+  import CameraTracker.*
 
   private val periodNs   = Nanos.of(model.everyS)
   private val deadlineNs = Nanos.of(model.deadlineS)
-  private val pictures   = Array.ofDim[Option[Measurement]](Ring)
+  private val images     = Array.ofDim[Option[Measurement]](Ring)
 
   private var key                       = 0
   private var onTheWay, busy            = 0
@@ -37,7 +37,7 @@ private[skein] final class Sight(
     axisRad = StrictMath.atan2(startNed.y - place(agent).y, startNed.x - place(agent).x)
     if !world.standsStill then world.schedule(0, DuelWorld.Look, agent, 0)
 
-  /** A picture is due. */
+  /** An image is due. */
   def look(number: Int): Unit =
     world.schedule((number + 1) * periodNs, DuelWorld.Look, agent, number + 1)
     if onTheWay < MostOnTheWay then
@@ -46,12 +46,12 @@ private[skein] final class Sight(
       world.schedule(world.nowNs + delay, DuelWorld.Exposed, agent, number)
 
   def exposed(number: Int): Unit =
-    pictures(number % Ring) = measured(number)
+    images(number % Ring) = measured(number)
     val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
-    world.schedule(world.nowNs + delay, DuelWorld.Pictured, agent, number)
+    world.schedule(world.nowNs + delay, DuelWorld.ImageReceived, agent, number)
 
-  /** A picture has come: the newest waits for whoever recognises. */
-  def pictured(number: Int): Unit =
+  /** An image has come: the newest waits for whoever recognises. */
+  def imageReceived(number: Int): Unit =
     onTheWay -= 1
     if number > newest then
       newest = number
@@ -66,7 +66,7 @@ private[skein] final class Sight(
     if number > reported && takesNs(number) <= deadlineNs then
       reported = number
       world.observer.recognised(agent, number, world.nowNs)
-      pictures(number % Ring).foreach(join)
+      images(number % Ring).foreach(join)
     if waiting >= 0 then
       recognise(waiting)
       waiting = -1
@@ -79,13 +79,13 @@ private[skein] final class Sight(
     world.observer.exposed(agent, number, world.nowNs, taken)
     model.measured(Instant.ofNanos(world.nowNs), taken)
 
-  /** While the world stands still, a picture is waited for. */
+  /** While the world stands still, an image is waited for. */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double) =
     if world.standsStill then
       newest += 1
-      val picture = measured(newest)
+      val image = measured(newest)
       world.observer.recognised(agent, newest, world.nowNs)
-      picture.foreach(join)
+      image.foreach(join)
     fusion.belief.fold((startNed, Vector3.Zero, world.nowS)): belief =>
       val ageS = (world.nowNs - belief.at.toNanos) * 1e-9
       (
@@ -110,8 +110,8 @@ private[skein] final class Sight(
   private def even(number: Int, place: Int): Double =
     (WorldRandom.bits(key, number * Delays.Lines + Delays.FirstCommand + place) >>> 8) * Step
 
-private[skein] object Sight:
-  /** Pictures of which anything is remembered. */
+private[skein] object CameraTracker:
+  /** Images of which anything is remembered. */
   private[skein] val Ring = 64
 
   /** As `skein.flight.CameraSensor` has them. */

@@ -11,7 +11,7 @@ import upack.*
 import upickle.default.writeMsg
 
 /** What cameras, lidars and distance sensors say of a scene, and what it does to vehicles. */
-class PictureSuite extends munit.FunSuite:
+class ImageSuite extends munit.FunSuite:
   private val scene = SceneFile
     .parse("""objects = [{ name = House, box = [2, 8, 6], at = [11, 0], id = 42 }]""", "a")
     .fold(error => fail(error.message), identity)
