@@ -42,8 +42,9 @@ addCommandAlias("installLocal", "publishLocal")
 
 val publishCheck = taskKey[Unit]("fails where a part lacks what a release needs")
 
-// No sockets, no wall clock, no whole flights: for while one works.
+// No sockets, no wall clock, no whole flights: for while one works. `test` has all that is not lengthy.
 addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
+addCommandAlias("testAll", "python/testedWheel; testOnly *")
 
 lazy val root =
   project
@@ -303,17 +304,14 @@ lazy val python = project
   .settings(
     publish / skip := true,
     Wheel.wheel    := Wheel.build(baseDirectory.value, (cli / stage).value, target.value, streams.value.log),
-    // What is tested is the wheel of now, where one can be built; else why there is none.
-    Test / test := (Test / test)
-      .dependsOn(Def.taskDyn {
-        val (why, log) = (target.value / "no-wheel.txt", streams.value.log)
-        IO.delete(Seq(why, target.value / "dist"))
-        Wheel.obstacle(target.value / "fetched") match {
-          case Some(reason) => Def.task { log.warn(s"no wheel is built or tested: $reason"); IO.write(why, reason) }
-          case None         => Def.task { Wheel.wheel.value; () }
-        }
-      })
-      .value,
+    Wheel.testedWheel := Def.taskDyn {
+      val (why, log) = (target.value / "no-wheel.txt", streams.value.log)
+      IO.delete(Seq(why, target.value / "dist"))
+      Wheel.obstacle(target.value / "fetched") match {
+        case Some(reason) => Def.task { log.warn(s"no wheel is built or tested: $reason"); IO.write(why, reason) }
+        case None         => Def.task { Wheel.wheel.value; () }
+      }
+    }.value,
     libraryDependencies ++= munit
   )
 

@@ -2,7 +2,9 @@ import sbt.*
 import sbt.Keys.*
 import sbt.plugins.JvmPlugin
 
-/** Which suites share a JVM, how that compiles, and what runs beside it: as `skein.testing.Groups` marks them, or a module. */
+/** Which suites share a JVM, how that compiles, what runs beside it, and which of them `test` leaves to `testAll`: as
+  * `skein.testing.Groups` marks them, or a module.
+  */
 object TestGroups extends AutoPlugin {
 
   override def requires: Plugins      = JvmPlugin
@@ -26,18 +28,24 @@ object TestGroups extends AutoPlugin {
     Tags.exclusive(Timing)
   )
 
+  /** A class file names the traits of its class. */
+  private def isMarked(classes: File, suite: String, mark: String): Boolean =
+    IO.read(classes / s"${suite.replace('.', '/')}.class").contains(s"skein/testing/$mark")
+
   override val projectSettings: Seq[Setting[?]] = Seq(
     testsCompute := false,
+    Test / test / testOptions += {
+      val classes = (Test / classDirectory).value
+      Tests.Filter(suite => !isMarked(classes, suite, "Lengthy"))
+    },
     Test / testGrouping := {
       val options  = (Test / forkOptions).value
       val classes  = (Test / classDirectory).value
       val computes = testsCompute.value
-      // A class file names the traits of its class.
-      def is(suite: TestDefinition, mark: String) =
-        IO.read(classes / s"${suite.name.replace('.', '/')}.class").contains(s"skein/testing/$mark")
-      val groups = (Test / definedTests).value.groupBy { suite =>
-        val alone = if (is(suite, "Alone")) suite.name else ""
-        (alone, Seq("Timing", "Waiting").find(is(suite, _)).getOrElse(""), computes || is(suite, "Optimised"))
+      val groups   = (Test / definedTests).value.groupBy { suite =>
+        def is(mark: String) = isMarked(classes, suite.name, mark)
+        val alone            = if (is("Lengthy")) suite.name else ""
+        (alone, Seq("Timing", "Waiting").find(is).getOrElse(""), computes || is("Optimised"))
       }
       groups.toSeq.sortBy(_._1).reverse.map { case ((alone, kind, isOptimised), suites) =>
         val (more, tags) = kind match {

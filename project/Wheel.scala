@@ -4,6 +4,8 @@ import scala.sys.process.{Process, ProcessLogger}
 /** The Python package as one file: `./sbtw python/wheel`. */
 object Wheel {
   val wheel: TaskKey[File] = taskKey[File]("Builds the Python package with all the jars that it runs")
+  val testedWheel: TaskKey[Unit] =
+    taskKey[Unit]("Builds what tests install: the wheel of now where one can be built, else why there is none")
 
   /** Equal sources give equal bytes: the newest time that a ZIP archive may tell is that of its format's first day. */
   private val firstDay = "315532800"

@@ -8,10 +8,10 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
-import skein.testing.{Optimised, TemporaryFolders}
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
 /** Searches by processes of this machine, over loopback. */
-class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
+class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given ExecutionContext = ExecutionContext.global
 
   private val question =

@@ -13,20 +13,20 @@ import skein.docs.Documentation
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.testing.{Alone, Optimised}
+import skein.testing.{Lengthy, Optimised}
 import skein.units.Clock
 
-/** Flights by the clock: they make compilers give way for the rest of their process. */
-class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight), Alone
+/** Flights by the clock. */
+class DocumentedFlightsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Flight), Lengthy
 
 /** What takes several processes. */
-class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Alone,
+class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Cluster), Lengthy,
       Optimised
 
 /** Forward simulation, by vectors. */
-class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Alone, Optimised
+class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Lengthy, Optimised
 
-class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Alone
+class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Lengthy
 
 /** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
   * loopback.

@@ -4,10 +4,10 @@ import java.lang.management.ManagementFactory
 import java.nio.charset.StandardCharsets.{ISO_8859_1, US_ASCII, UTF_8}
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
-import skein.testing.{TemporaryFolders, Unhurried}
+import skein.testing.{Lengthy, TemporaryFolders}
 
 /** Commands as users start them, each in a process of its own, in environments that are not ours. */
-class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private case class Ended(status: Int, out: String, err: String)
 
   /** @param before

@@ -8,12 +8,12 @@ import scala.concurrent.duration.*
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.cluster.WorkerProcesses
-import skein.testing.{Optimised, TemporaryFolders}
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
 /** A search of a program with a family of policies of its own, by a worker that was started as plain Skein: three
   * processes over loopback.
   */
-class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Optimised:
+class ShippedProgramLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private lazy val parent = temporaryFolder()
 
   private val question =

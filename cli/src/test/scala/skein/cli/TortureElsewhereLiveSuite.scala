@@ -1,12 +1,12 @@
 package skein.cli
 
 import java.nio.file.Files
-import skein.testing.{TemporaryFolders, Unhurried}
+import skein.testing.{Lengthy, TemporaryFolders}
 
 /** Flights through faults by processes of this machine, over loopback. Like this JVM they spare optimising, which takes
   * more of the processor's time than such flights.
   */
-class TortureElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+class TortureElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   test(
     "flights are flown by two processes, each once, and not again by the same command, which starts nobody"
   ):

@@ -12,12 +12,12 @@ import scala.util.Using
 import skein.record.*
 import skein.report.DuelReport
 import skein.scenario.Scenarios
-import skein.testing.{TemporaryFolders, Waiting}
+import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.Clock
 import skein.view.{RecordedShow, Shows, ViewServer}
 
 /** Flights that are looked at while they fly: by Foxglove's own client, and in a browser. */
-class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
+class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   import ViewLiveSuite.*
   private given Scenarios = DuelReport.scenarios
 

@@ -3,7 +3,7 @@ package skein.flight
 import skein.loop.LoopKind
 import skein.measure.Twin
 import skein.report.SummaryTables
-import skein.testing.Timing
+import skein.testing.{Lengthy, Timing}
 
 /** Real sockets and real time: one flight over the emulated direct link and its twins in virtual time.
   *
@@ -13,7 +13,7 @@ import skein.testing.Timing
   * [[mostExcessMs]], hardly any two distributions would be too far apart: such a flight says nothing. [[checkTwins]] holds
   * full flights to 2 % without allowance.
   */
-class TwinLiveSuite extends munit.FunSuite, Timing:
+class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
 
   private val mostExcessMs = 6.0
 

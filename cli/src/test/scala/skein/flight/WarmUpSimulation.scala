@@ -5,11 +5,11 @@ import org.apache.pekko.actor.ActorSystem
 import skein.link.{MemoryNetwork, NetworkPlan}
 import skein.loop.LoopKind
 import skein.signal.LatencyProfile
-import skein.testing.Alone
+import skein.testing.Lengthy
 import skein.units.*
 import skein.vtime.VirtualTime
 
-class WarmUpSimulation extends munit.FunSuite, Alone:
+class WarmUpSimulation extends munit.FunSuite, Lengthy:
   private val settings =
     TwinFlights.settings(List(LoopKind.Paused, LoopKind.Stream), seconds = 60, LatencyProfile.vpn)
 

@@ -1,10 +1,10 @@
 package skein.link
 
 import java.nio.file.Path
-import skein.testing.{Alone, Optimised}
+import skein.testing.Timing
 
 /** Asks the system itself. */
-class BackgroundThreadLiveSuite extends munit.FunSuite, Alone, Optimised:
+class BackgroundThreadLiveSuite extends munit.FunSuite, Timing:
 
   private def onLinux(name: String)(body: => Unit): Unit =
     test(name):

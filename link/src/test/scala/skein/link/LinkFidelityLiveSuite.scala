@@ -8,14 +8,14 @@ import java.nio.ByteOrder
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future}
 import skein.signal.*
-import skein.testing.Timing
+import skein.testing.{Lengthy, Timing}
 import skein.units.*
 
 /** Real sockets on loopback and the real clock: delays through the proxy against those of the profile, over many
   * connections at once. Messages of one connection are further apart than the longest delay, so that order never
   * makes one wait for another.
   */
-class LinkFidelityLiveSuite extends munit.FunSuite, Timing:
+class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
   private given system: ActorSystem = ActorSystem("link-fidelity", PreciseScheduler.config)
   private given ExecutionContext    = system.dispatcher
   private given ByteOrder           = ByteOrder.BIG_ENDIAN

@@ -4,13 +4,13 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 import skein.link.PreciseScheduler
-import skein.testing.{Alone, Waiting}
+import skein.testing.{Lengthy, Waiting}
 
 /** A real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where Python and a
   * compiler are. At half the real clock's speed, since it has to run 500 rounds in a second of the simulator's clock;
   * `betaflightHover` flies for longer, at any speed.
   */
-class BetaflightLiveSuite extends munit.FunSuite, Alone, Waiting:
+class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   // To build it on a busy machine takes minutes.
   override val munitTimeout: Duration = 20.minutes
 

@@ -8,13 +8,13 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.mavlink.*
-import skein.testing.{PythonEnvironment, Waiting}
+import skein.testing.{Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies three at once.
   * Runs where Python can install that package; it fetches it once per user.
   */
-class MavsdkLiveSuite extends munit.FunSuite, Waiting:
+class MavsdkLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")
 
   override def afterAll(): Unit =

@@ -6,13 +6,13 @@ import scala.concurrent.duration.*
 import scala.io.Source
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
-import skein.testing.{Alone, PythonEnvironment, Waiting}
+import skein.testing.{Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim` package of
   * PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it once per user.
   */
-class OfficialPythonClientLiveSuite extends munit.FunSuite, Alone, Waiting:
+class OfficialPythonClientLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("official-python-client")
 
   override def afterAll(): Unit =
