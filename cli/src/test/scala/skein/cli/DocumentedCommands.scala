@@ -24,7 +24,8 @@ class DocumentedClustersLiveSuite extends DocumentedCommands(DocumentedCommands.
       Optimised
 
 /** Forward simulation, by vectors. */
-class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Lengthy, Optimised
+class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Search), Lengthy,
+      Optimised
 
 class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Lengthy
 
