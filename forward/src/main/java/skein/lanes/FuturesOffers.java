@@ -25,10 +25,16 @@ import skein.simd.WorldRandom;
 final class FuturesOffers extends LaneOffers {
   private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
 
+  /** Tasks last for longer and for shorter by about so much. */
+  private static final double AHEAD_S = 0.2;
+
   /** Long past. */
   private static final int PAST = -1_000_000_000;
 
-  private final int periodGrains, timeoutGrains, ahead, ring, most;
+  private final int periodGrains, timeoutGrains, ahead, most;
+
+  /** Steps kept: a power of two. */
+  private final int ring;
 
   // Tasks by agent and slot, from their own step's begin: when they end with an offer, when the
   // vehicles are read.
@@ -52,9 +58,7 @@ final class FuturesOffers extends LaneOffers {
       evaderAt = new int[2][WORLDS],
       pursuerAt = new int[2][WORLDS];
   private final int[] beatPlaces = new int[WORLDS], beatEvader = new int[WORLDS], beatPursuer = new int[WORLDS];
-  private int row, turn;
-
-  private static final LaneVectors ALL = LaneVectors.all();
+  private int row;
 
   /** In which some world was offered something in this beat. */
   private final LaneVectors taken = new LaneVectors();
@@ -63,13 +67,13 @@ final class FuturesOffers extends LaneOffers {
    * @param maxDelayS the longest one-way delay of any link
    */
   FuturesOffers(LoopTiming.Futures timing, double maxDelayS) {
-    super(new LaneDelays(), false);
+    super(new LaneDelays(), false, (int) Math.ceil(AHEAD_S / timing.periodS()));
     double periodS = timing.periodS(), longestS = timing.asking().timeoutS() * 4;
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     // A decision waits for the answer to the command before at most.
-    ahead = 1 + (int) Math.ceil((2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS()) / periodS);
-    ring = ahead + (int) Math.ceil(longestS / periodS) + 4;
+    ahead = 1 + rowsAhead + (int) Math.ceil((2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS()) / periodS);
+    ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(longestS / periodS) + 4) - 1);
     most = 2 * timing.asking().window();
     end = new int[2][ring][WORLDS];
     readEvader = new int[2][ring][WORLDS];
@@ -88,6 +92,7 @@ final class FuturesOffers extends LaneOffers {
     delays.start(worldKeys, links);
     for (int[] each : latest) Arrays.fill(each, PAST);
     Arrays.fill(began, PAST);
+    whose = PURSUER;
     oldest = 0;
     next = 0;
     while (next < ahead) draw();
@@ -95,7 +100,7 @@ final class FuturesOffers extends LaneOffers {
 
   /** The tasks of one more step. */
   private void draw() {
-    int step = next++, slot = step % ring;
+    int step = next++, slot = step & ring - 1;
     for (int line = 0; line < 8; line++) delays.draw(step * STEP, line, drawn[line]);
     IntVector period = IntVector.broadcast(INTS, step == 0 ? 0 : periodGrains),
         past = IntVector.broadcast(INTS, PAST);
@@ -154,12 +159,14 @@ final class FuturesOffers extends LaneOffers {
   void startRow(int number) {
     row = number;
     draw();
-    while (oldest < row && isOver(oldest % ring)) oldest++;
+    while (oldest < row && isOver(oldest & ring - 1)) oldest++;
     if (next - oldest > ring)
       throw new IllegalStateException("more than " + ring + " steps have tasks under way");
-    look(0, ALL);
-    look(1, ALL);
-    turn = 1;
+    taken.count = 0;
+    for (int i = 0; i < WORLDS; i += LANES) taken.first[taken.count++] = i;
+    Arrays.fill(joinedAt, NONE);
+    look(EVADER);
+    look(PURSUER);
   }
 
   private boolean isOver(int slot) {
@@ -170,83 +177,66 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Which offers an agent has next. */
-  private void look(int agent, LaneVectors vectors) {
-    IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      IntVector first = zero.add(none), then = zero.add(none), which = zero.add(zero);
-      IntVector evader = zero.add(zero), pursuer = zero.add(zero);
-      for (int step = oldest; step < next; step++) {
-        int slot = step % ring, shift = (step - row) * periodGrains;
-        IntVector time = IntVector.fromArray(INTS, end[agent][slot], i);
-        VectorMask<Integer> offers = time.compare(NE, none);
-        time = time.add(shift, offers);
-        VectorMask<Integer> sooner = time.compare(LT, first);
-        then = then.min(first.max(time));
-        first = first.min(time);
-        which = which.blend(step, sooner);
-        evader = evader.blend(IntVector.fromArray(INTS, readEvader[agent][slot], i).add(shift), sooner);
-        pursuer = pursuer.blend(IntVector.fromArray(INTS, readPursuer[agent][slot], i).add(shift), sooner);
-      }
-      first.intoArray(soonest[agent], i);
-      then.intoArray(this.second[agent], i);
-      which.intoArray(stepOf[agent], i);
-      evader.intoArray(evaderAt[agent], i);
-      pursuer.intoArray(pursuerAt[agent], i);
-    }
-  }
-
   @Override
   boolean nextBeat() {
-    turn = 1 - turn;
-    if (take(turn)) return true;
-    turn = 1 - turn;
-    return take(turn);
+    if (!isBefore(soonest[EVADER], periodGrains) && !isBefore(soonest[PURSUER], periodGrains)) return false;
+    do whose = 1 - whose;
+    while (!take(whose));
+    return true;
   }
 
   /** Takes an agent's next offers where the other has none before; of one moment the evader's are first. */
   private boolean take(int agent) {
-    whose = agent;
     int[] own = soonest[agent], other = soonest[1 - agent];
-    IntVector period = IntVector.broadcast(INTS, periodGrains),
+    IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
         none = IntVector.broadcast(INTS, NONE),
-        zero = IntVector.broadcast(INTS, 0),
+        first = IntVector.broadcast(INTS, agent == EVADER ? 1 : 0),
         here = IntVector.broadcast(INTS, row);
-    boolean any = false;
+    taken.count = 0;
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector time = IntVector.fromArray(INTS, own, i), rival = IntVector.fromArray(INTS, other, i);
-      VectorMask<Integer> due =
-          time.compare(LT, period).and(agent == EVADER ? time.compare(LE, rival) : time.compare(LT, rival));
-      any |= due.anyTrue();
-      IntVector step = IntVector.fromArray(INTS, stepOf[agent], i);
+      VectorMask<Integer> due = time.compare(LT, horizon).and(time.sub(first).compare(LT, rival));
       none.blend(time, due).intoArray(joinedAt, i);
-      IntVector.fromArray(INTS, second[agent], i).intoArray(nextAt, i);
-      zero.blend(IntVector.fromArray(INTS, evaderAt[agent], i), due).intoArray(beatEvader, i);
-      zero.blend(IntVector.fromArray(INTS, pursuerAt[agent], i), due).intoArray(beatPursuer, i);
-      step.sub(here).mul(STEP).intoArray(beatPlaces, i);
+      if (due.anyTrue()) {
+        taken.first[taken.count++] = i;
+        IntVector.fromArray(INTS, second[agent], i).intoArray(nextAt, i);
+        IntVector.fromArray(INTS, evaderAt[agent], i).intoArray(beatEvader, i);
+        IntVector.fromArray(INTS, pursuerAt[agent], i).intoArray(beatPursuer, i);
+        IntVector.fromArray(INTS, stepOf[agent], i).sub(here).mul(STEP).intoArray(beatPlaces, i);
+      }
     }
-    if (any) {
-      taken.take(joinedAt, NONE);
-      forget(agent);
-      look(agent, taken);
-    }
-    return any;
+    if (taken.count > 0) look(agent);
+    return taken.count > 0;
   }
 
-  /** What was offered in this beat is over. */
-  private void forget(int agent) {
-    IntVector none = IntVector.broadcast(INTS, NONE);
+  /** Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over. */
+  private void look(int agent) {
+    int[][] ends = end[agent], evaders = readEvader[agent], pursuers = readPursuer[agent];
+    IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);
     for (int k = 0; k < taken.count; k++) {
       int i = taken.first[k];
       VectorMask<Integer> gone = IntVector.fromArray(INTS, joinedAt, i).compare(NE, none);
-      IntVector which = IntVector.fromArray(INTS, stepOf[agent], i);
+      IntVector last = IntVector.broadcast(INTS, -1).blend(IntVector.fromArray(INTS, stepOf[agent], i), gone);
+      IntVector first = zero.add(none), then = zero.add(none), which = zero.add(zero);
+      IntVector evader = zero.add(zero), pursuer = zero.add(zero);
       for (int step = oldest; step < next; step++) {
-        int[] ends = end[agent][step % ring];
-        IntVector.fromArray(INTS, ends, i)
-            .blend(none, gone.and(which.compare(EQ, step)))
-            .intoArray(ends, i);
+        int slot = step & ring - 1, shift = (step - row) * periodGrains;
+        IntVector time = IntVector.fromArray(INTS, ends[slot], i);
+        time = time.blend(none, last.compare(EQ, step));
+        time.intoArray(ends[slot], i);
+        time = time.add(shift, time.compare(NE, none));
+        VectorMask<Integer> sooner = time.compare(LT, first);
+        then = then.min(first.max(time));
+        first = first.min(time);
+        which = which.blend(step, sooner);
+        evader = evader.blend(IntVector.fromArray(INTS, evaders[slot], i).add(shift), sooner);
+        pursuer = pursuer.blend(IntVector.fromArray(INTS, pursuers[slot], i).add(shift), sooner);
       }
+      first.intoArray(soonest[agent], i);
+      then.intoArray(second[agent], i);
+      which.intoArray(stepOf[agent], i);
+      evader.intoArray(evaderAt[agent], i);
+      pursuer.intoArray(pursuerAt[agent], i);
     }
   }
 }

@@ -1,7 +1,7 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
-import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.LOG2_E;
 import static skein.simd.LaneMath.POWER_1;
 import static skein.simd.LaneMath.POWER_2;
@@ -18,10 +18,10 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
 import skein.forward.Reduced;
 
-/** With a first-order lag, or none: of a piece the velocity that is reached, and what it lacks of that at first. */
+/** With a first-order lag, or none: of a piece, by how much the velocity exceeds at first that which is reached. */
 final class LagFlights extends LaneFlights {
-  private static final int WANTED_X = PIECE_OWN, WANTED_Y = PIECE_OWN + 1, EXCESS_X = PIECE_OWN + 2, EXCESS_Y = PIECE_OWN + 3;
-  private static final int FIELDS = PIECE_OWN + 4;
+  private static final int EXCESS_X = PIECE_OWN, EXCESS_Y = PIECE_OWN + WORLDS;
+  private static final int NUMBERS = 2;
 
   /** Of powers of two that floats hold. */
   private static final float LEAST_EXPONENT = -120f;
@@ -32,7 +32,7 @@ final class LagFlights extends LaneFlights {
   private final float speedMps, lagS;
 
   LagFlights(Duelist duelist, Reduced model, FlightTiming timing) {
-    super(duelist, FIELDS, timing);
+    super(duelist, NUMBERS, MOST_PIECE_S, timing);
     speedMps = (float) (duelist.speed() * model.gain());
     lagS = (float) Math.max(model.lagS(), LEAST_LAG_S);
   }
@@ -41,10 +41,11 @@ final class LagFlights extends LaneFlights {
   void rest(float[] pieces) {}
 
   @Override
-  void fly(LaneVectors vectors, boolean withVelocity) {
-    float[] chosen = this.chosen;
+  void fly(LaneVectors vectors, float[] into, int at, boolean withVelocity) {
+    float[] chosen = this.chosen, sinceS = this.sinceS;
     FloatVector halvings = FloatVector.broadcast(SPECIES, -LOG2_E / lagS),
         lag = FloatVector.broadcast(SPECIES, lagS),
+        speed = FloatVector.broadcast(SPECIES, speedMps),
         least = FloatVector.broadcast(SPECIES, LEAST_EXPONENT),
         one = FloatVector.broadcast(SPECIES, 1f),
         round = FloatVector.broadcast(SPECIES, ROUND),
@@ -55,9 +56,7 @@ final class LagFlights extends LaneFlights {
         power5 = FloatVector.broadcast(SPECIES, POWER_5);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      FloatVector dt =
-          FloatVector.fromArray(SPECIES, until, i)
-              .sub(FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i));
+      FloatVector dt = FloatVector.fromArray(SPECIES, sinceS, i);
       FloatVector exponent = dt.mul(halvings).max(least);
       FloatVector rounded = exponent.add(round);
       FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
@@ -69,44 +68,50 @@ final class LagFlights extends LaneFlights {
               .add(rounded.reinterpretAsInts().lanewise(VectorOperators.LSHL, 23))
               .reinterpretAsFloats();
       FloatVector carried = one.sub(left).mul(lag);
-      FloatVector wantedX = FloatVector.fromArray(SPECIES, chosen, WANTED_X * WORLDS + i),
-          wantedY = FloatVector.fromArray(SPECIES, chosen, WANTED_Y * WORLDS + i),
-          excessX = FloatVector.fromArray(SPECIES, chosen, EXCESS_X * WORLDS + i),
-          excessY = FloatVector.fromArray(SPECIES, chosen, EXCESS_Y * WORLDS + i);
+      FloatVector wantedX = FloatVector.fromArray(SPECIES, chosen, ALONG_X + i).mul(speed),
+          wantedY = FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i).mul(speed),
+          excessX = FloatVector.fromArray(SPECIES, chosen, EXCESS_X + i),
+          excessY = FloatVector.fromArray(SPECIES, chosen, EXCESS_Y + i);
       excessX
-          .fma(carried, wantedX.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_X * WORLDS + i)))
-          .intoArray(x, i);
+          .fma(carried, wantedX.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_X + i)))
+          .intoArray(into, at + i);
       excessY
-          .fma(carried, wantedY.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_Y * WORLDS + i)))
-          .intoArray(y, i);
+          .fma(carried, wantedY.fma(dt, FloatVector.fromArray(SPECIES, chosen, PIECE_Y + i)))
+          .intoArray(into, at + WORLDS + i);
       if (withVelocity) {
-        excessX.fma(left, wantedX).intoArray(vx, i);
-        excessY.fma(left, wantedY).intoArray(vy, i);
+        excessX.fma(left, wantedX).intoArray(into, at + 2 * WORLDS + i);
+        excessY.fma(left, wantedY).intoArray(into, at + 3 * WORLDS + i);
       }
     }
   }
 
   @Override
   void begin(LaneVectors vectors, int at, int[] acts, Directions commanded) {
-    float[] pieces = this.pieces;
+    float[] pieces = this.pieces, chosen = this.chosen, flown = this.flown;
     FloatVector speed = FloatVector.broadcast(SPECIES, speedMps);
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      VectorMask<Float> does =
-          IntVector.fromArray(INTS, acts, i).compare(VectorOperators.LT, none).cast(SPECIES);
-      FloatVector wantedX = FloatVector.fromArray(SPECIES, commanded.cos, i).mul(speed),
-          wantedY = FloatVector.fromArray(SPECIES, commanded.sin, i).mul(speed);
-      FloatVector excessX = FloatVector.fromArray(SPECIES, vx, i).sub(wantedX),
-          excessY = FloatVector.fromArray(SPECIES, vy, i).sub(wantedY);
-      int from = at + i;
-      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + PIECE_TIME * WORLDS, does);
-      FloatVector.fromArray(SPECIES, x, i).intoArray(pieces, from + PIECE_X * WORLDS, does);
-      FloatVector.fromArray(SPECIES, y, i).intoArray(pieces, from + PIECE_Y * WORLDS, does);
-      wantedX.intoArray(pieces, from + WANTED_X * WORLDS, does);
-      wantedY.intoArray(pieces, from + WANTED_Y * WORLDS, does);
-      excessX.intoArray(pieces, from + EXCESS_X * WORLDS, does);
-      excessY.intoArray(pieces, from + EXCESS_Y * WORLDS, does);
+      int i = vectors.first[k], to = at + i;
+      VectorMask<Float> does = IntVector.fromArray(INTS, acts, i).compare(LT, none).cast(SPECIES);
+      FloatVector alongX = FloatVector.fromArray(SPECIES, commanded.cos, i),
+          alongY = FloatVector.fromArray(SPECIES, commanded.sin, i);
+      FloatVector
+          excessX = FloatVector.fromArray(SPECIES, flown, 2 * WORLDS + i).sub(alongX.mul(speed)),
+          excessY = FloatVector.fromArray(SPECIES, flown, 3 * WORLDS + i).sub(alongY.mul(speed));
+      FloatVector.fromArray(SPECIES, chosen, PIECE_X + i)
+          .blend(FloatVector.fromArray(SPECIES, flown, i), does)
+          .intoArray(pieces, to + PIECE_X);
+      FloatVector.fromArray(SPECIES, chosen, PIECE_Y + i)
+          .blend(FloatVector.fromArray(SPECIES, flown, WORLDS + i), does)
+          .intoArray(pieces, to + PIECE_Y);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_X + i).blend(alongX, does).intoArray(pieces, to + ALONG_X);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i).blend(alongY, does).intoArray(pieces, to + ALONG_Y);
+      FloatVector.fromArray(SPECIES, chosen, EXCESS_X + i)
+          .blend(excessX, does)
+          .intoArray(pieces, to + EXCESS_X);
+      FloatVector.fromArray(SPECIES, chosen, EXCESS_Y + i)
+          .blend(excessY, does)
+          .intoArray(pieces, to + EXCESS_Y);
     }
   }
 }

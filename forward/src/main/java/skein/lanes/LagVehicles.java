@@ -1,6 +1,5 @@
 package skein.lanes;
 
-import static jdk.incubator.vector.VectorOperators.EQ;
 import static jdk.incubator.vector.VectorOperators.GT;
 import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
@@ -63,8 +62,6 @@ final class LagVehicles extends LaneVehicles {
   private int row;
 
   private static final int[] AT_BEGIN = new int[WORLDS];
-
-  private final float[] kept = new float[4 * WORLDS];
 
   /**
    * By slot: when the command acts, from its own row's begin, s; e to that time over the lag; and by
@@ -217,8 +214,9 @@ final class LagVehicles extends LaneVehicles {
   }
 
   @Override
-  void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
-    if (fresh != null) System.arraycopy(state, SEEN_X, kept, 0, kept.length);
+  void read(
+      int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
+    if (fresh != null) remember();
     flyTo(row, at);
     if (withVelocity) readVelocities();
     lookBack(at, fresh);
@@ -415,16 +413,6 @@ final class LagVehicles extends LaneVehicles {
         state[SEEN_VX + world] -= changeX * caughtUp;
         state[SEEN_VY + world] -= changeY * caughtUp;
       }
-    }
-  }
-
-  /** Puts back what was read before, where nothing was read now. */
-  private void keep(int[] fresh) {
-    for (int i = 0; i < WORLDS; i += LANES) {
-      VectorMask<Float> isOld = IntVector.fromArray(INTS, fresh, i).compare(EQ, 0).cast(SPECIES);
-      if (isOld.anyTrue())
-        for (int from = i; from < kept.length; from += WORLDS)
-          FloatVector.fromArray(SPECIES, kept, from).intoArray(state, SEEN_X + from, isOld);
     }
   }
 }

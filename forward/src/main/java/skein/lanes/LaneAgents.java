@@ -1,6 +1,8 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.ASHR;
 import static jdk.incubator.vector.VectorOperators.LE;
+import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.XOR;
@@ -21,21 +23,24 @@ import skein.simd.WorldRandom;
 /**
  * The vehicles of one role in many worlds, and their controllers, as {@code skein.flow.Pace} and
  * {@code skein.flow.Steer} let them: when each decides upon what it was offered, and when its command
- * acts. Times are in grains of 4 ns from the period's begin.
+ * acts. Times are told in grains of 4 ns from the period's begin, and kept from the episode's begin,
+ * modulo 2³²: what is long past is drawn near again before it would be taken for the future.
  */
 final class LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
 
-  /** In the place of the time since the last decision, s: it never decided. */
-  private static final float LONG_AGO = 1e9f;
+  /** A second or so, in grains: 2 to a power. */
+  private static final int LONG = 28;
 
-  /** Times count no longer ago than this. */
-  private static final int LONG_PAST = -1_000_000_000;
+  private static final float LONG_S = (1 << LONG) * LaneViews.GRAIN_S;
+
+  /** In the place of how long ago it decided: never. */
+  private static final int NEVER = 1 << 20;
 
   final LaneVehicles vehicles;
   final LanePolicy policy;
   private final int self, line, periodGrains, intervalGrains, handoverGrains, deadGrains;
-  private final float startHeading, periodS;
+  private final float startHeading;
   private final boolean decidesFirst, together;
 
   // When it may be commanded again, when the last command reaches it, and when that was sent.
@@ -44,8 +49,11 @@ final class LaneAgents {
   // When it decides, and when it sends; NONE where it does not. When the command acts.
   private final int[] decides = new int[WORLDS], sends = new int[WORLDS], acts = new int[WORLDS];
 
-  /** How long before the period's begin it decided, s. */
-  private final float[] decidedBefore = new float[WORLDS];
+  /** When it decided last; and how often {@link #LONG} passed besides, or {@link #NEVER}. */
+  private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
+
+  /** When the period began. */
+  private int now;
 
   private final int[] drawn = new int[2 * LANES];
   private final LaneObservation sight = new LaneObservation();
@@ -89,7 +97,6 @@ final class LaneAgents {
     this.decidesFirst = decidesFirst;
     this.together = together;
     decided = decidesFirst ? new Directions(WORLDS) : sent;
-    this.periodS = (float) periodS;
     line = Rollout.CommandPlace() + 2 * self;
     startHeading = (float) duelist.startHeadingRad();
     periodGrains = LaneViews.grains(periodS);
@@ -99,9 +106,10 @@ final class LaneAgents {
   }
 
   void start() {
-    for (int[] zero : new int[][] {ready, reaches}) Arrays.fill(zero, 0);
-    Arrays.fill(sentAt, LONG_PAST);
-    Arrays.fill(decidedBefore, LONG_AGO);
+    now = 0;
+    for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
+    Arrays.fill(sentAt, -1);
+    Arrays.fill(decidedLong, NEVER);
     Arrays.fill(effort, 0f);
     for (Directions each : new Directions[] {sent, sentBefore, decided})
       each.fill(0, WORLDS, startHeading);
@@ -109,15 +117,22 @@ final class LaneAgents {
     vehicles.start();
   }
 
-  /** To the next period. */
-  void nextRow() {
-    IntVector period = IntVector.broadcast(INTS, periodGrains), past = IntVector.broadcast(INTS, LONG_PAST);
-    FloatVector seconds = FloatVector.broadcast(SPECIES, periodS);
+  /** To a period; they are taken in turn. */
+  void startRow(int row) {
+    now = row * periodGrains;
+    if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
+  }
+
+  /** What is long past, nearer. */
+  private void drawNear() {
+    IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {
-      IntVector.fromArray(INTS, ready, i).sub(period).max(past).intoArray(ready, i);
-      IntVector.fromArray(INTS, reaches, i).sub(period).max(past).intoArray(reaches, i);
-      if (!together) IntVector.fromArray(INTS, sentAt, i).sub(period).max(past).intoArray(sentAt, i);
-      FloatVector.fromArray(SPECIES, decidedBefore, i).add(seconds).intoArray(decidedBefore, i);
+      for (int[] each : new int[][] {ready, reaches, sentAt})
+        IntVector.fromArray(INTS, each, i).sub(begin).max(past).add(begin).intoArray(each, i);
+      IntVector at = IntVector.fromArray(INTS, decidedAt, i);
+      IntVector passed = begin.sub(at).lanewise(ASHR, LONG);
+      at.add(passed.lanewise(LSHL, LONG)).intoArray(decidedAt, i);
+      IntVector.fromArray(INTS, decidedLong, i).add(passed).intoArray(decidedLong, i);
     }
   }
 
@@ -148,6 +163,7 @@ final class LaneAgents {
       int i = vectors.first[k];
       VectorMask<Float> isKnown =
           IntVector.fromArray(INTS, opponents.sentAt, i)
+              .sub(now)
               .compare(LE, IntVector.fromArray(INTS, joinedAt, i))
               .cast(SPECIES);
       FloatVector.fromArray(SPECIES, opponents.sentBefore.cos, i)
@@ -165,22 +181,32 @@ final class LaneAgents {
 
   /** When each decides and sends. */
   private void look(LaneVectors vectors, int[] joinedAt, int[] nextAt) {
-    IntVector none = IntVector.broadcast(INTS, NONE);
-    FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
+    IntVector none = IntVector.broadcast(INTS, NONE),
+        begin = IntVector.broadcast(INTS, now),
+        never = IntVector.broadcast(INTS, NEVER / 2),
+        less = IntVector.broadcast(INTS, (1 << LONG) - 1);
+    FloatVector longS = FloatVector.broadcast(SPECIES, LONG_S),
         grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
         zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector joined = IntVector.fromArray(INTS, joinedAt, i);
-      IntVector when = joined.max(IntVector.fromArray(INTS, ready, i));
+      IntVector when = joined.max(IntVector.fromArray(INTS, ready, i).sub(begin));
       VectorMask<Integer> offered = joined.compare(LT, none);
       VectorMask<Integer> goes = when.compare(LT, IntVector.fromArray(INTS, nextAt, i)).and(offered);
       IntVector sending = none.blend(when, goes), deciding = decidesFirst ? joined : sending;
       sending.intoArray(sends, i);
       deciding.intoArray(decides, i);
-      FloatVector time = (FloatVector) deciding.convertShape(VectorOperators.I2F, SPECIES, 0);
-      FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
-      zero.blend(time.fma(grainS, before), before.compare(LT, undecided)).intoArray(sight.elapsed, i);
+      // In two parts, of which neither depends on the period in which it is looked at.
+      IntVector passed = deciding.add(begin).sub(IntVector.fromArray(INTS, decidedAt, i));
+      IntVector many =
+          IntVector.fromArray(INTS, decidedLong, i).add(passed.lanewise(ASHR, LONG));
+      FloatVector rest =
+          ((FloatVector) passed.and(less).convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS);
+      zero.blend(
+              ((FloatVector) many.convertShape(VectorOperators.I2F, SPECIES, 0)).fma(longS, rest),
+              many.compare(LT, never).cast(SPECIES))
+          .intoArray(sight.elapsed, i);
     }
   }
 
@@ -217,58 +243,57 @@ final class LaneAgents {
         interval = IntVector.broadcast(INTS, intervalGrains),
         handover = IntVector.broadcast(INTS, handoverGrains),
         dead = IntVector.broadcast(INTS, deadGrains),
+        begin = IntVector.broadcast(INTS, now),
+        never = IntVector.broadcast(INTS, NEVER / 2),
+        zero = IntVector.broadcast(INTS, 0),
         end = IntVector.broadcast(INTS, endGrains);
-    FloatVector undecided = FloatVector.broadcast(SPECIES, LONG_AGO / 2),
-        minusGrainS = FloatVector.broadcast(SPECIES, -LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector key = IntVector.fromArray(INTS, keys, i).add(IntVector.fromArray(INTS, places, i)),
-          begin = IntVector.fromArray(INTS, tableOf, i);
+          from = IntVector.fromArray(INTS, tableOf, i);
       IntVector a = key.add(here), b = key.add(next);
       a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
       b = b.lanewise(XOR, b.lanewise(LSHR, 16)).mul(multiplier1);
       a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
       b = b.lanewise(XOR, b.lanewise(LSHR, 15)).mul(multiplier2);
-      a.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, 0);
-      b.lanewise(LSHR, LaneDelays.DROP).add(begin).intoArray(drawn, LANES);
+      a.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, 0);
+      b.lanewise(LSHR, LaneDelays.DROP).add(from).intoArray(drawn, LANES);
       IntVector there = IntVector.fromArray(INTS, table, 0, drawn, 0),
           back = IntVector.fromArray(INTS, table, 0, drawn, LANES);
       IntVector when = IntVector.fromArray(INTS, sends, i), time = IntVector.fromArray(INTS, decides, i);
       VectorMask<Integer> goes = when.compare(LT, none);
-      VectorMask<Float> sending = goes.cast(SPECIES), deciding = time.compare(LT, none).cast(SPECIES);
-      FloatVector before = FloatVector.fromArray(SPECIES, decidedBefore, i);
-      IntVector reachedBefore = IntVector.fromArray(INTS, reaches, i);
+      VectorMask<Integer> does = time.compare(LT, none);
+      VectorMask<Float> sending = goes.cast(SPECIES), deciding = does.cast(SPECIES);
+      IntVector before = IntVector.fromArray(INTS, decidedLong, i),
+          reachedBefore = IntVector.fromArray(INTS, reaches, i);
       // Commands to one vehicle keep their order.
-      IntVector arrives = when.add(there).max(reachedBefore);
+      IntVector arrives = when.add(there).max(reachedBefore.sub(begin));
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
       // The command before is answered when this one has replaced it; the very first replaces none.
       IntVector again = when.add(interval);
-      again =
-          again.blend(
-              arrives.add(back).add(handover).max(again), before.compare(LT, undecided).cast(INTS));
-      reachedBefore.blend(arrives, goes).intoArray(reaches, i);
-      IntVector.fromArray(INTS, ready, i).blend(again, goes).intoArray(ready, i);
+      again = again.blend(arrives.add(back).add(handover).max(again), before.compare(LT, never));
+      reachedBefore.blend(arrives.add(begin), goes).intoArray(reaches, i);
+      IntVector.fromArray(INTS, ready, i).blend(again.add(begin), goes).intoArray(ready, i);
       FloatVector newCos = FloatVector.fromArray(SPECIES, decidedNow.cos, i),
           newSin = FloatVector.fromArray(SPECIES, decidedNow.sin, i),
           cos = FloatVector.fromArray(SPECIES, sent.cos, i),
           sin = FloatVector.fromArray(SPECIES, sent.sin, i);
       if (!together) {
-        IntVector.fromArray(INTS, sentAt, i).blend(when, goes).intoArray(sentAt, i);
-        cos.intoArray(sentBefore.cos, i, sending);
-        sin.intoArray(sentBefore.sin, i, sending);
+        IntVector.fromArray(INTS, sentAt, i).blend(when.add(begin), goes).intoArray(sentAt, i);
+        FloatVector.fromArray(SPECIES, sentBefore.cos, i).blend(cos, sending).intoArray(sentBefore.cos, i);
+        FloatVector.fromArray(SPECIES, sentBefore.sin, i).blend(sin, sending).intoArray(sentBefore.sin, i);
       }
       cos.blend(newCos, sending).intoArray(sent.cos, i);
       sin.blend(newSin, sending).intoArray(sent.sin, i);
       if (decidesFirst) {
-        newCos.intoArray(decided.cos, i, deciding);
-        newSin.intoArray(decided.sin, i, deciding);
+        FloatVector.fromArray(SPECIES, decided.cos, i).blend(newCos, deciding).intoArray(decided.cos, i);
+        FloatVector.fromArray(SPECIES, decided.sin, i).blend(newSin, deciding).intoArray(decided.sin, i);
       }
       FloatVector.fromArray(SPECIES, policy.heading, i)
           .blend(FloatVector.fromArray(SPECIES, policy.newHeading, i), deciding)
           .intoArray(policy.heading, i);
-      before
-          .blend(((FloatVector) time.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(minusGrainS), deciding)
-          .intoArray(decidedBefore, i);
+      before.blend(zero, does).intoArray(decidedLong, i);
+      IntVector.fromArray(INTS, decidedAt, i).blend(time.add(begin), does).intoArray(decidedAt, i);
       FloatVector.fromArray(SPECIES, effort, i)
           .add(FloatVector.fromArray(SPECIES, policy.turned, i), time.compare(LT, end).cast(SPECIES))
           .intoArray(effort, i);

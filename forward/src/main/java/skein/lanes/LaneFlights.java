@@ -1,6 +1,8 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.GE;
 import static jdk.incubator.vector.VectorOperators.GT;
+import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
@@ -15,65 +17,74 @@ import skein.forward.Duelist;
 /**
  * The vehicles of one role in many worlds, whose commands act at times of their own in each. They fly
  * in pieces, each known from its begin on; the pieces of the near past are kept, so that a vehicle can
- * be read at any moment of it. A slot holds the piece that was the newest in each world when it was
- * filled. Times are in seconds from the begin of a period.
+ * be read at any moment of it. A piece ends a time after its begin, if no command ends it before; then
+ * another begins under the same command. A slot holds the piece that was the newest in each world when
+ * it was filled. Times are in grains since the episode's begin, modulo 2³²: no two that are compared lie
+ * as far apart.
  */
 abstract class LaneFlights extends LaneVehicles {
-  /** Of a piece: when it begins, where the vehicle is then; what follows, the kind of vehicle says. */
-  static final int PIECE_TIME = 0, PIECE_X = 1, PIECE_Y = 2, PIECE_OWN = 3;
+  /**
+   * Where the numbers of a piece stand: position as it begins, m, and the command's direction, north,
+   * then east; what follows, the kind of vehicle says.
+   */
+  static final int PIECE_X = 0,
+      PIECE_Y = WORLDS,
+      ALONG_X = 2 * WORLDS,
+      ALONG_Y = 3 * WORLDS,
+      PIECE_OWN = 4 * WORLDS;
 
-  private static final float FUTURE = 1e9f;
+  /** The longest a piece may last, s: far less than times are told apart by. */
+  static final double MOST_PIECE_S = 1;
 
-  /** Where they are flown to, and how fast they fly there. */
-  final float[] x = new float[WORLDS],
-      y = new float[WORLDS],
-      vx = new float[WORLDS],
-      vy = new float[WORLDS];
-
-  private final int fields, keptRows;
-  private final double periodS;
-  float[] pieces;
+  private final int size, keptRows, periodGrains, pieceGrains;
 
   /** A power of two. */
   private int slots = 16;
 
-  private int[] rowOf = new int[slots];
+  private int[] begins, rowOf;
+  float[] pieces;
 
   /** How many slots were filled; the newest is one less. */
   private int filled;
 
-  /** Until when, and the pieces that lead there. */
-  final float[] until = new float[WORLDS], chosen;
+  /** The times asked for; the pieces in which they lie, and how long after the begin of these, s. */
+  private final int[] until = new int[WORLDS];
 
-  private final LaneVectors all = LaneVectors.all();
+  final float[] chosen, sinceS = new float[WORLDS];
 
-  /** Where in {@link #pieces} those begin that were found; and each world's number. */
-  private final int[] place = new int[WORLDS];
+  /** Position and velocity where pieces end, m and m/s, north, then east. */
+  final float[] flown = new float[4 * WORLDS];
 
-  private static final int[] WORLD = new int[WORLDS];
+  // Pieces that end by themselves: where, when, and under which command others follow.
+  private final LaneVectors over = new LaneVectors();
+  private final int[] ends = new int[WORLDS], next = new int[WORLDS];
+  private final Directions along = new Directions(WORLDS);
 
-  static {
-    for (int i = 0; i < WORLDS; i++) WORLD[i] = i;
-  }
+  private static final LaneVectors ALL = LaneVectors.all();
 
   /**
-   * @param fields numbers of a piece
+   * @param own numbers of a piece that the kind of vehicle has from {@link #PIECE_OWN} on
+   * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
    */
-  LaneFlights(Duelist duelist, int fields, FlightTiming timing) {
+  LaneFlights(Duelist duelist, int own, double pieceS, FlightTiming timing) {
     super(duelist, 0);
-    this.fields = fields;
+    size = PIECE_OWN + own * WORLDS;
     keptRows = timing.keptRows();
-    periodS = timing.loop().periodS();
-    pieces = new float[slots * fields * WORLDS];
-    chosen = new float[fields * WORLDS];
+    periodGrains = LaneViews.grains(timing.loop().periodS());
+    pieceGrains = LaneViews.grains(pieceS);
+    begins = new int[slots * WORLDS];
+    rowOf = new int[slots];
+    pieces = new float[slots * size];
+    chosen = new float[size];
   }
 
   @Override
   final void start() {
     super.start();
-    Arrays.fill(pieces, 0, fields * WORLDS, 0f);
-    System.arraycopy(state, X, pieces, PIECE_X * WORLDS, WORLDS);
-    System.arraycopy(state, Y, pieces, PIECE_Y * WORLDS, WORLDS);
+    Arrays.fill(begins, 0, WORLDS, 0);
+    Arrays.fill(pieces, 0, size, 0f);
+    System.arraycopy(state, X, pieces, PIECE_X, WORLDS);
+    System.arraycopy(state, Y, pieces, PIECE_Y, WORLDS);
     rest(pieces);
     rowOf[0] = 0;
     filled = 1;
@@ -82,170 +93,182 @@ abstract class LaneFlights extends LaneVehicles {
   /** Fills in what a piece at rest has of its own, from index 0 on. */
   abstract void rest(float[] pieces);
 
-  /** Flies {@link #chosen} pieces {@link #until} the times there, into {@link #x} and the others. */
-  abstract void fly(LaneVectors vectors, boolean withVelocity);
+  /**
+   * Flies {@link #chosen} pieces for {@link #sinceS}.
+   *
+   * @param at where in an array the positions go, north, then east, and behind them the velocities
+   */
+  abstract void fly(LaneVectors vectors, float[] into, int at, boolean withVelocity);
 
   /**
-   * New pieces begin where the vehicles were flown to, under commands; from {@code at} on in {@link
-   * #pieces}, in worlds where {@code acts} is less than {@link LaneOffers#NONE}.
+   * New pieces begin where {@link #chosen} ones were {@link #flown} to, under commands, in worlds where
+   * {@code acts} is less than {@link LaneOffers#NONE}; elsewhere the chosen ones go on.
+   *
+   * @param at where in {@link #pieces} they go
    */
   abstract void begin(LaneVectors vectors, int at, int[] acts, Directions commanded);
 
-  /** Pieces that begin by themselves before the times there, if this kind of vehicle has such. */
-  void goOn(int row, LaneVectors vectors) {}
-
   @Override
-  final void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity) {
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
-        zero = FloatVector.broadcast(SPECIES, 0f);
-    // Elsewhere the newest piece will do.
-    if (vectors.count * LANES < WORLDS) Arrays.fill(until, FUTURE);
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      FloatVector time =
-          ((FloatVector) IntVector.fromArray(INTS, at, i).convertShape(VectorOperators.I2F, SPECIES, 0))
-              .mul(grainS);
-      if (fresh != null)
-        time = zero.blend(time, IntVector.fromArray(INTS, fresh, i).compare(GT, 0).cast(SPECIES));
-      time.intoArray(until, i);
-    }
-    flyTo(row, vectors, withVelocity);
-    keep(vectors, x, SEEN_X, fresh);
-    keep(vectors, y, SEEN_Y, fresh);
-    if (withVelocity) {
-      keep(vectors, vx, SEEN_VX, fresh);
-      keep(vectors, vy, SEEN_VY, fresh);
-    }
-  }
-
-  private void keep(LaneVectors vectors, float[] now, int seen, int[] fresh) {
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      FloatVector value = FloatVector.fromArray(SPECIES, now, i);
-      if (fresh != null)
-        value =
-            FloatVector.fromArray(SPECIES, state, seen + i)
-                .blend(value, IntVector.fromArray(INTS, fresh, i).compare(GT, 0).cast(SPECIES));
-      value.intoArray(state, seen + i);
-    }
+  final void read(
+      int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
+    if (fresh != null) remember();
+    if (fresh == null) ask(row, vectors, at, joined, Integer.MIN_VALUE);
+    else ask(row, vectors, at, fresh, 1);
+    goOn(row, vectors);
+    choose(vectors);
+    fly(vectors, state, SEEN_X, withVelocity);
+    if (fresh != null) keep(fresh);
   }
 
   @Override
   final void flyToRow(int row) {
-    Arrays.fill(until, 0f);
-    flyTo(row, all, false);
-    System.arraycopy(x, 0, state, X, WORLDS);
-    System.arraycopy(y, 0, state, Y, WORLDS);
-  }
-
-  private void flyTo(int row, LaneVectors vectors, boolean withVelocity) {
-    goOn(row, vectors);
-    choose(row, vectors);
-    fly(vectors, withVelocity);
+    Arrays.fill(until, row * periodGrains);
+    goOn(row, ALL);
+    choose(ALL);
+    fly(ALL, state, X, false);
   }
 
   @Override
   final void act(int row, LaneVectors vectors, int[] acts, Directions commanded) {
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),
-        zero = FloatVector.broadcast(SPECIES, 0f);
-    IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
-    for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      IntVector grains = IntVector.fromArray(INTS, acts, i);
-      VectorMask<Float> does = grains.compare(VectorOperators.LT, none).cast(SPECIES);
-      zero.blend(
-              ((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS), does)
-          .intoArray(until, i);
-    }
+    ask(row, vectors, acts, acts, Integer.MIN_VALUE);
     goOn(row, vectors);
-    chooseNewest(row);
-    fly(vectors, true);
-    begin(vectors, fill(row), acts, commanded);
+    chooseNewest(vectors);
+    fly(vectors, flown, 0, true);
+    begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
-  /** Fills a slot with {@link #chosen}, which are the newest. */
-  final int fill(int row) {
-    if (filled >= slots && rowOf[filled & slots - 1] >= row - keptRows) makeRoom();
-    int slot = filled++ & slots - 1, at = slot * fields * WORLDS;
+  /**
+   * Asks for times from a row's begin where a number is at least {@code least} and below {@link
+   * LaneOffers#NONE}, and elsewhere for the begin of the newest piece.
+   */
+  private void ask(int row, LaneVectors vectors, int[] times, int[] numbers, int least) {
+    int newest = (filled - 1 & slots - 1) * WORLDS;
+    IntVector begin = IntVector.broadcast(INTS, row * periodGrains),
+        from = IntVector.broadcast(INTS, least),
+        none = IntVector.broadcast(INTS, LaneOffers.NONE);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector number = IntVector.fromArray(INTS, numbers, i);
+      VectorMask<Integer> asked = number.compare(GE, from).and(number.compare(LT, none));
+      IntVector.fromArray(INTS, begins, newest + i)
+          .blend(IntVector.fromArray(INTS, times, i).add(begin), asked)
+          .intoArray(until, i);
+    }
+  }
+
+  /** Lets pieces that end before the times asked for be followed by others. */
+  private void goOn(int row, LaneVectors vectors) {
+    while (findOver(vectors)) {
+      copyNewest(over);
+      fly(over, flown, 0, true);
+      System.arraycopy(chosen, ALONG_X, along.cos, 0, WORLDS);
+      System.arraycopy(chosen, ALONG_Y, along.sin, 0, WORLDS);
+      begin(over, fill(row, over, next), ends, along);
+    }
+  }
+
+  /** Whether newest pieces end before the times asked for: where, when, and how long they last. */
+  private boolean findOver(LaneVectors vectors) {
+    int newest = (filled - 1 & slots - 1) * WORLDS;
+    float pieceS = pieceGrains * LaneViews.GRAIN_S;
+    IntVector piece = IntVector.broadcast(INTS, pieceGrains);
+    over.count = 0;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector begin = IntVector.fromArray(INTS, begins, newest + i);
+      VectorMask<Integer> isOver = IntVector.fromArray(INTS, until, i).sub(begin).compare(GT, piece);
+      if (isOver.anyTrue()) {
+        over.first[over.count++] = i;
+        begin.add(piece, isOver).intoArray(next, i);
+        IntVector.broadcast(INTS, LaneOffers.NONE).blend(0, isOver).intoArray(ends, i);
+        FloatVector.broadcast(SPECIES, 0f).blend(pieceS, isOver.cast(SPECIES)).intoArray(sinceS, i);
+      }
+    }
+    return over.count > 0;
+  }
+
+  /** Takes a slot for pieces that begin at these times; in other vectors, it holds what the newest does. */
+  private int fill(int row, LaneVectors vectors, int[] times) {
+    if (filled >= slots && rowOf[filled + 1 & slots - 1] >= row - keptRows) makeRoom();
+    int newest = filled - 1 & slots - 1, slot = filled++ & slots - 1;
     rowOf[slot] = row;
-    System.arraycopy(chosen, 0, pieces, at, fields * WORLDS);
-    return at;
+    if (vectors.count * LANES < WORLDS) {
+      System.arraycopy(begins, newest * WORLDS, begins, slot * WORLDS, WORLDS);
+      System.arraycopy(pieces, newest * size, pieces, slot * size, size);
+    }
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      IntVector.fromArray(INTS, times, i).intoArray(begins, slot * WORLDS + i);
+    }
+    return slot * size;
   }
 
   private void makeRoom() {
-    int before = slots, size = fields * WORLDS;
+    int before = slots;
+    int[] begun = begins, rows = rowOf;
     float[] held = pieces;
-    int[] rows = rowOf;
     slots = 2 * before;
-    pieces = new float[slots * size];
+    begins = new int[slots * WORLDS];
     rowOf = new int[slots];
+    pieces = new float[slots * size];
     for (int number = filled - before; number < filled; number++) {
       int from = number & before - 1, to = number & slots - 1;
       rowOf[to] = rows[from];
+      System.arraycopy(begun, from * WORLDS, begins, to * WORLDS, WORLDS);
       System.arraycopy(held, from * size, pieces, to * size, size);
     }
   }
 
-  private float shift(int slot, int row) {
-    return (float) ((rowOf[slot] - row) * periodS);
-  }
-
-  /** The newest pieces, in times of a row. */
-  final void chooseNewest(int row) {
-    int slot = filled - 1 & slots - 1;
-    System.arraycopy(pieces, slot * fields * WORLDS, chosen, 0, fields * WORLDS);
-    FloatVector shift = FloatVector.broadcast(SPECIES, shift(slot, row));
-    for (int i = 0; i < WORLDS; i += LANES)
-      FloatVector.fromArray(SPECIES, chosen, i).add(shift).intoArray(chosen, i);
-  }
-
-  /** The pieces in which the times there lie; elsewhere than in these vectors, any. */
-  private void choose(int row, LaneVectors vectors) {
+  /** The newest pieces, and how long after their begin the times asked for are. */
+  private void chooseNewest(LaneVectors vectors) {
+    int newest = (filled - 1 & slots - 1) * WORLDS;
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
-      if (find(row, i)) copy(i, filled - 1);
-      else gather(i);
+      IntVector since =
+          IntVector.fromArray(INTS, until, i).sub(IntVector.fromArray(INTS, begins, newest + i));
+      ((FloatVector) since.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS).intoArray(sinceS, i);
+    }
+    copyNewest(vectors);
+  }
+
+  private void copyNewest(LaneVectors vectors) {
+    int newest = (filled - 1 & slots - 1) * size;
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      for (int number = i; number < size; number += WORLDS)
+        FloatVector.fromArray(SPECIES, pieces, newest + number).intoArray(chosen, number);
     }
   }
 
-  /** Finds the pieces of one vector of worlds; whether they are the newest of all. */
-  private boolean find(int row, int i) {
-    float[] pieces = this.pieces;
-    int[] rowOf = this.rowOf;
-    int mask = slots - 1, size = fields * WORLDS, back = filled - 1, oldest = Math.max(0, filled - slots);
-    FloatVector time = FloatVector.fromArray(SPECIES, until, i);
-    IntVector world = IntVector.fromArray(INTS, WORLD, i), found = world.add((back & mask) * size);
-    FloatVector begins =
-        FloatVector.fromArray(SPECIES, pieces, (back & mask) * size + i)
-            .add((float) ((rowOf[back & mask] - row) * periodS));
-    VectorMask<Float> late = begins.compare(GT, time);
-    while (late.anyTrue() && --back >= oldest) {
-      int from = (back & mask) * size;
-      begins =
-          begins.blend(
-              FloatVector.fromArray(SPECIES, pieces, from + i)
-                  .add((float) ((rowOf[back & mask] - row) * periodS)),
-              late);
-      found = found.blend(world.add(from), late.cast(INTS));
-      late = begins.compare(GT, time);
+  /** The pieces in which the times asked for lie, and how long after their begin. */
+  private void choose(LaneVectors vectors) {
+    copyNewest(vectors);
+    int[] begins = this.begins, until = this.until;
+    float[] pieces = this.pieces, chosen = this.chosen;
+    int size = this.size, mask = slots - 1, newest = filled - 1, oldest = Math.max(0, filled - slots);
+    IntVector zero = IntVector.broadcast(INTS, 0);
+    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k], back = newest;
+      IntVector time = IntVector.fromArray(INTS, until, i);
+      IntVector since = time.sub(IntVector.fromArray(INTS, begins, (back & mask) * WORLDS + i));
+      VectorMask<Integer> late = since.compare(LT, zero);
+      while (late.anyTrue()) {
+        if (--back < oldest)
+          throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
+        since =
+            since.blend(
+                time.sub(IntVector.fromArray(INTS, begins, (back & mask) * WORLDS + i)), late);
+        VectorMask<Float> isLate = late.cast(SPECIES);
+        int from = (back & mask) * size;
+        for (int number = i; number < size; number += WORLDS)
+          FloatVector.fromArray(SPECIES, chosen, number)
+              .blend(FloatVector.fromArray(SPECIES, pieces, from + number), isLate)
+              .intoArray(chosen, number);
+        late = since.compare(LT, zero);
+      }
+      ((FloatVector) since.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS).intoArray(sinceS, i);
     }
-    if (back < oldest)
-      throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
-    begins.intoArray(chosen, i);
-    found.intoArray(place, i);
-    return back == filled - 1;
-  }
-
-  /** The numbers of the pieces of one slot. */
-  private void copy(int i, int number) {
-    int from = (number & slots - 1) * fields * WORLDS + i;
-    for (int field = PIECE_X; field < fields; field++)
-      FloatVector.fromArray(SPECIES, pieces, from + field * WORLDS).intoArray(chosen, field * WORLDS + i);
-  }
-
-  /** The numbers of the pieces that were found. */
-  private void gather(int i) {
-    for (int field = PIECE_X; field < fields; field++)
-      FloatVector.fromArray(SPECIES, pieces, field * WORLDS, place, i).intoArray(chosen, field * WORLDS + i);
   }
 }

@@ -1,5 +1,10 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.LT;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+
+import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 
 /**
@@ -7,9 +12,10 @@ import skein.forward.DelayTable;
  * another order of the same messages. Nothing of it depends on what is decided, so it is told ahead.
  * The reference are the loops of {@code Rollout}.
  *
- * <p>Worlds go through the flight period by period, together. Offers of a period come in beats: of
- * each world and agent at most one, none of which is earlier than one of a beat before. Times are in
- * {@link DelayTable#GrainNs} from the period's begin.
+ * <p>Worlds go through the flight period by period, together. Offers come in beats: of each world and
+ * agent at most one, none of which is earlier than one of a beat before. While some world has an offer
+ * in the period, others may have their next ones of {@link #rowsAhead} periods more: with that, nearly
+ * all worlds have one in every beat. Times are in {@link DelayTable#GrainNs} from the period's begin.
  */
 abstract class LaneOffers {
   static final int WORLDS = LanePolicy.WORLDS;
@@ -24,6 +30,9 @@ abstract class LaneOffers {
 
   /** Whether every offer is made to both. */
   final boolean together;
+
+  /** So many periods behind the present one, a beat may have offers of. */
+  final int rowsAhead;
 
   /** Whose beat it is. */
   int whose = BOTH;
@@ -40,8 +49,9 @@ abstract class LaneOffers {
   /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
   final int[][] place = new int[2][];
 
-  LaneOffers(LaneDelays delays, boolean together) {
+  LaneOffers(LaneDelays delays, boolean together, int rowsAhead) {
     this.together = together;
+    this.rowsAhead = rowsAhead;
     this.delays = delays;
   }
 
@@ -52,4 +62,12 @@ abstract class LaneOffers {
 
   /** To the next beat of the period, if it has one. */
   abstract boolean nextBeat();
+
+  /** Whether some world's time comes before another. */
+  static boolean isBefore(int[] times, int time) {
+    IntVector before = IntVector.broadcast(INTS, time);
+    for (int i = 0; i < WORLDS; i += LANES)
+      if (IntVector.fromArray(INTS, times, i).compare(LT, before).anyTrue()) return true;
+    return false;
+  }
 }

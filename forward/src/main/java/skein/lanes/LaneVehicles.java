@@ -1,6 +1,14 @@
 package skein.lanes;
 
+import static jdk.incubator.vector.VectorOperators.EQ;
+import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
+import static skein.simd.LaneMath.SPECIES;
+
 import java.util.Arrays;
+import jdk.incubator.vector.FloatVector;
+import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
 import skein.forward.Duelist;
 
 /**
@@ -26,6 +34,7 @@ abstract class LaneVehicles {
 
   final float[] state;
 
+  private final float[] kept = new float[4 * WORLDS];
   private final float startX, startY;
 
   /**
@@ -45,12 +54,14 @@ abstract class LaneVehicles {
   }
 
   /**
-   * Reads the vehicles where {@code fresh} is 1, or everywhere.
+   * Reads the vehicles where {@code fresh} is 1, or wherever something was joined.
    *
    * @param vectors in which some world is read
-   * @param at when, from the row's begin, in grains
+   * @param joined less than {@link LaneOffers#NONE} where something was
+   * @param at when they are read, from the row's begin, in grains
    */
-  abstract void read(int row, LaneVectors vectors, int[] at, int[] fresh, boolean withVelocity);
+  abstract void read(
+      int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
   /** Flies to a row's begin. */
   abstract void flyToRow(int row);
@@ -62,4 +73,19 @@ abstract class LaneVehicles {
    * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
+
+  /** Keeps what was read before. */
+  final void remember() {
+    System.arraycopy(state, SEEN_X, kept, 0, kept.length);
+  }
+
+  /** Puts back what was {@link #remember remembered} where nothing is fresh. */
+  final void keep(int[] fresh) {
+    for (int i = 0; i < WORLDS; i += LANES) {
+      VectorMask<Float> isOld = IntVector.fromArray(INTS, fresh, i).compare(EQ, 0).cast(SPECIES);
+      if (isOld.anyTrue())
+        for (int from = i; from < kept.length; from += WORLDS)
+          FloatVector.fromArray(SPECIES, kept, from).intoArray(state, SEEN_X + from, isOld);
+    }
+  }
 }

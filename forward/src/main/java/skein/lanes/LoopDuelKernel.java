@@ -61,6 +61,8 @@ final class LoopDuelKernel extends DuelKernel {
       toleranceS = stream.toleranceS();
     } else if (!(timing instanceof LoopTiming.Sequential || timing instanceof LoopTiming.Futures))
       return "worlds with delays of their own fly by lanes under sequential, futures and stream";
+    if (model.stepS() > LaneFlights.MOST_PIECE_S)
+      return "the lanes fly steps of " + LaneFlights.MOST_PIECE_S + " s at most, and the vehicle's last " + model.stepS() + " s";
     double timeoutS = LoopTiming.askingOf(timing).timeoutS();
     if (timing.periodS() + patienceS + 2 * timeoutS + 2 * maxDelayS + deadTimeS > MOST_S)
       return "a command may act later than the lanes can count";
@@ -114,7 +116,7 @@ final class LoopDuelKernel extends DuelKernel {
     } else if (timing instanceof LoopTiming.Sequential sequential)
       offers = new SequentialOffers(sequential);
     else offers = new FuturesOffers((LoopTiming.Futures) timing, maxDelayS);
-    FlightTiming flight = new FlightTiming(timing, keptRows(timing, maxDelayS), 2 * MOST_S);
+    FlightTiming flight = new FlightTiming(timing, offers.rowsAhead + keptRows(timing, maxDelayS), 2 * MOST_S);
     LaneVehicles evaders = model.flights(duel.evader(), flight),
         pursuers = model.flights(duel.pursuer(), flight);
     double deadTimeS = model.deadTimeS();
@@ -154,8 +156,8 @@ final class LoopDuelKernel extends DuelKernel {
     scores.start();
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
-        evader.nextRow();
-        pursuer.nextRow();
+        evader.startRow(row);
+        pursuer.startRow(row);
         if (withAges) growOlder();
       }
       offers.startRow(row);
@@ -183,7 +185,7 @@ final class LoopDuelKernel extends DuelKernel {
 
   private void read(int row, int vehicle, LaneVehicles vehicles) {
     int[] at = offers.sampledAt[vehicle], fresh = offers.fresh[vehicle];
-    vehicles.read(row, vectors, at, fresh, withVelocity);
+    vehicles.read(row, vectors, offers.joinedAt, at, fresh, withVelocity);
     if (withAges)
       for (int i = 0; i < WORLDS; i += LANES) {
         IntVector now = IntVector.fromArray(INTS, at, i), held = IntVector.fromArray(INTS, readAt[vehicle], i);

@@ -17,35 +17,38 @@ import skein.vehicle.Plant;
  * piece is a step: of it the state at its begin is kept, and the command, which is no direction until
  * there was one; the vehicle rests then. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
-final class PlantFlights extends PieceFlights {
-  private static final int ALONG_X = PIECE_OWN * WORLDS, ALONG_Y = ALONG_X + WORLDS, STATE = ALONG_Y + WORLDS;
+final class PlantFlights extends LaneFlights {
+  private static final int STATE = PIECE_OWN;
 
   private final PlantLanes lanes;
   private final float speedMps, stepS;
   private final FixedFormula.Call step, see;
-  private final float[] flown, north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
+
+  /** The state flown to. */
+  private final float[] reached;
+
+  private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
+
+  /** Of velocities that nobody asks for. */
+  private final float[] unread = new float[2 * WORLDS];
 
   PlantFlights(Duelist duelist, PlantLanes lanes, FlightTiming timing) {
-    super(duelist, PIECE_OWN + 2 + lanes.count(), timing, lanes.plant().stepS(), PIECE_OWN);
+    super(duelist, lanes.count(), lanes.plant().stepS(), timing);
     this.lanes = lanes;
     speedMps = (float) duelist.speed();
     stepS = (float) lanes.plant().stepS();
-    flown = new float[lanes.count() * WORLDS];
+    reached = new float[lanes.count() * WORLDS];
     step = lanes.step().call();
     step.inputs(0, lanes.count(), chosen, STATE);
     step.input(lanes.count(), north, 0);
     step.input(lanes.count() + 1, east, 0);
     step.input(lanes.count() + 2, forS, 0);
-    step.outputs(lanes.count(), flown, 0);
+    step.outputs(lanes.count(), reached, 0);
     see = lanes.read().call();
-    see.inputs(0, lanes.count(), flown, 0);
+    see.inputs(0, lanes.count(), reached, 0);
     // Where a piece began is where the vehicle started: its state counts from there.
-    see.input(lanes.count(), chosen, PIECE_X * WORLDS);
-    see.input(lanes.count() + 1, chosen, PIECE_Y * WORLDS);
-    see.output(0, x, 0);
-    see.output(1, y, 0);
-    see.output(2, vx, 0);
-    see.output(3, vy, 0);
+    see.input(lanes.count(), chosen, PIECE_X);
+    see.input(lanes.count() + 1, chosen, PIECE_Y);
   }
 
   @Override
@@ -54,11 +57,20 @@ final class PlantFlights extends PieceFlights {
   }
 
   @Override
-  void fly(LaneVectors vectors, boolean withVelocity) {
+  void fly(LaneVectors vectors, float[] into, int at, boolean withVelocity) {
+    reach();
+    see.output(0, into, at);
+    see.output(1, into, at + WORLDS);
+    see.output(2, withVelocity ? into : unread, withVelocity ? at + 2 * WORLDS : 0);
+    see.output(3, withVelocity ? into : unread, withVelocity ? at + 3 * WORLDS : WORLDS);
+    see.apply();
+  }
+
+  private void reach() {
     FloatVector speed = FloatVector.broadcast(SPECIES, speedMps), whole = FloatVector.broadcast(SPECIES, stepS);
     boolean allFly = true;
     for (int i = 0; i < WORLDS; i += LANES) {
-      FloatVector dt = time(i);
+      FloatVector dt = FloatVector.fromArray(SPECIES, sinceS, i);
       FloatVector.fromArray(SPECIES, chosen, ALONG_X + i).mul(speed).intoArray(north, i);
       FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i).mul(speed).intoArray(east, i);
       VectorMask<Float> flies = flies(i, dt);
@@ -68,12 +80,6 @@ final class PlantFlights extends PieceFlights {
     }
     step.apply();
     if (!allFly) keepOthers();
-    see.apply();
-  }
-
-  private FloatVector time(int i) {
-    return FloatVector.fromArray(SPECIES, until, i)
-        .sub(FloatVector.fromArray(SPECIES, chosen, PIECE_TIME * WORLDS + i));
   }
 
   private VectorMask<Float> flies(int i, FloatVector dt) {
@@ -84,10 +90,12 @@ final class PlantFlights extends PieceFlights {
 
   private void keepOthers() {
     for (int i = 0; i < WORLDS; i += LANES) {
-      VectorMask<Float> rests = flies(i, time(i)).not();
-      if (rests.anyTrue())
-        for (int at = i; at < flown.length; at += WORLDS)
-          FloatVector.fromArray(SPECIES, chosen, STATE + at).intoArray(flown, at, rests);
+      VectorMask<Float> flies = flies(i, FloatVector.fromArray(SPECIES, sinceS, i));
+      if (!flies.allTrue())
+        for (int at = i; at < reached.length; at += WORLDS)
+          FloatVector.fromArray(SPECIES, chosen, STATE + at)
+              .blend(FloatVector.fromArray(SPECIES, reached, at), flies)
+              .intoArray(reached, at);
     }
   }
 
@@ -95,13 +103,20 @@ final class PlantFlights extends PieceFlights {
   void begin(LaneVectors vectors, int at, int[] acts, Directions commanded) {
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k], from = at + i;
+      int i = vectors.first[k], to = at + i;
       VectorMask<Float> does = IntVector.fromArray(INTS, acts, i).compare(LT, none).cast(SPECIES);
-      FloatVector.fromArray(SPECIES, until, i).intoArray(pieces, from + PIECE_TIME * WORLDS, does);
-      FloatVector.fromArray(SPECIES, commanded.cos, i).intoArray(pieces, from + ALONG_X, does);
-      FloatVector.fromArray(SPECIES, commanded.sin, i).intoArray(pieces, from + ALONG_Y, does);
-      for (int number = 0; number < flown.length; number += WORLDS)
-        FloatVector.fromArray(SPECIES, flown, number + i).intoArray(pieces, from + STATE + number, does);
+      FloatVector.fromArray(SPECIES, chosen, PIECE_X + i).intoArray(pieces, to + PIECE_X);
+      FloatVector.fromArray(SPECIES, chosen, PIECE_Y + i).intoArray(pieces, to + PIECE_Y);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_X + i)
+          .blend(FloatVector.fromArray(SPECIES, commanded.cos, i), does)
+          .intoArray(pieces, to + ALONG_X);
+      FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i)
+          .blend(FloatVector.fromArray(SPECIES, commanded.sin, i), does)
+          .intoArray(pieces, to + ALONG_Y);
+      for (int number = 0; number < reached.length; number += WORLDS)
+        FloatVector.fromArray(SPECIES, chosen, STATE + number + i)
+            .blend(FloatVector.fromArray(SPECIES, reached, number + i), does)
+            .intoArray(pieces, to + STATE + number);
     }
   }
 }

@@ -22,6 +22,9 @@ import skein.simd.WorldRandom;
 final class SequentialOffers extends LaneOffers {
   private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
 
+  /** Rounds last for longer and for shorter by so much until worlds are apart. */
+  private static final double AHEAD_S = 0.5;
+
   /** As far as rounds are looked ahead for one that succeeds. */
   private static final int HORIZON = LaneViews.grains(4);
 
@@ -44,7 +47,7 @@ final class SequentialOffers extends LaneOffers {
   private final LaneVectors searching = new LaneVectors();
 
   SequentialOffers(LoopTiming.Sequential timing) {
-    super(new LaneDelays(), true);
+    super(new LaneDelays(), true, (int) (AHEAD_S / timing.periodS()));
     periodGrains = LaneViews.grains(timing.periodS());
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
     joinedAt = new int[WORLDS];
@@ -85,24 +88,22 @@ final class SequentialOffers extends LaneOffers {
 
   @Override
   boolean nextBeat() {
-    IntVector period = IntVector.broadcast(INTS, periodGrains),
+    if (!isBefore(end, periodGrains)) return false;
+    IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
         none = IntVector.broadcast(INTS, NONE),
-        zero = IntVector.broadcast(INTS, 0),
         here = IntVector.broadcast(INTS, rowPlace);
-    boolean any = false;
     for (int i = 0; i < WORLDS; i += LANES) {
       IntVector ends = IntVector.fromArray(INTS, end, i);
-      VectorMask<Integer> due = ends.compare(LT, period);
-      any |= due.anyTrue();
+      VectorMask<Integer> due = ends.compare(LT, horizon);
       none.blend(ends, due).intoArray(joinedAt, i);
       IntVector.fromArray(INTS, laterEnd, i).intoArray(nextAt, i);
-      zero.blend(IntVector.fromArray(INTS, read[0], i), due).intoArray(beatRead[0], i);
-      zero.blend(IntVector.fromArray(INTS, read[1], i), due).intoArray(beatRead[1], i);
+      IntVector.fromArray(INTS, read[0], i).intoArray(beatRead[0], i);
+      IntVector.fromArray(INTS, read[1], i).intoArray(beatRead[1], i);
       IntVector.fromArray(INTS, places, i).sub(here).intoArray(beatPlaces, i);
-      none.blend(ends, due.not()).intoArray(end, i);
+      ends.blend(none, due).intoArray(end, i);
     }
-    if (any) find();
-    return any;
+    find();
+    return true;
   }
 
   /** Fills up what each world knows of its next two rounds. */

@@ -13,7 +13,7 @@ final class StreamOffers extends LaneOffers {
   }
 
   private StreamOffers(LaneViews views) {
-    super(views.delays, true);
+    super(views.delays, true, 0);
     this.views = views;
   }
 

@@ -34,6 +34,9 @@ private[skein] trait LaneDynamics:
     */
   def vehicles(duelist: Duelist): TimetableVehicles
 
+  /** How long one of its steps lasts at most, s; 0 where its flight is known for as long as a command acts. */
+  def stepS: Double = 0
+
   /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
   def fliesAlone: Boolean = true
 
@@ -158,6 +161,7 @@ private final class DragDynamics(model: ReducedModel, lanes: PlantLanes) extends
 
 /** By [[TimetablePlants]]. */
 private sealed class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
+  override def stepS: Double                        = lanes.plant.stepS
   def deadTimeS: Double                             = lanes.plant.deadTimeS
   def handoverS: Double                             = 0
   def vehicles(duelist: Duelist): TimetableVehicles = TimetablePlants(duelist, lanes)
