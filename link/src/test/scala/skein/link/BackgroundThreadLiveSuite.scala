@@ -1,10 +1,10 @@
 package skein.link
 
 import java.nio.file.Path
-import skein.testing.Timing
+import skein.testing.{Lengthy, Optimised}
 
 /** Asks the system itself. */
-class BackgroundThreadLiveSuite extends munit.FunSuite, Timing:
+class BackgroundThreadLiveSuite extends munit.FunSuite, Lengthy, Optimised:
 
   private def onLinux(name: String)(body: => Unit): Unit =
     test(name):
