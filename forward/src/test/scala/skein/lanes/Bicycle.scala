@@ -14,10 +14,14 @@ final case class Rolling(
 /** A kinematic bicycle that steers after the commanded velocity, and whose position is read at an antenna ahead of its
   * middle. Nothing in the product knows it.
   */
-final case class Bicycle(wheelbaseM: Double, steeringLagS: Double, mostMps2: Double, antennaM: Double)
-    extends Plant[Rolling]:
+final case class Bicycle(
+    wheelbaseM: Double,
+    steeringLagS: Double,
+    mostMps2: Double,
+    antennaM: Double,
+    stepS: Double = 0.05
+) extends Plant[Rolling]:
   def initial: Rolling = Rolling(0, 0, 0, 0, 0)
-  def stepS: Double    = 0.05
 
   override def deadTimeS: Double = 0.03
 

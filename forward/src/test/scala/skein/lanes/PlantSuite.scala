@@ -93,6 +93,8 @@ class PlantSuite extends munit.FunSuite, Unhurried:
     ).startsWith("scalar: the lanes predict by reduced models and constant velocity"))
     val told = engine(Gusty, shared = true)
     assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
+    val slow = engine(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5), shared = false)
+    assert(slow.startsWith("scalar: ") && slow.contains("the vehicle's last 1.5"), slow)
 
   private object Gusty extends Plant[PlaneReading]:
     def initial: PlaneReading     = PlaneReading(0, 0, 0, 0)
