@@ -11,15 +11,17 @@ import skein.cluster.WorkerProcesses
 
 /** A search by two workers, and the next by five, whose coordinator is killed twice, and of whom one is killed now and
   * then; each time it goes on with `--resume`. Then its files are held to those of one process:
-  * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 20 5 DIR"`. Ends with an error where they differ, or where a
+  * `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Ends with an error where they differ, or where a
   * block counts twice.
   *
   * @param candidates
   *   so many that the search lasts for all kills
+  * @param first
+  *   number of a run, which is its seed; so is `last`
   * @param everyS
   *   a worker is killed; on a busy machine workers take long to start
   */
-@main def killCoordinator(candidates: Int, runs: Int, everyS: Int, out: String): Unit =
+@main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =
     s"search --family lead-pursuit --method random --candidates $candidates --episodes 10 --fresh 16 --duration 20s"
       .split(' ')
@@ -30,7 +32,7 @@ import skein.cluster.WorkerProcesses
     Console.withOut(said)(Console.withErr(said)(Main.run(question ++ Seq("--out", alone.toString))))
   require(status == 0, said.toString(UTF_8))
 
-  for run <- 1 to runs do
+  for run <- first to last do
     val random                     = Random(run)
     val begun                      = System.nanoTime()
     val folder                     = Path.of(out).resolve(s"run-$run")
