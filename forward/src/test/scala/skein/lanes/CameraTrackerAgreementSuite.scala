@@ -9,7 +9,7 @@ import skein.simd.WorldRandom
 import skein.units.Instant
 
 /** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader in the same
-  * pictures of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
+  * images of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
   * lies so near to a threshold that rounding decides.
   */
 class CameraTrackerAgreementSuite extends munit.FunSuite:
@@ -76,7 +76,7 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
               Option
                 .when(k < eye.looks.size)(difference(exposure, eye.looks(k), world))
                 .flatten
-                .map(found => (found.isUndecided, s"$timeS s, picture $k: $found"))
+                .map(found => (found.isUndecided, s"$timeS s, image $k: $found"))
           .nextOption()
         differs match
           case None =>
@@ -102,7 +102,7 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
     assert(told.startsWith("SIMD"), told)
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel.meanDistance.toSeq)
 
-  /** Where a picture shows an opponent to the one and not to the other. */
+  /** Where an image shows an opponent to the one and not to the other. */
   private def difference(scalar: Exposure, lanes: Looked, world: Int): Option[Difference] =
     val isFound = camera.measured(Instant.Epoch, scalar).isDefined
     val doubles =
@@ -162,11 +162,11 @@ private object CameraTrackerAgreementSuite:
       all += Event.Decided(vehicle, decisions(vehicle), atNs * 1e-9)
       decisions(vehicle) += 1
 
-    override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
-      all += Event.Looked(looks, atNs * 1e-9, picture)
+    override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
+      all += Event.Looked(looks, atNs * 1e-9, image)
       looks += 1
 
-  /** A picture that the lanes took, by world. */
+  /** An image that the lanes took, by world. */
   final class Looked(
       val by: CameraTrackerLanes.Forms,
       axis: Array[Float],
@@ -185,7 +185,7 @@ private object CameraTrackerAgreementSuite:
     val looks: ArrayBuffer[Looked] = ArrayBuffer.empty
 
     override def expose(
-        picture: Int,
+        image: Int,
         ours: TimetableVehicles,
         oursAt: Int,
         theirs: TimetableVehicles,
@@ -200,5 +200,5 @@ private object CameraTrackerAgreementSuite:
         copied(theirs.seenX, theirsAt),
         copied(theirs.seenY, theirsAt)
       )
-      super.expose(picture, ours, oursAt, theirs, theirsAt, times, at)
-      looks += Looked(forms, axis.clone, places, own.altitudeDownM)(found(picture))
+      super.expose(image, ours, oursAt, theirs, theirsAt, times, at)
+      looks += Looked(forms, axis.clone, places, own.altitudeDownM)(found(image))
