@@ -11,12 +11,12 @@ import skein.search.Conditions
 import skein.settings.{FlySettings, SensorFile}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
-import skein.testing.Unhurried
+import skein.testing.{Lengthy, Optimised}
 import skein.torture.Torture
 import skein.units.*
 
 /** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in virtual time. */
-class BlindPursuitSimulation extends munit.FunSuite, Unhurried:
+class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 
   private def settings(

@@ -12,9 +12,9 @@ import skein.units.Instant
   * images of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
   * lies so near to a threshold that rounding decides.
   */
-class CameraTrackerAgreementSuite extends munit.FunSuite:
-  import CameraTrackerAgreementSuite.*
-  import AgreementSuite.{Log, Logged}
+class CameraTrackerAgreementSimulation extends munit.FunSuite:
+  import CameraTrackerAgreementSimulation.*
+  import AgreementSimulation.{Log, Logged}
 
   private val worlds = DuelKernel.WORLDS
   private val model  = Reduced.AirSim
@@ -69,7 +69,7 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
             case Event.Decided(agent, k, timeS) =>
               Option
                 .when(k < lanes(agent).made.size):
-                  AgreementSuite.difference(agent, k, policies(agent), logs(agent), lanes(agent), world)
+                  AgreementSimulation.difference(agent, k, policies(agent), logs(agent), lanes(agent), world)
                 .flatten
                 .map(found => (found.isUndecided, s"$timeS s: $found"))
             case Event.Looked(k, timeS, exposure) =>
@@ -95,8 +95,8 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = episode
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = CameraTrackerAgreementSuite.this.pursuer(world)
-      def evader(world: Int): Policy      = CameraTrackerAgreementSuite.this.evader(world)
+      def pursuer(world: Int): Policy     = CameraTrackerAgreementSimulation.this.pursuer(world)
+      def evader(world: Int): Policy      = CameraTrackerAgreementSimulation.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
     assert(told.startsWith("SIMD"), told)
@@ -128,7 +128,7 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
           Compared(node, math.abs(bound.value(a) - bound.value(b)), bound.error(a) + bound.error(b))
       Difference(isFound, scalar.found - camera.detection, compared, drawn && bound.undecided(shown).nonEmpty)
 
-private object CameraTrackerAgreementSuite:
+private object CameraTrackerAgreementSimulation:
   /** Of what floats add up to in the vehicles' flight, and in what is believed of the opponent. */
   private val MostOffM   = 5e-3
   private val MostOffRad = 5e-3
