@@ -1,9 +1,9 @@
-"""Teaches a small network of convolutions to find a drone in pictures, and writes it as ONNX.
+"""Teaches a small network of convolutions to find a drone in images, and writes it as ONNX.
 
-python train.py PICTURES OUT.onnx: PICTURES is a folder of pictures.npy (count, height, width, 3; blue, green, red) and
+python train.py IMAGES OUT.onnx: IMAGES is a folder of images.npy (count, height, width, 3; blue, green, red) and
 truth.npy (count, 5; what is known: 1 a drone, 0 none, -1 neither; its box: middle, width and height, pixels).
 
-The model takes pictures of any size (1, 3, height, width; red, green, blue, 0 to 1) and gives boxes as YOLOv8 does
+The model takes images of any size (1, 3, height, width; red, green, blue, 0 to 1) and gives boxes as YOLOv8 does
 (1, 5, boxes; middle, width and height in pixels, and a score).
 """
 
@@ -42,16 +42,16 @@ def convolved(x, weight, bias, stride=1, dilation=1):
     return y + bias
 
 
-def answers(weights, pictures):
-    x = pictures
+def answers(weights, images):
+    x = images
     for (weight, bias), (_, stride, dilation) in zip(weights, LAYERS):
         x = jax.nn.relu(convolved(x, weight, bias, stride, dilation))
     return convolved(x, *weights[-1])
 
 
-def loss(weights, pictures, heat, counts, cells, wanted, isDrone):
+def loss(weights, images, heat, counts, cells, wanted, isDrone):
     """CenterNet's (arXiv 1904.07850): the focal loss of the scores, the absolute errors of box and place at the middle."""
-    out = answers(weights, pictures)
+    out = answers(weights, images)
     logit = out[..., 0]
     p = jax.nn.sigmoid(logit)
     right = -jax.nn.log_sigmoid(logit) * (1 - p) ** 2 * (heat == 1)
@@ -63,7 +63,7 @@ def loss(weights, pictures, heat, counts, cells, wanted, isDrone):
 
 
 def targets(truth, height, width):
-    """Of each picture: the scores wanted at all cells, whether it counts, its drone's cell, and what is wanted there."""
+    """Of each image: the scores wanted at all cells, whether it counts, its drone's cell, and what is wanted there."""
     rows, columns = -(-height // CELL), -(-width // CELL)
     known, box = truth[:, 0], truth[:, 1:]
     isDrone = (known == 1).astype(np.float32)
@@ -82,12 +82,12 @@ def targets(truth, height, width):
     return heat.astype(np.float32), counts, cells, np.concatenate([offset, size], -1).astype(np.float32), isDrone
 
 
-def batches(pictures, truth, size, random):
-    order = random.permutation(len(pictures))
-    height, width = pictures.shape[1:3]
+def batches(images, truth, size, random):
+    order = random.permutation(len(images))
+    height, width = images.shape[1:3]
     for start in range(0, len(order) - size + 1, size):
         chosen = np.sort(order[start : start + size])
-        some = pictures[chosen][..., ::-1].astype(np.float32) / 255
+        some = images[chosen][..., ::-1].astype(np.float32) / 255
         told = truth[chosen].copy()
         mirrored = random.random(size) < 0.5
         some[mirrored] = some[mirrored, :, ::-1]
@@ -109,14 +109,14 @@ def step(weights, first, second, count, rate, batch):
     return weights, first, second, value
 
 
-def train(pictures, truth, epochs, size, rate, seed):
+def train(images, truth, epochs, size, rate, seed):
     random = np.random.default_rng(seed)
     weights = initial(seed)
     first = second = jax.tree_util.tree_map(np.zeros_like, weights)
-    total, count = epochs * (len(pictures) // size), 0
+    total, count = epochs * (len(images) // size), 0
     for epoch in range(epochs):
         started, losses = time.time(), []
-        for batch in batches(pictures, truth, size, random):
+        for batch in batches(images, truth, size, random):
             count += 1
             now = rate * min(1, count / 100) * 0.5 * (1 + np.cos(np.pi * count / total))
             weights, first, second, value = step(weights, first, second, count, now, batch)
@@ -142,7 +142,7 @@ def exported(weights):
         named = [x, constant(f"w{index}", weight.transpose(3, 2, 0, 1)), constant(f"b{index}", bias)]
         return node("Conv", named, f"c{index}", strides=[stride] * 2, dilations=[dilation] * 2, pads=[pad] * 4)
 
-    x = "picture"
+    x = "image"
     for index, (_, stride, dilation) in enumerate(LAYERS):
         x = node("Relu", [convolution(index, x, stride, dilation)], f"r{index}")
     out = convolution(len(LAYERS), x, 1, 1)
@@ -164,7 +164,7 @@ def exported(weights):
     graph = helper.make_graph(
         nodes,
         "vehicle-detector",
-        [helper.make_tensor_value_info("picture", TensorProto.FLOAT, [1, 3, "height", "width"])],
+        [helper.make_tensor_value_info("image", TensorProto.FLOAT, [1, 3, "height", "width"])],
         [helper.make_tensor_value_info("boxes", TensorProto.FLOAT, [1, 5, "boxes"])],
         constants,
     )
@@ -175,13 +175,13 @@ def exported(weights):
 
 if __name__ == "__main__":
     asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("pictures")
+    asked.add_argument("images")
     asked.add_argument("out")
     asked.add_argument("--epochs", type=int, default=11)
     asked.add_argument("--batch", type=int, default=16)
     asked.add_argument("--rate", type=float, default=3e-3)
     asked.add_argument("--seed", type=int, default=1)
     told = asked.parse_args()
-    pictures = np.load(f"{told.pictures}/pictures.npy", mmap_mode="r")
-    truth = np.load(f"{told.pictures}/truth.npy")
-    save(exported(train(pictures, truth, told.epochs, told.batch, told.rate, told.seed)), told.out)
+    images = np.load(f"{told.images}/images.npy", mmap_mode="r")
+    truth = np.load(f"{told.images}/truth.npy")
+    save(exported(train(images, truth, told.epochs, told.batch, told.rate, told.seed)), told.out)

@@ -119,7 +119,7 @@ private[airsim] object Images:
       originNed: Vector3
   ): Either[String, (Vector[Image], Instant)] =
     val came = Vector.fill(in.array())(readOne(in))
-    if came.size != shots.size then Left(s"expected ${shots.size} pictures, came ${came.size}")
+    if came.size != shots.size then Left(s"expected ${shots.size} images, came ${came.size}")
     else
       Expect
         .each(came.zip(shots))((one, shot) => one.image(shot, originNed))

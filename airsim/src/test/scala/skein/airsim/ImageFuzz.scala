@@ -18,7 +18,7 @@ object ImageFuzz:
       try
         if random.nextBoolean() then
           val shots = Seq(Shot("0"), Shot("0", ImageKind.DepthPlanar, Encoding.Numbers))
-          read(changed(Pictures, random))(Images.read(_, shots, Vector3.Zero)) match
+          read(changed(Sent, random))(Images.read(_, shots, Vector3.Zero)) match
             case Right((found, _)) =>
               require(found.forall(isWhole), s"$found")
               images += 1
@@ -43,7 +43,7 @@ object ImageFuzz:
     case Pixels.Numbers(values) => values.length == image.width * image.height
     case Pixels.Png(_)          => false
 
-  private val Pictures =
+  private val Sent =
     val raw = ImageResponse(
       image_data_uint8 = Array.tabulate(4 * 2 * 3)(_.toByte),
       camera_position = Vector3r(1, 2, 3),

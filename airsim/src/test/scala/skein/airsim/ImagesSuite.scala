@@ -11,7 +11,7 @@ class ImagesSuite extends munit.FunSuite:
   private val depth  = Shot("front_center", ImageKind.DepthPlanar, Encoding.Numbers)
   private val at     = Instant.ofNanos(123_456_789)
 
-  private val picture = ImageResponse(
+  private val image = ImageResponse(
     image_data_uint8 = Array.tabulate(4 * 2 * 3)(_.toByte),
     camera_position = Vector3r(1, 2, 3),
     camera_name = "front_center",
@@ -30,26 +30,26 @@ class ImagesSuite extends munit.FunSuite:
   private def scan(bytes: Array[Byte]): Either[String, (Scan, Instant)] =
     MessageReader.read(received(bytes))(Images.readScan(_, origin)).flatMap(identity)
 
-  private def sent(pictures: ImageResponse*): Array[Byte] = ImageResponse.encode(pictures).bytes.toArray
+  private def sent(images: ImageResponse*): Array[Byte] = ImageResponse.encode(images).bytes.toArray
 
-  test("a picture is read as it was sent, its camera in the world"):
-    val (read, exposed) = images(sent(picture), raw).fold(fail(_), identity)
+  test("an image is read as it was sent, its camera in the world"):
+    val (read, exposed) = images(sent(image), raw).fold(fail(_), identity)
     assertEquals(exposed, at)
     assertEquals((read.head.width, read.head.height), (4, 2))
     assertEquals(read.head.positionNed, Vector3(11, 22, 2))
     assertEquals(read.head.orientation, Quaternion(0, 1, 0, 0))
     read.head.pixels match
-      case Pixels.Bgr(bytes) => assertEquals(bytes.toArray.toSeq, picture.image_data_uint8.toSeq)
+      case Pixels.Bgr(bytes) => assertEquals(bytes.toArray.toSeq, image.image_data_uint8.toSeq)
       case other             => fail(s"$other")
 
-  test("several pictures of one moment come in the order of the shots"):
-    val far = picture.copy(
+  test("several images of one moment come in the order of the shots"):
+    val far = image.copy(
       image_data_uint8 = Array.emptyByteArray,
       image_data_float = Array.tabulate(8)(_ * 0.5f),
       pixels_as_float = true,
       image_type = 1
     )
-    val (read, _) = images(sent(picture, far), raw, depth).fold(fail(_), identity)
+    val (read, _) = images(sent(image, far), raw, depth).fold(fail(_), identity)
     read(1).pixels match
       case Pixels.Numbers(values) => assertEquals(values.toSeq, far.image_data_float.toSeq)
       case other                  => fail(s"$other")
@@ -69,7 +69,7 @@ class ImagesSuite extends munit.FunSuite:
     assertEquals(read.head.positionNed, Vector3(11, 20, -1))
     assertEquals(exposed, Instant.Epoch)
 
-  test("a picture that the simulator could not take is told with what it says"):
+  test("an image that the simulator could not take is told with what it says"):
     val none = ImageResponse(image_data_uint8 = Array[Byte](0), message = "no such camera", compress = false)
     assertEquals(
       images(sent(none), raw),
@@ -78,9 +78,9 @@ class ImagesSuite extends munit.FunSuite:
           "the simulator says: no such camera"
       )
     )
-    assert(images(sent(picture.copy(height = 3)), raw).isLeft)
-    assert(images(sent(picture.copy(width = -4, height = -2)), raw).isLeft)
-    assertEquals(images(sent(picture), raw, raw), Left("expected 2 pictures, came 1"))
+    assert(images(sent(image.copy(height = 3)), raw).isLeft)
+    assert(images(sent(image.copy(width = -4, height = -2)), raw).isLeft)
+    assertEquals(images(sent(image), raw, raw), Left("expected 2 images, came 1"))
 
   test("a scan is read as it was sent; one number is an empty cloud; ids that do not fit are told"):
     val cloud = LidarData(

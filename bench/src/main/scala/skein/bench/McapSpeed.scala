@@ -27,7 +27,7 @@ object McapSpeed:
     case other => sys.error(s"expected corpus KIND PATH or run ROUNDS KIND PATH, came $other")
 
   /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that flies circles in gusts. `images`: 900
-    * pictures of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of a sensor in the lowest
+    * images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of a sensor in the lowest
     * bit of a tenth of the bytes.
     */
   private def corpus(kind: String, path: Path): Unit =

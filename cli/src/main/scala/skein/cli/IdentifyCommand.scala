@@ -113,7 +113,7 @@ final class IdentifyCommand(using Scenarios)
   private def sensorTable(fit: SensorFit): Section =
     val takes = fit.model.takes
     Section(
-      f"What saw: ${fit.detections} detections in ${fit.pictures} pictures, up to ${fit.model.farthestM}%.1f m; recognition took ${takes.quantile(0.5).toMillis}%.0f ms at the median, ${takes.quantile(0.99).toMillis}%.0f at 99 %%",
+      f"What saw: ${fit.detections} detections in ${fit.images} images, up to ${fit.model.farthestM}%.1f m; recognition took ${takes.quantile(0.5).toMillis}%.0f ms at the median, ${takes.quantile(0.99).toMillis}%.0f at 99 %%",
       table = Some(TextTable(fit.fitted.map(_.name), Vector(fit.fitted.map(interval))))
     )
 

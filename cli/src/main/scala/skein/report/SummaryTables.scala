@@ -95,7 +95,7 @@ object SummaryTables:
         flight.flight.link,
         seen.eye.vehicle,
         seen.eye.target,
-        seen.pictures.toString
+        seen.images.toString
       ) ++
         Vector(seen.detections.size.toString) ++ spread(seen.tookMs, 0) ++ spread(seen.agesMs, 0) ++
         spread(seen.errorsM, 2)

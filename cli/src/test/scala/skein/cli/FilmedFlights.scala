@@ -34,7 +34,7 @@ import skein.scenario.Scenarios
       val file   = out.resolve(s"$loop-none.duckdb")
       val late   = Lateness.of(file)
       val rows   = RecordingReader.records(file).fold(error => sys.error(error.message), identity).map(_._2)
-      val images = rows.collect { case picture: CameraImage => picture }
+      val images = rows.collect { case image: CameraImage => image }
       val lost   = rows.collect:
         case event: skein.record.Event
             if event.kind == EventKind.Dropped && event.detail.contains("not recorded") => event

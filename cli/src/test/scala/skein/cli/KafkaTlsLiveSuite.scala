@@ -14,11 +14,11 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.*
-import skein.testing.{TemporaryFolders, Unhurried}
+import skein.testing.{Lengthy, TemporaryFolders}
 import skein.units.*
 
 /** A Kafka broker that shows a certificate, and asks for one, on loopback. */
-class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
+class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private given system: ActorSystem = ActorSystem("KafkaTlsLiveSuite")
   private given Scenarios           = Scenarios.ours
 

@@ -8,10 +8,10 @@ import skein.optimise.Evaluator
 import skein.scenario.Scenarios
 import skein.search.{ClusterEvaluator, BlockExecutor, Judge}
 import skein.settings.PolicyFile
-import skein.testing.Unhurried
+import skein.testing.{Lengthy, Optimised}
 import skein.training.{LearnRun, LearnState}
 
-class LearnWorkSimulation extends munit.FunSuite, Unhurried:
+class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
   private given Scenarios = Scenarios.ours
 
   private val question = LearnCommand

@@ -4,7 +4,7 @@ import java.nio.file.Files
 import scala.util.Using
 import skein.policy.*
 import skein.scenario.Scenarios
-import skein.testing.{Optimised, TemporaryFolders}
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
 /** Turns towards where the opponent is, the less the older that is known to be. */
 final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
@@ -28,7 +28,7 @@ object Doubters extends SkeinApp(Scenarios.ours.kinds*):
       numbers => Doubting(numbers(0), numbers(1))
     )
 
-class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
+class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private def run(program: SkeinApp, words: String): (Int, String) =
     val ran = Ran.of(program.run(words.split(' ').toSeq))
     (ran.status, ran.said)

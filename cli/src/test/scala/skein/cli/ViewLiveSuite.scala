@@ -143,7 +143,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       for colour <- seen("told")("colours").arr do assertEquals(colour(3).num, 255.0)
       val images =
         RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
-          case picture: CameraImage => picture
+          case image: CameraImage => image
       assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
       assert(images.sizeIs > 20, s"${images.size} images")
       assertEquals(seen("told")("decided"), seen("told")("still"))

@@ -11,12 +11,12 @@ import skein.search.Conditions
 import skein.settings.{FlySettings, SensorFile}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
-import skein.testing.Unhurried
+import skein.testing.{Lengthy, Optimised}
 import skein.torture.Torture
 import skein.units.*
 
 /** The pursuer that knows of the evader by its camera alone, with rendering, links and recognition, in virtual time. */
-class BlindPursuitSimulation extends munit.FunSuite, Unhurried:
+class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 
   private def settings(
@@ -48,9 +48,9 @@ class BlindPursuitSimulation extends munit.FunSuite, Unhurried:
     val recording = predictive
     assertEquals(Replay(settings(LoopKind.Predictive, 20).fleet, recording).firstDifference, None)
     val seen = FlightSummary.of(recording).seeing.headOption.getOrElse(fail("nothing was seen"))
-    // Of 200 pictures.
-    assert(clue(seen.pictures) > 150)
-    assert(clue(seen.detections.size) > 0.7 * seen.pictures)
+    // Of 200 images.
+    assert(clue(seen.images) > 150)
+    assert(clue(seen.detections.size) > 0.7 * seen.images)
     assert(clue(seen.errorsM.get.median) < 0.25)
     // Recognition takes 15 to 120 ms, the way to and fro some 100 ms.
     assert(clue(seen.tookMs.get.least) >= 15 && clue(seen.tookMs.get.most) <= 120)

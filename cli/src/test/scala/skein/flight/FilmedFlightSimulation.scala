@@ -46,7 +46,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
       ImageSource.Seen,
       ImageSource.Camera("bottom_center", 5)
     )
-    val images = flown.records.collect { case picture: CameraImage => picture }
+    val images = flown.records.collect { case image: CameraImage => image }
     val counts = images.groupMapReduce(one => (one.vehicle, one.camera, one.width, one.height))(_ => 1)(_ + _)
     assertEquals(
       counts.keySet,
@@ -57,11 +57,11 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
       )
     )
     for (camera, count) <- counts do assert(count >= (if camera._2 == "front_center" then 6 else 3), counts)
-    for picture <- images do
-      assertEquals(picture.pixels.size.toLong, picture.width * picture.height * 3)
-      val degrees = if picture.camera == "front_center" then 100.0 else 90.0
+    for image <- images do
+      assertEquals(image.pixels.size.toLong, image.width * image.height * 3)
+      val degrees = if image.camera == "front_center" then 100.0 else 90.0
       // Nobody had asked when the first were taken.
-      for fov <- picture.fov do assertEqualsDouble(fov.value, math.toRadians(degrees), 1e-6)
+      for fov <- image.fov do assertEqualsDouble(fov.value, math.toRadians(degrees), 1e-6)
     assert(images.count(_.fov.isDefined) > images.size / 2)
 
     val file  = folder.resolve("filmed.duckdb")

@@ -8,11 +8,11 @@ import skein.report.DuelReport
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
-import skein.testing.{Optimised, TemporaryFolders}
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 import skein.units.*
 
 /** Scenarios of teams in virtual time. */
-class TeamSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
+class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given Scenarios = DuelReport.scenarios
 
   private def settings(

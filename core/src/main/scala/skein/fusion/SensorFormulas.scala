@@ -9,23 +9,23 @@ import skein.units.{Instant, Vector3}
   */
 private[skein] final case class SensorFormulas(model: SensorModel):
 
-  /** What comes of a picture of an opponent that is found if it is in view.
+  /** What comes of an image of an opponent that is found if it is in view.
     *
     * @param bearing
     *   and `range`: see [[SensorModel.seen]]
     */
-  def pictured(
+  def detected(
       axisRad: Double,
       ownNed: Vector3,
       opponentNed: Vector3,
       bearing: Double,
       range: Double
-  ): Pictured =
+  ): Detected =
     val (place, covariance) = model.seen(axisRad, ownNed, opponentNed, bearing, range)
-    Pictured(if model.isInView(axisRad, ownNed, opponentNed) then 1 else 0, place, covariance)
+    Detected(if model.isInView(axisRad, ownNed, opponentNed) then 1 else 0, place, covariance)
 
-  /** What is believed after a picture, which is not older than all before. */
-  def joined(before: Believed, picture: Pictured, validS: Double): Believed =
+  /** What is believed after an image, which is not older than all before. */
+  def joined(before: Believed, image: Detected, validS: Double): Believed =
     val belief =
       Belief(
         Instant.Epoch,
@@ -37,15 +37,15 @@ private[skein] final case class SensorFormulas(model: SensorModel):
       )
     val carried = belief.carriedBy(validS - before.atS, model.fusion.acceleration)
     val after   =
-      if before.isKnown > 0 then carried.joinedPosition(picture.positionNed, picture.covariance)
+      if before.isKnown > 0 then carried.joinedPosition(image.positionNed, image.covariance)
       else
         Belief.first(
           Instant.Epoch,
-          picture.positionNed,
-          picture.covariance,
+          image.positionNed,
+          image.covariance,
           model.fusion.topSpeed.value
         )
-    if picture.isFound > 0 then
+    if image.isFound > 0 then
       Believed(
         1,
         validS,
@@ -92,7 +92,7 @@ private[skein] object SensorFormulas:
   /** @param isFound
     *   1 or 0
     */
-  final case class Pictured(isFound: Double, positionNed: Vector3, covariance: Matrix3)
+  final case class Detected(isFound: Double, positionNed: Vector3, covariance: Matrix3)
 
   /** A [[Belief]], if there is one.
     *

@@ -3,14 +3,14 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether a picture shows the
+/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether an image shows the
   * opponent and it is found, where it is seen, and when that is known. `skein.identify` fits it to flights.
-  * Pictures are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it; detections enter a
+  * Images are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it; detections enter a
   * [[Fusion]]. The camera looks to where the opponent was believed at the last decision, as
   * `skein.policy.CameraPursuer` turns it; that the vehicle turns and tilts takes no time here.
   *
   * @param everyS
-  *   between pictures
+  *   between images
   * @param fovRad
   *   horizontal
   * @param farthestM
@@ -26,7 +26,7 @@ import skein.units.*
   * @param takes
   *   how long recognition takes
   * @param workers
-  *   pictures that are recognised at the same time
+  *   images that are recognised at the same time
   * @param deadlineS
   *   of each; what takes longer is not used
   */
@@ -46,18 +46,18 @@ final case class SensorModel(
   require(
     everyS > 0 && fovRad > 0 && fovRad < math.Pi && farthestM > 0 && detection >= 0 && detection <= 1 &&
       bearingSdRad > 0 && rangeBias > 0 && rangeSd > 0 && workers > 0 && deadlineS > 0,
-    s"a sensor takes pictures, sees less than 180° and says how wrong it may be: $this"
+    s"a sensor takes images, sees less than 180° and says how wrong it may be: $this"
   )
 
-  /** What comes of a picture, if the opponent is found in it. */
-  def measured(at: Instant, picture: Exposure): Option[Measurement] =
-    import picture.{axisRad, opponentNed, ownNed}
-    Option.when(picture.found < detection && isInView(axisRad, ownNed, opponentNed)):
-      val (bearing, range)    = (SensorModel.normal(picture.bearing), SensorModel.normal(picture.range))
+  /** What comes of an image, if the opponent is found in it. */
+  def measured(at: Instant, image: Exposure): Option[Measurement] =
+    import image.{axisRad, opponentNed, ownNed}
+    Option.when(image.found < detection && isInView(axisRad, ownNed, opponentNed)):
+      val (bearing, range)    = (SensorModel.normal(image.bearing), SensorModel.normal(image.range))
       val (place, covariance) = seen(axisRad, ownNed, opponentNed, bearing, range)
       Measurement(at, place, covariance)
 
-  /** Whether a picture shows the opponent near enough. */
+  /** Whether an image shows the opponent near enough. */
   private[fusion] def isInView(axisRad: Double, ownNed: Vector3, opponentNed: Vector3): Boolean =
     val way      = opponentNed - ownNed
     val distance = way.norm
@@ -92,7 +92,7 @@ final case class SensorModel(
   private def offAxis(axisRad: Double, way: Vector3) =
     math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
 
-/** A picture as it is taken, and what chance adds to it.
+/** An image as it is taken, and what chance adds to it.
   *
   * @param axisRad
   *   where the camera looks, from north to the east

@@ -12,7 +12,7 @@ package skein.policy
   * slips behind it by the length of a step is flown away from again and again.
   *
   * It captures, but not in the least time, for which see Merz, The Homicidal Chauffeur (Stanford, 1971): there the swerve
-  * turns away. At γ = 0.5 every pursuit that `HomicidalChauffeurSuite` flies ends within
+  * turns away. At γ = 0.5 every pursuit that `HomicidalChauffeurSimulation` flies ends within
   * distance / (vP − vE) and 19 times turning radius / vP. Source of the game, its barrier and
   * the swerve: Isaacs, Differential Games (1965).
   *

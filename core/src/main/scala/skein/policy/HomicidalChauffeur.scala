@@ -12,7 +12,7 @@ package skein.policy
   *
   * away, going round the pursuer as fast as the pursuer comes. Derived from the barrier's course backwards from the edge of
   * the usable part, Isaacs, Differential Games (1965); the involutes of one τ are the level lines of this distance.
-  * `HomicidalChauffeurSuite` flies it.
+  * `HomicidalChauffeurSimulation` flies it.
   *
   * @param turningRadiusM
   *   R, of the pursuer

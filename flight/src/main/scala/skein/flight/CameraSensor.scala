@@ -18,7 +18,7 @@ import skein.signal.{LatencySampler, SplitMix64, Stamped}
 import skein.units.*
 
 /** What an [[Eye]] makes of its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest belief`, beside the
-  * loop, which waits for none of it. Pictures come on connections of their own. Every picture of which nothing comes is an
+  * loop, which waits for none of it. Images come on connections of their own. Every image of which nothing comes is an
   * event.
   *
   * @param eyes
@@ -48,7 +48,7 @@ private[skein] final class CameraSensor(
   private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
 
   // Of one thread at a time: that of the stream, or of whoever asks while the simulator stands still.
-  private var pictures, found = 0
+  private var images, found = 0
   private var newestSeen      = Option.empty[Seen]
   private var fusion          = Fusion(eye.fusion)
   private val due, lost       = LongAdder()
@@ -58,7 +58,7 @@ private[skein] final class CameraSensor(
   /** Completes when it was closed and all that was asked for has come to something. */
   def ended: Future[Done] = over.future
 
-  def counts: Counts = Counts(due.sum, missed.sum, lost.sum, pictures)
+  def counts: Counts = Counts(due.sum, missed.sum, lost.sum, images)
 
   /** Looks on until it is closed. */
   def run(): Unit =
@@ -100,7 +100,7 @@ private[skein] final class CameraSensor(
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
       Future.successful(newest.get.toRight(VehicleError.Refused("nothing was seen yet")))
 
-  /** For while the simulator stands still: takes a picture and answers when it has been looked at. */
+  /** For while the simulator stands still: takes an image and answers when it has been looked at. */
   val looking: Sensor = new Sensor:
     def columns: Vector[String]                                       = Eye.Columns
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
@@ -148,11 +148,11 @@ private[skein] final class CameraSensor(
     case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
 
   private def counted(recognised: Recognised[(Image, Option[PolarMeasurement])]): Option[Seen] =
-    pictures += 1
+    images += 1
     val (image, polar) = recognised.found.value
     polar.map: polar =>
       found += 1
-      Seen(recognised.found.map(_ => image), polar, recognised.took, pictures, found)
+      Seen(recognised.found.map(_ => image), polar, recognised.took, images, found)
 
   private def skipped(what: Frames.Skipped[Any, Any]): Unit =
     what match
@@ -180,7 +180,7 @@ private[skein] final class CameraSensor(
 
 private[skein] object CameraSensor:
 
-  /** What became of the pictures of an eye. Once it has ended, each that was due is one of the others.
+  /** What became of the images of an eye. Once it has ended, each that was due is one of the others.
     *
     * @param missed
     *   never asked for, since others were on their way
@@ -197,7 +197,7 @@ private[skein] object CameraSensor:
       image: Stamped[Image],
       polar: PolarMeasurement,
       took: Span,
-      pictures: Int,
+      images: Int,
       found: Int
   ):
     def measured = polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
@@ -227,6 +227,6 @@ private[skein] object CameraSensor:
             turned.x,
             turned.y,
             turned.z,
-            pictures.toDouble,
+            images.toDouble,
             found.toDouble
           )

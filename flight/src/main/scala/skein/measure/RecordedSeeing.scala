@@ -31,7 +31,7 @@ object RecordedSeeing:
         StrictMath.toRadians(camera.fovDeg),
         seen.eye.workers,
         seen.eye.deadline.toSeconds,
-        seen.pictures,
+        seen.images,
         inView.toDouble / own.size.max(1),
         seen.detections.map: detection =>
           val there = Placement(detection.cameraNed, detection.orientation).inside(detection.trueNed)

@@ -40,7 +40,7 @@ final case class Detection(
 
 /** What a vehicle saw by one of its scenario's eyes.
   *
-  * @param pictures
+  * @param images
   *   that were looked at until the last detection
   * @param agesMs
   *   of what decisions were made upon, since the exposure
@@ -48,7 +48,7 @@ final case class Detection(
 final case class SeeingSummary(
     eye: Eye,
     detections: Vector[Detection],
-    pictures: Int,
+    images: Int,
     agesMs: Option[Distribution]
 ):
   def tookMs: Option[Distribution]  = Distribution.of(detections.map(_.tookMs))

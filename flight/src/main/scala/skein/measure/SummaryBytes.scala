@@ -93,9 +93,9 @@ object SummaryBytes:
     /** Of eyes that are not known here, nothing is. */
     private given seeing: Codec[Vector[SeeingSummary]] = Codec
       .vector(using Codec.derived[(Int, Vector[Detection], Int, Option[Distribution])])
-      .imap(_.flatMap((eye, detections, pictures, ages) =>
-        eyes.lift(eye).map(SeeingSummary(_, detections, pictures, ages))
-      ))(_.map(of => (eyes.indexOf(of.eye), of.detections, of.pictures, of.agesMs)))
+      .imap(_.flatMap((eye, detections, images, ages) =>
+        eyes.lift(eye).map(SeeingSummary(_, detections, images, ages))
+      ))(_.map(of => (eyes.indexOf(of.eye), of.detections, of.images, of.agesMs)))
 
     val all: Codec[FlightSummary] = Codec.derived
 

@@ -30,7 +30,7 @@ object SensorFile:
        |  deadline-s = ${number(model.deadlineS)}
        |  # Quantiles, evenly spread from the least to the largest.
        |  takes-ms = [${quantiles(model.takes).map(number).mkString(", ")}]
-       |  pictures = ${fit.pictures}
+       |  images = ${fit.images}
        |  detections = ${fit.detections}
        |  recordings = [
        |${recordings.map("    " + com.typesafe.config.ConfigUtil.quoteString(_)).mkString("\n")}

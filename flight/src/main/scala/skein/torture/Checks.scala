@@ -76,7 +76,7 @@ object Checks:
     val called = seen.ports.map(port =>
       port.reads.begun + port.commands.begun + port.measurements.begun
     ).sum.toLong +
-      seen.steps.begun + seen.callsBeside + seen.pictures.map(_.asked).sum
+      seen.steps.begun + seen.callsBeside + seen.images.map(_.asked).sum
     val stats   = seen.stats
     val written = stats.sent - stats.sentAgain
     Vector(
@@ -92,10 +92,10 @@ object Checks:
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
 
-  /** Every picture that was due is searched, or counted as what became of it. */
+  /** Every image that was due is searched, or counted as what became of it. */
   private def unseen(seen: FlightTrace): Vector[String] =
-    for counts <- seen.pictures if counts.due != counts.missed + counts.lost + counts.searched
-    yield s"of ${counts.due} pictures that were due ${counts.missed} were missed, ${counts.lost} lost, ${counts.searched} searched"
+    for counts <- seen.images if counts.due != counts.missed + counts.lost + counts.searched
+    yield s"of ${counts.due} images that were due ${counts.missed} were missed, ${counts.lost} lost, ${counts.searched} searched"
 
   private def unrecorded(seen: FlightTrace): Vector[String] =
     val recording = seen.recording
@@ -127,7 +127,7 @@ object Checks:
     // Each sensor that a policy reads is asked beside the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
     val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife) +
-      sensors * seen.window + seen.pictures.size * PicturesOnTheWay
+      sensors * seen.window + seen.images.size * ImagesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
@@ -223,7 +223,7 @@ object Checks:
   private val SignsOfLife = 1
 
   /** Of each eye. */
-  private val PicturesOnTheWay = 2
+  private val ImagesOnTheWay = 2
 
   /** After a connection was lost, its last moves may be at the simulator still when those of the next one come. */
   private val MostUnanswered = 4

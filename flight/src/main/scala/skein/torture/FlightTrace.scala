@@ -34,7 +34,7 @@ import skein.units.*
   *   how often vehicles were asked for a sign of life
   * @param leftPaused
   *   whether the simulator stood still some time after the end
-  * @param pictures
+  * @param images
   *   of each eye, after it has ended
   */
 final case class FlightTrace(
@@ -62,7 +62,7 @@ final case class FlightTrace(
     steps: CallCount,
     callsBeside: Int,
     leftPaused: Boolean,
-    pictures: Vector[CameraSensor.Counts]
+    images: Vector[CameraSensor.Counts]
 ):
   def calmFrom: Instant = startedAt + faultPlan.calmFrom
 

@@ -6,12 +6,12 @@ import skein.scenario.{Convoy, Result, Tracks}
 import skein.measure.RecordedTracks
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
-import skein.testing.Optimised
+import skein.testing.{Lengthy, Optimised}
 import skein.units.*
 import skein.vehicle.VehicleKind
 
 /** Two cars and three drones, in virtual time. */
-class ConvoySimulation extends munit.FunSuite, Optimised:
+class ConvoySimulation extends munit.FunSuite, Lengthy, Optimised:
   /** Five vehicles asked one after the other over a VPN are too much for these. */
   private val overtaxed = Set(LoopKind.Sequential, LoopKind.Futures)
 

@@ -146,10 +146,10 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.ports.map(_.sendings.size).sum}"))
 
-  test("pictures of which nobody tells what became of them"):
+  test("images of which nobody tells what became of them"):
     val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
     val forged = clean.copy(
-      pictures = Vector(counts),
+      images = Vector(counts),
       stats = clean.stats.copy(
         called = clean.stats.called + counts.asked,
         sent = clean.stats.sent + counts.asked,
@@ -158,8 +158,8 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     )
     assertEquals(found(forged), "")
     assertEquals(
-      found(forged.copy(pictures = Vector(counts.copy(lost = 4)))),
-      "of 80 pictures that were due 10 were missed, 4 lost, 65 searched"
+      found(forged.copy(images = Vector(counts.copy(lost = 4)))),
+      "of 80 images that were due 10 were missed, 4 lost, 65 searched"
     )
 
   test("of what was written each call was answered, refused or lost"):

@@ -55,7 +55,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
     val plans = Iterator.from(1).map(seed => FaultPlan.of(seed, duration)).filter(_.looks).take(6).toVector
     val seen  = plans.map(TortureFlight.fly)
     for flight <- seen do assertEquals(Checks.violations(flight), Vector.empty, flight.faultPlan.toString)
-    val all = seen.flatMap(_.pictures)
+    val all = seen.flatMap(_.images)
     assertEquals(all.size, plans.size)
     assert(all.forall(_.due >= 60 / 2), s"$all")
     assert(all.map(_.searched).sum > 0 && all.map(_.missed).sum > 0 && all.map(_.lost).sum > 0, s"$all")

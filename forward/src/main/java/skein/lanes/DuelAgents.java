@@ -125,9 +125,9 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void expose(TimetableAgents[] all, int[] views, int view, int picture, float[] times, int number) {
+  void expose(TimetableAgents[] all, int[] views, int view, int image, float[] times, int number) {
     eye.expose(
-        picture,
+        image,
         vehicles,
         views[view + self] * WORLDS,
         all[1 - self].vehicles,
@@ -137,7 +137,7 @@ final class DuelAgents extends TimetableAgents {
   }
 
   @Override
-  void join(int picture, boolean isOlder, int last) {
-    eye.join(picture, isOlder, last);
+  void join(int image, boolean isOlder, int last) {
+    eye.join(image, isOlder, last);
   }
 }

@@ -49,21 +49,21 @@ abstract class TimetableAgents {
       int number);
 
   /**
-   * Takes a picture in all worlds, if this vehicle sees.
+   * Takes an image in all worlds, if this vehicle sees.
    *
    * @param view the index of the readings that it shows
-   * @param times from {@code number} on, what the timetable tells of the picture
+   * @param times from {@code number} on, what the timetable tells of the image
    */
-  void expose(TimetableAgents[] all, int[] views, int view, int picture, float[] times, int number) {
+  void expose(TimetableAgents[] all, int[] views, int view, int image, float[] times, int number) {
     throw new UnsupportedOperationException("a vehicle without eyes");
   }
 
   /**
-   * What a picture showed is known in all worlds.
+   * What an image showed is known in all worlds.
    *
    * @param isOlder whether it was taken before the one that was known last
    */
-  void join(int picture, boolean isOlder, int last) {
+  void join(int image, boolean isOlder, int last) {
     throw new UnsupportedOperationException("a vehicle without eyes");
   }
 }

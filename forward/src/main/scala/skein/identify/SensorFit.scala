@@ -19,10 +19,10 @@ final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: D
 /** What an eye did in a flight.
   *
   * @param everyS
-  *   between pictures, as asked for
+  *   between images, as asked for
   * @param fovRad
   *   horizontal
-  * @param pictures
+  * @param images
   *   that were searched
   * @param inView
   *   share of the flight in which the target was in view, by where both truly were
@@ -32,7 +32,7 @@ final case class Seeing(
     fovRad: Double,
     workers: Int,
     deadlineS: Double,
-    pictures: Int,
+    images: Int,
     inView: Double,
     detections: Vector[Detected]
 )
@@ -42,7 +42,7 @@ final case class Seeing(
   * were independent; what of the error lasts, as a range that is wrong in the same way for as long as the same side is
   * seen, they do not show.
   */
-final case class SensorFit(model: SensorModel, pictures: Int, detections: Int, fitted: Vector[Fitted])
+final case class SensorFit(model: SensorModel, images: Int, detections: Int, fitted: Vector[Fitted])
 
 object SensorFit:
   /** Fewer tell too little of deviations. */
@@ -65,7 +65,7 @@ object SensorFit:
     val ratios   = all.map(one => one.rangeM / one.trueRangeM)
     val bias     = ratios.sum / n
     val rangeSd  = math.sqrt(ratios.map(ratio => (ratio - bias) * (ratio - bias)).sum / (n - 1)) / bias
-    val inView   = seeing.map(one => one.pictures * one.inView).sum
+    val inView   = seeing.map(one => one.images * one.inView).sum
     val detected = if inView > 0 then (n / inView).min(1) else 1.0
     val one      = seeing.head
     val model    = SensorModel(
@@ -85,7 +85,7 @@ object SensorFit:
     val ofBias        = Z95 * rangeSd * bias / math.sqrt(n.toDouble)
     SensorFit(
       model,
-      seeing.map(_.pictures).sum,
+      seeing.map(_.images).sum,
       n,
       Vector(
         Fitted("detection", detected, least, most, atBound = detected == 1),

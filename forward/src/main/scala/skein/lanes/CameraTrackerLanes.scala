@@ -12,7 +12,7 @@ private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Du
   import CameraTrackerLanes.*
   import TimetableAgents.WORLDS
 
-  private val expose = forms.pictured.call
+  private val expose = forms.detected.call
   private val update = forms.joined.call
   private val decide = forms.decidedUpon.call
 
@@ -130,7 +130,7 @@ private[lanes] class CameraTrackerLanes(forms: CameraTrackerLanes.Forms, own: Du
   private def everywhere(value: Double) = Array.fill(WORLDS)(value.toFloat)
 
 private[lanes] object CameraTrackerLanes:
-  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Pictured]]. */
+  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
   private val Belief    = 35
   private val Detection = 13
 
@@ -139,7 +139,7 @@ private[lanes] object CameraTrackerLanes:
 
   /** Compiled. */
   final class Forms(
-      val pictured: FixedFormula,
+      val detected: FixedFormula,
       val joined: FixedFormula,
       val decidedUpon: FixedFormula
   )
@@ -156,8 +156,8 @@ private[lanes] object CameraTrackerLanes:
       Left(s"the lanes know sensors with deviations of $LeastSd rad, and $LeastSd of the range, at least")
     else
       (for
-        pictured    <- form("pictured", 9)
+        detected    <- form("detected", 9)
         joined      <- form("joined", Belief + Detection + 1)
         decidedUpon <- form("decidedUpon", Belief + 8)
-      yield Forms(pictured, joined, decidedUpon)).left
+      yield Forms(detected, joined, decidedUpon)).left
         .map((why: Untraceable) => s"the sensor is no formula: ${why.getMessage}")

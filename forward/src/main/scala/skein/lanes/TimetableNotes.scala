@@ -96,32 +96,32 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
         val now = Instant.ofNanos(atNs)
         forecast.whenActing(now).get(vehicle).predictedFor.since(now).toSeconds.max(0)
 
-  // By vehicle: when its pictures were taken, and which of them joined last and before that.
+  // By vehicle: when its images were taken, and which of them joined last and before that.
   private val exposedNs        = Array.ofDim[Long](vehicles, if eyes.isEmpty then 0 else CameraTracker.Ring)
   private val newest, runnerUp = Array.fill(vehicles)(-1)
 
-  override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
+  override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
     val seen  = viewOf(Array.tabulate(vehicles)(look(_, atNs * 1e-9)))
     val noted = note(EXPOSE, vehicle, atNs * 1e-9, number)
     noted.view = seen
-    noted.elapsedS = SensorModel.normal(picture.bearing)
-    noted.ownAgeS = SensorModel.normal(picture.range)
-    noted.opponentAgeS = if picture.found < eyes(vehicle).detection then 1 else 0
+    noted.elapsedS = SensorModel.normal(image.bearing)
+    noted.ownAgeS = SensorModel.normal(image.range)
+    noted.opponentAgeS = if image.found < eyes(vehicle).detection then 1 else 0
     exposedNs(vehicle)(number % CameraTracker.Ring) = atNs
 
-  override def recognised(vehicle: Int, picture: Int, atNs: Long): Unit =
+  override def recognised(vehicle: Int, image: Int, atNs: Long): Unit =
     def takenNs(number: Int) =
       if number < 0 then Long.MinValue else exposedNs(vehicle)(number % CameraTracker.Ring)
-    val isOlder = takenNs(picture) < takenNs(newest(vehicle))
+    val isOlder = takenNs(image) < takenNs(newest(vehicle))
     // Two are on the way at most, and whichever is overtaken twice is dropped.
-    require(takenNs(picture) >= takenNs(runnerUp(vehicle)), s"picture $picture is older than two others")
-    val noted = note(JOIN, vehicle, atNs * 1e-9, picture)
+    require(takenNs(image) >= takenNs(runnerUp(vehicle)), s"image $image is older than two others")
+    val noted = note(JOIN, vehicle, atNs * 1e-9, image)
     noted.opponent = if isOlder then 1 else 0
     noted.from = newest(vehicle)
-    if isOlder then runnerUp(vehicle) = picture
+    if isOlder then runnerUp(vehicle) = image
     else
       runnerUp(vehicle) = newest(vehicle)
-      newest(vehicle) = picture
+      newest(vehicle) = image
 
   override def commanded(
       vehicle: Int,
@@ -149,10 +149,10 @@ private[lanes] final class TimetableNotes(vehicles: Int, model: LaneDynamics, ey
   *   a decision's: not before
   * @param number
   *   `LOOK`: the reading's. `ACT`: the decision's. `DECIDE`: that of the decision before; the new one's is one more.
-  *   `EXPOSE` and `JOIN`: the picture's
+  *   `EXPOSE` and `JOIN`: the image's
   */
 private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, val number: Int):
-  /** Of a decision; of a picture the errors, and whether what is in view is found. */
+  /** Of a decision; of an image the errors, and whether what is in view is found. */
   var elapsedS, ownAgeS, opponentAgeS = 0.0
 
   /** Of a decision by who sees: until when what is believed is carried on. */
@@ -161,12 +161,12 @@ private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, 
   /** `DECIDE`, `SCORE` and `EXPOSE`: the view's number. */
   var view = 0
 
-  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for a picture that is older than
+  /** `DECIDE` in a duel: the number of the opponent's decision that is known. `JOIN`: 1 for an image that is older than
     * the one that joined before.
     */
   var opponent = 0
 
-  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the picture that joined before. */
+  /** `PREDICT`: the number of the reading that is carried forward. `JOIN`: the image that joined before. */
   var from = 0
 
   /** `PREDICT`: the way to the moment predicted. */

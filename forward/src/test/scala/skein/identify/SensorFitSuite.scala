@@ -14,7 +14,7 @@ class SensorFitSuite extends munit.FunSuite:
     fovRad = 1.7,
     workers = 2,
     deadlineS = 0.3,
-    pictures = 1000,
+    images = 1000,
     inView = 0.8,
     Vector.fill(detections):
       val range = 5 + 10 * random.nextDouble()

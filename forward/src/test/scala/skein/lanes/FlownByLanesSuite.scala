@@ -40,7 +40,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     "a formula"                    -> PaperPursuer(),
     "a formula that remembers"     -> TrendPursuer(3, 0.5, 1),
     "a formula that asks for ages" -> AgeAwarePursuer(8, 1, 1),
-    "no formula"                   -> DuelBatchSuite.Straight
+    "no formula"                   -> DuelBatchSimulation.Straight
   )
 
   /** What the table says of worlds under a loop, by plant. */

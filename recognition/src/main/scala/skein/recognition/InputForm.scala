@@ -18,7 +18,7 @@ final case class InputForm(
     mean: (Float, Float, Float) = (0, 0, 0),
     scale: (Float, Float, Float) = (1 / 255f, 1 / 255f, 1 / 255f)
 ):
-  require(width > 0 && height > 0, s"a model's picture has pixels: $this")
+  require(width > 0 && height > 0, s"a model's image has pixels: $this")
 
   def tensor(image: Image): Either[String, Array[Float]] = image.pixels match
     case Pixels.Bgr(bytes) => tensor(image.width, image.height, bytes.buffer)

@@ -20,7 +20,7 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, looks: Vehi
       detector.find(width, height, bgr).map(_.headOption.map(polar))
     else Left(s"expected ${camera.width} × ${camera.height} pixels, came $width × $height")
 
-  /** What a box says of where its object is. Of something round that is seen askew, the picture shows more than its width: a
+  /** What a box says of where its object is. Of something round that is seen askew, the image shows more than its width: a
     * body of width w at azimuth α and depth d covers f·w / (d·cos α) pixels.
     */
   def polar(box: Box): PolarMeasurement =
@@ -30,7 +30,7 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, looks: Vehi
     val depth = f * looks.width.value / box.width * math.sqrt(1 + right * right)
     val point = Vector3(1, right, down) * depth
     val angle = Radians(StrictMath.hypot(looks.deviationPx, looks.middleShare * box.width) / f)
-    // What the picture's border cuts may be nearer by any share.
+    // What the image's border cuts may be nearer by any share.
     val isCut = box.left < looks.deviationPx || box.right > camera.width - looks.deviationPx
     val share = if isCut then 1.0 else StrictMath.hypot(looks.widthShare, looks.deviationPx / box.width)
     PolarMeasurement.of(
@@ -58,7 +58,7 @@ object VehicleDetector:
       */
     val Quadrotor: Looks = Looks(Metres(0.6), 0.15, 0.03, 1.5)
 
-  /** With the model that comes with this library, trained on pictures of the built-in simulator
+  /** With the model that comes with this library, trained on images of the built-in simulator
     * (`examples/onnx-detector`). It looks at every second pixel.
     */
   def shipped(camera: Pinhole): Either[String, VehicleDetector] = model.map(of(camera, _))

@@ -47,7 +47,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     assert((measured.positionNed - Vector3(10, 4, -20)).norm < 0.08, measured)
     assert(measured.covariance.yy > measured.covariance.xx, "the range is less certain than the bearing")
 
-  test("nothing is found where there is nothing, and what is no picture of this camera is told"):
+  test("nothing is found where there is nothing, and what is no image of this camera is told"):
     val grey  = TagPicture(camera, 7, size, Vector3(-4, 0, 0), 0)
     val blank = grey.copy(pixels = Pixels.Bgr(Bytes(new Array[Byte](1280 * 720 * 3), 0, 1280 * 720 * 3)))
     assertEquals(tags.find(blank), Right(Vector.empty))

@@ -3,10 +3,10 @@ package skein.recognition
 import java.nio.ByteBuffer
 import skein.units.*
 
-/** What a detector found in pictures of a range.
+/** What a detector found in images of a range.
   *
   * @param plain
-  *   pictures with a quadrotor that should be found
+  *   images with a quadrotor that should be found
   * @param bearingsDeg
   *   errors of what was found, ascending
   * @param ranges
@@ -32,7 +32,7 @@ object DetectorAccuracy:
   final case class Result(
       byRange: Vector[((Double, Double), DetectorAccuracy)],
       falselyFound: Int,
-      pictures: Int
+      images: Int
   ):
     def found: Int        = byRange.map(_._2.bearingsDeg.size).sum
     def recall: Double    = found.toDouble / byRange.map(_._2.plain).sum
@@ -41,7 +41,7 @@ object DetectorAccuracy:
   /** @param ranges
     *   nearest and farthest of each row, m
     * @param count
-    *   pictures of each row
+    *   images of each row
     */
   def measured(ranges: Seq[(Double, Double)], count: Int, seed: Long): Result =
     val detector = OnnxDetector(
@@ -49,20 +49,20 @@ object DetectorAccuracy:
       InputForm(Camera.width / 2, Camera.height / 2)
     )
     val told     = VehicleDetector(Camera, detector, VehicleDetector.Looks.Quadrotor)
-    val pictures = DronePictures(Camera, seed)
+    val images = DroneImages(Camera, seed)
     var falsely  = 0
     val rows     = ranges.toVector.map: range =>
-      val seen = Vector.fill(count)(pictures.next(range)).map: picture =>
+      val seen = Vector.fill(count)(images.next(range)).map: image =>
         val boxes =
-          detector.find(Camera.width, Camera.height, ByteBuffer.wrap(picture.bgr)).fold(sys.error, identity)
-        val (right, wrong) = boxes.partition(isOf(picture, _))
+          detector.find(Camera.width, Camera.height, ByteBuffer.wrap(image.bgr)).fold(sys.error, identity)
+        val (right, wrong) = boxes.partition(isOf(image, _))
         falsely += wrong.size + (right.size - 1).max(0)
-        (picture, right.headOption)
+        (image, right.headOption)
       val plain = seen.filter(_._1.isPlain)
       val polar =
         for
-          case (picture, Some(box)) <- plain
-          at <- picture.positionFrd
+          case (image, Some(box)) <- plain
+          at <- image.positionFrd
         yield (at, told.polar(box))
       range -> DetectorAccuracy(
         plain.size,
@@ -72,7 +72,7 @@ object DetectorAccuracy:
       )
     Result(rows, falsely, ranges.size * count)
 
-  private def isOf(picture: DronePicture, box: Box): Boolean = picture.box.exists: whole =>
+  private def isOf(image: DroneImage, box: Box): Boolean = image.box.exists: whole =>
     val x = (box.left + box.right) / 2 - (whole.left + whole.right) / 2.0
     val y = (box.top + box.bottom) / 2 - (whole.top + whole.bottom) / 2.0
     math.abs(x) < NearPx.max((whole.right - whole.left) / 2.0) &&
@@ -101,18 +101,18 @@ object DetectorAccuracy:
       f"$from%4.1f to $to%4.1f ${row.plain}%6d ${row.recall}%7.3f ${at(row.bearingsDeg, 0.5)}%19.2f ${at(row.bearingsDeg, 0.95)}%5.2f ${at(row.ranges, 0.16)}%28.3f ${at(row.ranges, 0.5)}%7.3f ${at(row.ranges, 0.84)}%5.3f ${at(row.inDeviations, 0.16)}%18.2f ${at(row.inDeviations, 0.84)}%5.2f"
     )
   println(
-    f"of ${result.pictures} pictures: recall ${result.recall}%.3f, precision ${result.precision}%.3f, ${result.falselyFound} boxes where nothing is"
+    f"of ${result.images} images: recall ${result.recall}%.3f, precision ${result.precision}%.3f, ${result.falselyFound} boxes where nothing is"
   )
   val camera   = DetectorAccuracy.Camera
   val detector = VehicleDetector.shipped(camera).fold(sys.error, identity)
-  val pictures = DronePictures(camera, seed)
-  val some     = Vector.fill(32)(ByteBuffer.wrap(pictures.next().bgr))
+  val images = DroneImages(camera, seed)
+  val some     = Vector.fill(32)(ByteBuffer.wrap(images.next().bgr))
   val times    =
-    for _ <- 1 to 12; picture <- some yield
+    for _ <- 1 to 12; image <- some yield
       val began = System.nanoTime()
-      detector.find(camera.width, camera.height, picture).fold(sys.error, identity): Unit
+      detector.find(camera.width, camera.height, image).fold(sys.error, identity): Unit
       (System.nanoTime() - began) * 1e-6
   val warm = times.drop(64).toVector.sorted
   println(
-    f"time of one ${camera.width} × ${camera.height} picture, one thread: median ${at(warm, 0.5)}%.1f ms, 99 %% ${at(warm, 0.99)}%.1f ms"
+    f"time of one ${camera.width} × ${camera.height} image, one thread: median ${at(warm, 0.5)}%.1f ms, 99 %% ${at(warm, 0.99)}%.1f ms"
   )

@@ -13,26 +13,26 @@ class OnnxModelSuite extends munit.FunSuite:
   override def afterAll(): Unit = model.close()
 
   /** Grey 10, and one pixel of the given blue, green, red. */
-  private def picture(blue: Int, green: Int, red: Int): Image =
+  private def image(blue: Int, green: Int, red: Int): Image =
     val bytes = Array.fill[Byte](8 * 4 * 3)(10)
     bytes(33) = blue.toByte
     bytes(34) = green.toByte
     bytes(35) = red.toByte
     Image(Shot("0"), 8, 4, Pixels.Bgr(Bytes(bytes, 0, bytes.length)), Vector3.Zero, Quaternion.Identity)
 
-  test("a model is run on a picture, its channels in the order that it was trained on"):
+  test("a model is run on an image, its channels in the order that it was trained on"):
     val form                       = InputForm(8, 4, scale = (1, 1, 1))
-    def brightest(form: InputForm) = model.run(picture(50, 100, 200), form).map(_("y").values.toSeq)
+    def brightest(form: InputForm) = model.run(image(50, 100, 200), form).map(_("y").values.toSeq)
     assertEquals(brightest(form), Right(Seq(200f, 100f, 50f)))
     assertEquals(brightest(form.copy(redFirst = false)), Right(Seq(50f, 100f, 200f)))
     assertEquals(
       brightest(form.copy(mean = (100, 0, 0), scale = (0.5f, 1, 2))),
       Right(Seq(50f, 100f, 100f))
     )
-    assertEquals(model.run(picture(1, 2, 3), form).map(_("y").shape), Right(Vector(1, 3, 1, 1)))
+    assertEquals(model.run(image(1, 2, 3), form).map(_("y").shape), Right(Vector(1, 3, 1, 1)))
 
-  test("a picture of another size is brought to the model's"):
-    val small = InputForm(2, 2).tensor(picture(0, 0, 0)).fold(fail(_), identity)
+  test("an image of another size is brought to the model's"):
+    val small = InputForm(2, 2).tensor(image(0, 0, 0)).fold(fail(_), identity)
     assertEquals(small.length, 12)
     assertEquals(small.map(value => math.round(value * 255)).toSeq.distinct, Seq(10))
 

@@ -4,7 +4,7 @@ import java.nio.ByteBuffer
 import java.nio.file.Path
 import skein.testing.Optimised
 
-/** The shipped detector on pictures of a seed that it was not taught by. `measureDetector` has more of them. */
+/** The shipped detector on images of a seed that it was not taught by. `measureDetector` has more of them. */
 class VehicleDetectorSuite extends munit.FunSuite, Optimised:
   private val camera = DetectorAccuracy.Camera
 
@@ -12,7 +12,7 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     val seed   = 20261123L
     val result = DetectorAccuracy.measured(Seq((2.0, 6.0), (6.0, 15.0)), count = 25, seed)
     assert(result.recall > 0.85, s"seed $seed: recall ${result.recall}")
-    // Of some forty boxes; 0.94 of all, by 1200 pictures.
+    // Of some forty boxes; 0.94 of all, by 1200 images.
     assert(result.precision > 0.85, s"seed $seed: precision ${result.precision}")
     // The nearer, the larger, and the less is the box's middle the quadrotor's.
     for ((range, row), mostDeg) <- result.byRange.zip(Seq(1.0, 0.4)) do
@@ -33,7 +33,7 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     val cut = detector.polar(Box(0, 290, 40, 310, 0, 1))
     assert(cut.deviation.range.value >= cut.range.value, cut)
 
-  test("what is no picture of the camera, and what is no model, is told"):
+  test("what is no image of the camera, and what is no model, is told"):
     val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
     assertEquals(
       detector.find(640, 480, ByteBuffer.allocate(640 * 480 * 3)).left.toOption,

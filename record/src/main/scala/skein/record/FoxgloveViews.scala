@@ -86,7 +86,7 @@ private[record] final class FoxgloveViews(
           lines = Vector(line(name, places, thickness = 3))
         )
         View.text(planOf(name))(scene(drawn))
-    case picture: CameraImage => seen(picture)
+    case image: CameraImage => seen(image)
     case cloud: Cloud         =>
       val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
       Vector(View(
@@ -103,34 +103,34 @@ private[record] final class FoxgloveViews(
     offset.getOrElse(receivedAt.since(validAt))
 
   /** An image, where its camera was, and what lens it has where that is new. */
-  private def seen(picture: CameraImage): Vector[View] =
-    val sensor = ImagingSensor.camera(picture.vehicle, picture.camera, picture.kind)
-    val at     = picture.validAt + aheadOf(picture.validAt, picture.receivedAt)
-    val frame  = s"${picture.vehicle}/${picture.camera}"
-    val lens   = (picture.width, picture.height, picture.fov)
+  private def seen(image: CameraImage): Vector[View] =
+    val sensor = ImagingSensor.camera(image.vehicle, image.camera, image.kind)
+    val at     = image.validAt + aheadOf(image.validAt, image.receivedAt)
+    val frame  = s"${image.vehicle}/${image.camera}"
+    val lens   = (image.width, image.height, image.fov)
     val isNew  = !lenses.get(sensor).contains(lens)
     lenses(sensor) = lens
     def moved =
-      transform(at, "world_ned", frame, picture.positionNed, times(picture.orientation, OpticalInCamera))
+      transform(at, "world_ned", frame, image.positionNed, times(image.orientation, OpticalInCamera))
     val calibrated =
-      picture.fov.filter(_ => isNew).map(fov =>
-        View.text(calibrationOf(sensor))(calibration(at, frame, picture, fov))
+      image.fov.filter(_ => isNew).map(fov =>
+        View.text(calibrationOf(sensor))(calibration(at, frame, image, fov))
       )
     Vector(
-      View(imageOf(sensor), () => form.image(picture, at, frame)),
+      View(imageOf(sensor), () => form.image(image, at, frame)),
       View.text(Frames)(Json.obj("transforms" -> Json.array(Vector(moved))))
     ) ++ calibrated
 
   /** A pinhole without distortion, whose axis goes through the middle. */
-  private def calibration(at: Instant, frame: String, picture: CameraImage, fov: Radians): String =
-    val focal                 = picture.width / (2 * StrictMath.tan(fov.value / 2))
-    val (cx, cy)              = (picture.width / 2.0, picture.height / 2.0)
+  private def calibration(at: Instant, frame: String, image: CameraImage, fov: Radians): String =
+    val focal                 = image.width / (2 * StrictMath.tan(fov.value / 2))
+    val (cx, cy)              = (image.width / 2.0, image.height / 2.0)
     def numbers(all: Double*) = Json.array(all.map(Json.number))
     Json.obj(
       "timestamp"        -> time(at),
       "frame_id"         -> Json.string(frame),
-      "width"            -> s"${picture.width}",
-      "height"           -> s"${picture.height}",
+      "width"            -> s"${image.width}",
+      "height"           -> s"${image.height}",
       "distortion_model" -> "\"plumb_bob\"",
       "D"                -> numbers(0, 0, 0, 0, 0),
       "K"                -> numbers(focal, 0, cx, 0, focal, cy, 0, 0, 1),

@@ -14,7 +14,7 @@ final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 object ImagingSensor:
   /** What a record is of. */
   def of(record: Record): Option[ImagingSensor] = record match
-    case picture: CameraImage => Some(camera(picture.vehicle, picture.camera, picture.kind))
+    case image: CameraImage => Some(camera(image.vehicle, image.camera, image.kind))
     case cloud: Cloud         => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
     case _                    => None
 
@@ -31,7 +31,7 @@ trait ImageEncoding:
     * @param frame
     *   the camera's: right, down, front
     */
-  def image(picture: CameraImage, at: Instant, frame: String): Array[Byte]
+  def image(image: CameraImage, at: Instant, frame: String): Array[Byte]
 
   /** Of a cloud, at most. */
   def mostPoints: Int
@@ -43,15 +43,15 @@ object ImageEncoding:
     val imageSchema = "foxglove.RawImage"
     val mostPoints  = Int.MaxValue
 
-    def image(picture: CameraImage, at: Instant, frame: String): Array[Byte] =
-      val bytesAPixel = if picture.encoding == "bgr8" then 3 else 4
-      Protobuf(picture.pixels.size + 128)
+    def image(image: CameraImage, at: Instant, frame: String): Array[Byte] =
+      val bytesAPixel = if image.encoding == "bgr8" then 3 else 4
+      Protobuf(image.pixels.size + 128)
         .message(1, timestamp(at))
-        .fixed32(2, picture.width.toInt)
-        .fixed32(3, picture.height.toInt)
-        .text(4, picture.encoding)
-        .fixed32(5, picture.width.toInt * bytesAPixel)
-        .bytes(RawImageData, picture.pixels.bytes)
+        .fixed32(2, image.width.toInt)
+        .fixed32(3, image.height.toInt)
+        .text(4, image.encoding)
+        .fixed32(5, image.width.toInt * bytesAPixel)
+        .bytes(RawImageData, image.pixels.bytes)
         .text(7, frame)
         .result
 

@@ -17,7 +17,7 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
 
   def offer(record: Record): Unit = keep(record match
     // Many would not fit otherwise.
-    case picture: CameraImage => picture.copy(pixels = picture.pixels.compressed)
+    case image: CameraImage => image.copy(pixels = image.pixels.compressed)
     case cloud: Cloud         => cloud.copy(xyz = cloud.xyz.compressed)
     case other                => other)
 

@@ -152,10 +152,10 @@ class FoxgloveViewsSuite extends munit.FunSuite:
 
   test("a camera's image is raw, its frame right, down, front, and its lens told once"):
     val seen                             = FoxgloveViews(names, Some(Span.Zero))
-    val Vector(image, frame, calibrated) = seen.of(Samples.picture(1)): @unchecked
+    val Vector(image, frame, calibrated) = seen.of(Samples.image(1)): @unchecked
     val bytes                            = Protobuf.bytesOf(Bytes.of(image.make()), 6).get
     assertEquals(image.topic, "/vehicles/Pursuer/front_center/image")
-    assertEquals(Blob.of(bytes.toArray), Samples.picture(1).pixels)
+    assertEquals(Blob.of(bytes.toArray), Samples.image(1).pixels)
     assertEquals(Protobuf.bytesOf(Bytes.of(image.make()), 4).map(_.utf8), Some("bgr8"))
     val moved = ujson.read(frame.json)("transforms")(0)
     assertEquals(moved("child_frame_id").str, "Pursuer/front_center")
@@ -164,10 +164,10 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEqualsDouble(lens("K")(0).num, 20 / math.tan(0.75), 1e-9)
     assertEquals((lens("K")(2).num, lens("K")(5).num), (20.0, 15.0))
     assertEquals(lens("frame_id"), moved("child_frame_id"))
-    assertEquals(seen.of(Samples.picture(2)).size, 2)
+    assertEquals(seen.of(Samples.image(2)).size, 2)
 
   test("a camera that looks north has its right in the east and its front in the north"):
-    val level = Samples.picture(1).copy(orientation = Quaternion(1, 0, 0, 0))
+    val level = Samples.image(1).copy(orientation = Quaternion(1, 0, 0, 0))
     val turn  = ujson.read(FoxgloveViews(names, None).of(level)(1).json)("transforms")(0)("rotation")
     assertEquals(turn, ujson.Obj("x" -> 0.5, "y" -> 0.5, "z" -> 0.5, "w" -> 0.5))
 

@@ -102,7 +102,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(found.map(_.schema.map(_.name)), Vector.fill(2)(Some("foxglove.RawImage")))
       assertEquals(
         found.flatMap(one => Protobuf.bytesOf(one.message.data, 6)).map(bytes => Blob.of(bytes.toArray)),
-        Vector(1L, 2L).map(Samples.picture(_).pixels)
+        Vector(1L, 2L).map(Samples.image(_).pixels)
       )
       assert(!messages(mcap, "/skein/image").head.message.data.utf8.contains("pixels"))
       val cut = folder.resolve("cut.mcap")

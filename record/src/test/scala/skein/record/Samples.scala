@@ -81,7 +81,7 @@ object Samples:
   )
 
   /** Of 40 × 30 pixels, no two rows alike. */
-  def picture(sequence: Long): CameraImage =
+  def image(sequence: Long): CameraImage =
     val base = sequence * 33_000_000L
     CameraImage(
       sequence,
@@ -137,9 +137,9 @@ object Samples:
       at(61_000_000)
     ),
     Sensing("Pursuer", 2, "gps", 3),
-    picture(1),
+    image(1),
     cloud(1),
-    picture(2),
+    image(2),
     Planned(
       "Pursuer",
       1,

@@ -49,7 +49,7 @@ final private[simulator] case class Camera(
   )
 
   /** From front, right, down into Unreal's clip space with its inverted depth, near plane 10 cm
-    * (`APIPCamera::getProjectionMatrix`), for pictures of the default 256 × 144.
+    * (`APIPCamera::getProjectionMatrix`), for images of the default 256 × 144.
     */
   private def projection: Seq[Seq[Float]] =
     val across = (1 / StrictMath.tan(math.toRadians(fovDeg) / 2)).toFloat

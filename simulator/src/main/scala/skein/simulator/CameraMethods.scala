@@ -4,7 +4,7 @@ import skein.airsim.wire.*
 import upack.Binary
 import upickle.default.writeMsg
 
-/** Functions of cameras, and of pictures. */
+/** Functions of cameras, and of images. */
 private[simulator] object CameraMethods:
   import Method.*
 
@@ -120,7 +120,7 @@ private[simulator] object CameraMethods:
         detecting(simulation, camera, kind, name, external)(filter => Right(filter.copy(meshes = Set.empty)))
   )
 
-  /** Kinds of pictures, from 0. */
+  /** Kinds of images, from 0. */
   private val ImageTypes = 10
 
   private def get(method: String)(read: Camera => Outcome): Method =

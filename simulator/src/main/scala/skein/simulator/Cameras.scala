@@ -36,14 +36,14 @@ final private[simulator] class Cameras(equipment: Equipment):
 
   def update(vehicle: Int, name: String, camera: Camera): Unit = changed((vehicle, name)) = camera
 
-  /** What is looked for in pictures of this kind. */
+  /** What is looked for in images of this kind. */
   def detection(vehicle: Int, name: String, imageType: Int): Detection =
     detected.getOrElse((vehicle, name, imageType), Detection())
 
   def setDetection(vehicle: Int, name: String, imageType: Int, detection: Detection): Unit =
     detected((vehicle, name, imageType)) = detection
 
-/** What is looked for in pictures.
+/** What is looked for in images.
   *
   * @param meshes
   *   names, which may hold wild cards

@@ -16,7 +16,7 @@ final private[simulator] case class Equipment(
     lidars: Map[String, Vector[(String, Lidar)]],
     rangers: Map[String, Vector[(String, Equipment.Ranger)]]
 ):
-  /** The size of pictures, and their field of view, of a vehicle's camera. */
+  /** The size of images, and their field of view, of a vehicle's camera. */
   def capture(vehicle: String, camera: String, imageType: Int): Equipment.Capture =
     cameras.get(vehicle).flatMap(_.get(camera)).flatMap(_.captures.get(imageType))
       .orElse(captures.get(imageType)).getOrElse(Equipment.Capture())
@@ -41,7 +41,7 @@ private[simulator] object Equipment:
   /** A distance sensor: looks along its front. */
   final case class Ranger(place: Placement, leastM: Double = 0.2, mostM: Double = 40)
 
-  /** Of a picture. */
+  /** Of an image. */
   val MostPixels: Int = 8192 * 4096
 
   val None: Equipment = Equipment(Map.empty, Map.empty, Map.empty, Map.empty)

@@ -45,7 +45,7 @@ final private[simulator] class SceneObjects(world: World):
     thing(name).flatMap(world.scene.objects(_).id).getOrElse(defaultId(name))
   )
 
-  /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from the picture
+  /** Gives these objects this id, at most 255; whether there was one. A negative id only hides an object from the image
     * of segmentation in AirSim, and changes nothing here.
     */
   def setId(which: String => Boolean, id: Int): Boolean =

@@ -12,7 +12,7 @@ final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[M
 /** What a call is answered: its result, or what draws it, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | Drawing])
 
-/** A result that takes a while to compute, such as a picture: of the moment at which it was asked for, whenever and on
+/** A result that takes a while to compute, such as an image: of the moment at which it was asked for, whenever and on
   * whatever thread that is done.
   */
 final class Drawing(work: () => Msg | Encoded):

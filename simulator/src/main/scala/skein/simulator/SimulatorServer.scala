@@ -263,7 +263,7 @@ object SimulatorServer:
           )
       )
 
-    /** Pictures are drawn beside the simulation, which goes on meanwhile. */
+    /** Images are drawn beside the simulation, which goes on meanwhile. */
     private def complete(
         promise: Promise[Either[String, Msg | Encoded]],
         result: Either[String, Msg | Encoded | Drawing]

@@ -67,7 +67,7 @@ final case class SimulatorSettings(
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
-  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all clients: pictures. */
+  /** Requests are small: the largest, a path, has 14 values a point. At most 384 MiB are held for all clients: images. */
   val Limits: ServerLimits = ServerLimits(
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
     heldBytesInCommon = 256 << 20

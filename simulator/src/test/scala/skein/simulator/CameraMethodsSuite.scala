@@ -75,10 +75,10 @@ class CameraMethodsSuite extends munit.FunSuite:
     assertEquals(number("simGetFocusDistance") -> number("simGetFocusAperture"), 123.0 -> 4.0)
     assertEqualsDouble(info(bench, "1").fov, 90, 1e-4)
 
-  test("the projection's matrix maps the picture's corner to the corner of clip space"):
+  test("the projection's matrix maps the image's corner to the corner of clip space"):
     val rows              = info(Bench(), "0").proj_mat.matrix
     def of(p: Seq[Float]) = rows.map(row => row.zip(p).map(_ * _).sum)
-    // Half the field of view to the right, and to the top of a picture of 16:9.
+    // Half the field of view to the right, and to the top of an image of 16:9.
     val Seq(x, y, _, w) = of(Seq(-1f, 1f, -9f / 16, 1f)): @unchecked
     assertEqualsFloat(x / w, 1f, 1e-5f)
     assertEqualsFloat(y / w, 1f, 1e-5f)
@@ -103,7 +103,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     ).contains("No camera with name nose"))
     assert(bench.error("simGetCameraInfo", Str("0"), Str(""), Bool(true)).contains("No external camera"))
 
-  test("what is looked for in pictures is kept"):
+  test("what is looked for in images is kept"):
     val bench = Bench()
     for mesh <- Seq("Car*", "Tree*") do
       bench.tell("simAddDetectionFilterMeshName", Str("0"), Int32(0), Str(mesh), Str(""), Bool(false))

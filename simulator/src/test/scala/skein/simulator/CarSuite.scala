@@ -139,9 +139,9 @@ class CarSuite extends munit.FunSuite:
     val camera = world.now[CameraInfo]("simGetCameraInfo", Str("3"), car, Bool(false))
     assertEquals(camera.pose.position.toVector, Vector3(0, -0.25, -1.75))
     assert(world.error("simGetCameraInfo", Str("bottom_center"), car, Bool(false)).contains("bottom_center"))
-    val picture =
+    val image =
       world.now[Array[Byte]]("simGetImage", Str("0"), upack.Int32(0), car, Bool(false))
-    assert(picture.length > 100)
+    assert(image.length > 100)
 
   test("one can be added while it runs"):
     val world = bench()

@@ -44,7 +44,7 @@ class ImageSuite extends munit.FunSuite:
   private def request(kind: ImageType, floats: Boolean = false, camera: String = "0") =
     ImageRequest(camera, kind.ordinal, floats, compress = false)
 
-  test("pictures of one call are of one instant, in AirSim's sizes, and of what stands before the camera"):
+  test("images of one call are of one instant, in AirSim's sizes, and of what stands before the camera"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(0, 50, -3))
@@ -75,7 +75,7 @@ class ImageSuite extends munit.FunSuite:
     assert(ids.image_data_uint8.contains(200.toByte))
     assert(!ids.image_data_uint8.contains(SceneObjects.defaultId("A").toByte))
 
-  test("a single picture is a PNG, and a camera of the settings looks where they say"):
+  test("a single image is a PNG, and a camera of the settings looks where they say"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -20))
     val png   = bench.now[Array[Byte]]("simGetImage", Str("nose"), Int32(0), Str("A"), Bool(false))
@@ -96,7 +96,7 @@ class ImageSuite extends munit.FunSuite:
     flown.tell("reset")
     assertEquals(digest(flown), digest(this.bench()))
 
-  test("what is not drawn is refused by name, and so are too many pictures"):
+  test("what is not drawn is refused by name, and so are too many images"):
     val bench                            = this.bench()
     def refusal(requests: ImageRequest*) =
       bench.error("simGetImages", Arr(requests.map(writeMsg(_))*), Str("A"), Bool(false))

@@ -17,18 +17,18 @@ private[view] object ImagePreviews extends ImageEncoding:
   val imageSchema = "foxglove.CompressedImage"
   val mostPoints  = 4096
 
-  def image(picture: CameraImage, at: Instant, frame: String): Array[Byte] =
-    ImageEncoding.compressed(jpeg(small(picture)), "jpeg", at, frame)
+  def image(image: CameraImage, at: Instant, frame: String): Array[Byte] =
+    ImageEncoding.compressed(jpeg(small(image)), "jpeg", at, frame)
 
   /** Each pixel the mean of a square; a depth as grey, black from [[FarM]] on. */
-  private def small(picture: CameraImage): BufferedImage =
-    val (width, height) = (picture.width.toInt, picture.height.toInt)
+  private def small(image: CameraImage): BufferedImage =
+    val (width, height) = (image.width.toInt, image.height.toInt)
     val by              = ((width.max(height) + MostWide - 1) / MostWide).max(1)
     val (wide, high)    = ((width / by).max(1), (height / by).max(1))
-    val bytes           = picture.pixels.bytes
+    val bytes           = image.pixels.bytes
     val small           = BufferedImage(wide, high, BufferedImage.TYPE_3BYTE_BGR)
     val target          = small.getRaster.getDataBuffer.asInstanceOf[DataBufferByte].getData
-    if picture.encoding == "bgr8" then
+    if image.encoding == "bgr8" then
       if by == 1 then System.arraycopy(bytes, 0, target, 0, target.length)
       else shrink(bytes, width, by, target, wide, high)
     else

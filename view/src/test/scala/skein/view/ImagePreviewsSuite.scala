@@ -11,7 +11,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
   import ImagePreviewsSuite.jpeg
 
   private def shown(width: Int, height: Int, encoding: String, bytes: Array[Byte]) = jpeg(ImagePreviews.image(
-    Samples.picture(1).copy(width = width, height = height, encoding = encoding, pixels = Blob.of(bytes)),
+    Samples.image(1).copy(width = width, height = height, encoding = encoding, pixels = Blob.of(bytes)),
     Instant.ofNanos(1_500_000_000L),
     "camera"
   ))

@@ -83,7 +83,7 @@ class ShowSuite extends munit.FunSuite:
     val show   = LiveShow(heading, feed, sensors = Vector(sensor))
     val viewer = watching(show, image, "/skein/image")
     for number <- 1 to 40 do
-      feed.offer(Samples.picture(number))
+      feed.offer(Samples.image(number))
       show.turn(at(10) + Span.ofMillis(25) * number)
     val told = Vector.unfold(())(_ => Option(came(show, viewer)).filter(_.nonEmpty).map((_, ()))).flatten
     assertEquals(told.count(_.topic == "/skein/image"), 10)
@@ -106,7 +106,7 @@ class ShowSuite extends munit.FunSuite:
 
   test("a jump over many images of a recording shows the newest before it, and no other"):
     val filmed =
-      heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.picture(step * 3)))
+      heading.records ++ (1 to 30).flatMap(step => Seq(Samples.reading(step), Samples.image(step * 3)))
     val show   = RecordedShow.of(filmed.zipWithIndex.map((row, at) => (at.toLong, row)).toVector)
     val viewer = watching(show, "/skein/image")
     came(show, viewer): Unit

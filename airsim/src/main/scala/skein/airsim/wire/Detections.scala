@@ -5,7 +5,7 @@ import upickle.default.ReadWriter
 /** An object that a camera sees.
   *
   * @param box2D
-  *   around it in the picture, pixels from the upper left corner
+  *   around it in the image, pixels from the upper left corner
   * @param box3D
   *   around it in its own frame, m
   * @param relative_pose

@@ -6,7 +6,7 @@ import upack.{Binary, Msg, Str}
 import upickle.default.{ReadWriter, writeMsg}
 import upickle.implicits.serializeDefaults
 
-/** What a picture is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key nothing is
+/** What an image is asked for; `image_type` is an [[ImageType]]'s number. Of Cosys-AirSim's further key nothing is
   * asked, and its server does without.
   */
 final private[skein] case class ImageRequest(
@@ -16,13 +16,13 @@ final private[skein] case class ImageRequest(
     compress: Boolean
 ) derives ReadWriter
 
-/** Kinds of pictures by AirSim's numbers. */
+/** Kinds of images by AirSim's numbers. */
 private[skein] enum ImageType:
   case Scene, DepthPlanar, DepthPerspective, DepthVis, DisparityNormalized, Segmentation, SurfaceNormals,
     Infrared,
     OpticalFlow, OpticalFlowVis
 
-/** A picture.
+/** An image.
   *
   * @param image_data_uint8
   *   a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from the top, without gaps; empty if

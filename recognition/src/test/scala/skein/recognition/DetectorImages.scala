@@ -7,29 +7,29 @@ import java.nio.{ByteBuffer, ByteOrder}
 import scala.util.Using
 import skein.units.*
 
-/** Draws the pictures that `examples/onnx-detector` teaches the detector by, as NumPy's files: `recognition/Test/runMain
-  * skein.recognition.drawDetectorPictures FOLDER COUNT SEED`. They are of every second pixel of a camera of 800×600 and
+/** Draws the images that `examples/onnx-detector` teaches the detector by, as NumPy's files: `recognition/Test/runMain
+  * skein.recognition.drawDetectorImages FOLDER COUNT SEED`. They are of every second pixel of a camera of 800×600 and
   * 100°, cut to 160×120.
   */
-@main def drawDetectorPictures(folder: String, count: Int, seed: Long): Unit =
+@main def drawDetectorImages(folder: String, count: Int, seed: Long): Unit =
   val (width, height) = (160, 120)
   val focalPx         = Pinhole(400, 300, Radians(StrictMath.toRadians(100))).focalPx
   val camera          = Pinhole(width, height, Radians(2 * StrictMath.atan(width / 2.0 / focalPx)))
-  val pictures        = DronePictures(camera, seed)
+  val images        = DroneImages(camera, seed)
   Files.createDirectories(Path.of(folder)): Unit
   Using.resources(
-    npy(Path.of(folder, "pictures.npy"), "|u1", s"($count, $height, $width, 3)"),
+    npy(Path.of(folder, "images.npy"), "|u1", s"($count, $height, $width, 3)"),
     npy(Path.of(folder, "truth.npy"), "<f4", s"($count, 5)")
-  ): (images, truths) =>
+  ): (pixels, truths) =>
     for _ <- 1 to count do
-      val picture = pictures.next()
+      val image = images.next()
       val row     = ByteBuffer.allocate(20).order(ByteOrder.LITTLE_ENDIAN)
-      val known   = if picture.positionFrd.isEmpty then 0 else if picture.isPlain then 1 else -1
+      val known   = if image.positionFrd.isEmpty then 0 else if image.isPlain then 1 else -1
       row.putFloat(known.toFloat)
-      for box <- picture.box do
+      for box <- image.box do
         row.putFloat((box.left + box.right) / 2f).putFloat((box.top + box.bottom) / 2f)
         row.putFloat((box.right - box.left).toFloat).putFloat((box.bottom - box.top).toFloat)
-      images.write(picture.bgr)
+      pixels.write(image.bgr)
       truths.write(row.array)
 
 /** The head of NumPy's format, version 1.0. */

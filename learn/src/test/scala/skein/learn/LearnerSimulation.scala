@@ -3,7 +3,7 @@ package skein.learn
 import java.io.{ByteArrayInputStream, ByteArrayOutputStream, DataInputStream, DataOutputStream, IOException}
 import skein.testing.Unhurried
 
-class LearnerSuite extends munit.FunSuite, Unhurried:
+class LearnerSimulation extends munit.FunSuite, Unhurried:
   private val small = LearnerSettings(
     hidden = Vector(32, 32),
     discount = 0.9,

@@ -9,12 +9,12 @@ import skein.simd.WorldRandom
 import skein.units.Instant
 
 /** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader in the same
-  * pictures of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
+  * images of every world, and take the same decisions; but where a bearing, a range, or a number that a policy compares
   * lies so near to a threshold that rounding decides.
   */
-class CameraTrackerAgreementSuite extends munit.FunSuite:
-  import CameraTrackerAgreementSuite.*
-  import AgreementSuite.{Log, Logged}
+class CameraTrackerAgreementSimulation extends munit.FunSuite:
+  import CameraTrackerAgreementSimulation.*
+  import AgreementSimulation.{Log, Logged}
 
   private val worlds = DuelKernel.WORLDS
   private val model  = Reduced.AirSim
@@ -69,14 +69,14 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
             case Event.Decided(agent, k, timeS) =>
               Option
                 .when(k < lanes(agent).made.size):
-                  AgreementSuite.difference(agent, k, policies(agent), logs(agent), lanes(agent), world)
+                  AgreementSimulation.difference(agent, k, policies(agent), logs(agent), lanes(agent), world)
                 .flatten
                 .map(found => (found.isUndecided, s"$timeS s: $found"))
             case Event.Looked(k, timeS, exposure) =>
               Option
                 .when(k < eye.looks.size)(difference(exposure, eye.looks(k), world))
                 .flatten
-                .map(found => (found.isUndecided, s"$timeS s, picture $k: $found"))
+                .map(found => (found.isUndecided, s"$timeS s, image $k: $found"))
           .nextOption()
         differs match
           case None =>
@@ -95,14 +95,14 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
       override def shareEpisodes: Boolean = true
       def key(world: Int): Int            = episode
       def link(world: Int): Delays        = DelayTable.vpn
-      def pursuer(world: Int): Policy     = CameraTrackerAgreementSuite.this.pursuer(world)
-      def evader(world: Int): Policy      = CameraTrackerAgreementSuite.this.evader(world)
+      def pursuer(world: Int): Policy     = CameraTrackerAgreementSimulation.this.pursuer(world)
+      def evader(world: Int): Policy      = CameraTrackerAgreementSimulation.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn))
     assert(told.startsWith("SIMD"), told)
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel.meanDistance.toSeq)
 
-  /** Where a picture shows an opponent to the one and not to the other. */
+  /** Where an image shows an opponent to the one and not to the other. */
   private def difference(scalar: Exposure, lanes: Looked, world: Int): Option[Difference] =
     val isFound = camera.measured(Instant.Epoch, scalar).isDefined
     val doubles =
@@ -128,7 +128,7 @@ class CameraTrackerAgreementSuite extends munit.FunSuite:
           Compared(node, math.abs(bound.value(a) - bound.value(b)), bound.error(a) + bound.error(b))
       Difference(isFound, scalar.found - camera.detection, compared, drawn && bound.undecided(shown).nonEmpty)
 
-private object CameraTrackerAgreementSuite:
+private object CameraTrackerAgreementSimulation:
   /** Of what floats add up to in the vehicles' flight, and in what is believed of the opponent. */
   private val MostOffM   = 5e-3
   private val MostOffRad = 5e-3
@@ -162,11 +162,11 @@ private object CameraTrackerAgreementSuite:
       all += Event.Decided(vehicle, decisions(vehicle), atNs * 1e-9)
       decisions(vehicle) += 1
 
-    override def exposed(vehicle: Int, number: Int, atNs: Long, picture: Exposure): Unit =
-      all += Event.Looked(looks, atNs * 1e-9, picture)
+    override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
+      all += Event.Looked(looks, atNs * 1e-9, image)
       looks += 1
 
-  /** A picture that the lanes took, by world. */
+  /** An image that the lanes took, by world. */
   final class Looked(
       val by: CameraTrackerLanes.Forms,
       axis: Array[Float],
@@ -185,7 +185,7 @@ private object CameraTrackerAgreementSuite:
     val looks: ArrayBuffer[Looked] = ArrayBuffer.empty
 
     override def expose(
-        picture: Int,
+        image: Int,
         ours: TimetableVehicles,
         oursAt: Int,
         theirs: TimetableVehicles,
@@ -200,5 +200,5 @@ private object CameraTrackerAgreementSuite:
         copied(theirs.seenX, theirsAt),
         copied(theirs.seenY, theirsAt)
       )
-      super.expose(picture, ours, oursAt, theirs, theirsAt, times, at)
-      looks += Looked(forms, axis.clone, places, own.altitudeDownM)(found(picture))
+      super.expose(image, ours, oursAt, theirs, theirsAt, times, at)
+      looks += Looked(forms, axis.clone, places, own.altitudeDownM)(found(image))

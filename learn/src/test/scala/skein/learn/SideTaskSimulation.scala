@@ -8,7 +8,7 @@ import skein.scenario.Scenarios
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.Span
 
-class SideTaskSuite extends munit.FunSuite:
+class SideTaskSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
   private val none = LinkDelays.of(LatencyProfile.Steady("none", LatencyDistribution.Constant(Span.Zero)))
 

@@ -10,8 +10,8 @@ import skein.simd.WorldRandom
 /** Lanes and the scalar engine take the same decisions in every world, but where a number that a policy compares lies so
   * near to another that rounding decides: that is told, with how near it was, by [[ErrorBound]].
   */
-class AgreementSuite extends munit.FunSuite:
-  import AgreementSuite.*
+class AgreementSimulation extends munit.FunSuite:
+  import AgreementSimulation.*
 
   private val model  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val worlds = DuelKernel.WORLDS
@@ -81,7 +81,7 @@ class AgreementSuite extends munit.FunSuite:
       .flatMap((agent, k) => difference(agent, k, policies(agent), scalar(agent), lanes(agent), world))
       .nextOption()
 
-object AgreementSuite:
+object AgreementSimulation:
   /** Of what floats add up to in the vehicles' flight. */
   private val MostOffM = 5e-3
 

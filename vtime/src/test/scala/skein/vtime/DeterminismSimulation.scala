@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.Future
 
 /** Equal seeds give equal runs: in one JVM, in several, and beside one another. */
-class DeterminismSuite extends munit.FunSuite:
+class DeterminismSimulation extends munit.FunSuite:
 
   test("a graph gives the same log over repeats, and another one for another seed"):
     val first = SampleGraph.digest(3)

@@ -16,7 +16,7 @@ import skein.vehicle.Airframe
   * @param visible
   *   what of that box shows it, from 0 to 1
   */
-final case class DronePicture(
+final case class DroneImage(
     bgr: Array[Byte],
     positionFrd: Option[Vector3],
     box: Option[Extent],
@@ -25,10 +25,10 @@ final case class DronePicture(
   /** That a detector should find it: at least three pixels of it, at most half hidden. */
   def isPlain: Boolean = box.exists(box => box.right - box.left >= 3) && visible >= 0.5
 
-/** Pictures of quadrotors in the shipped scenes, from any place and at any attitude: what the detector is taught by, and
+/** Images of quadrotors in the shipped scenes, from any place and at any attitude: what the detector is taught by, and
   * measured by with other seeds.
   */
-final class DronePictures(camera: Pinhole, seed: Long):
+final class DroneImages(camera: Pinhole, seed: Long):
   private val random   = SplitMix64(seed)
   private val scenes   = Vector("empty", "forest", "street").map(SceneFile.named(_).get)
   private val airframe = Airframe()
@@ -42,9 +42,9 @@ final class DronePictures(camera: Pinhole, seed: Long):
   /** @param rangesM
     *   nearest and farthest, drawn evenly in the logarithm
     * @param without
-    *   share of pictures without a quadrotor
+    *   share of images without a quadrotor
     */
-  def next(rangesM: (Double, Double) = (1.2, 30), without: Double = 0.15): DronePicture =
+  def next(rangesM: (Double, Double) = (1.2, 30), without: Double = 0.15): DroneImage =
     val scene = scenes(random.nextInt(scenes.size))
     val place = Placement.turned(
       Vector3(among(0, 100), among(-28, 28), -evenly(1, 30)),
@@ -54,7 +54,7 @@ final class DronePictures(camera: Pinhole, seed: Long):
     )
     val view = View(place, camera.width, camera.height, StrictMath.toDegrees(camera.fieldOfView.value))
     if random.nextDouble() < without then
-      DronePicture(drawn(Moment(scene, Vector.empty), view), None, None, 0)
+      DroneImage(drawn(Moment(scene, Vector.empty), view), None, None, 0)
     else
       val f     = camera.focalPx
       val right = among(-0.5, 0.5) * camera.width / f
@@ -71,7 +71,7 @@ final class DronePictures(camera: Pinhole, seed: Long):
         val alone  = Moment(Scene.Empty, Vector(body))
         val whole  = extent(alone, view)
         val seen   = extent(moment, view)
-        DronePicture(
+        DroneImage(
           drawn(moment, view),
           Some(at),
           whole,

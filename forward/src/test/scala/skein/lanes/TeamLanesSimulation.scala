@@ -6,10 +6,10 @@ import skein.policy.*
 import skein.scenario.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
-import skein.testing.Unhurried
+import skein.testing.{Lengthy, Optimised}
 import skein.vehicle.ReducedModel
 
-class TeamLanesSuite extends munit.FunSuite, Unhurried:
+class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private val worlds = TimetableKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val links  = Seq("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)

@@ -23,8 +23,8 @@ import skein.simd.WorldRandom
 import skein.units.Span
 import skein.vehicle.{ReducedModel, ReducedVehicleModel}
 
-class DuelBatchSuite extends munit.FunSuite:
-  import DuelBatchSuite.*
+class DuelBatchSimulation extends munit.FunSuite:
+  import DuelBatchSimulation.*
 
   private val short = Duel.paper.copy(durationS = 12)
 
@@ -198,7 +198,7 @@ class DuelBatchSuite extends munit.FunSuite:
     val here = scalar(mixed(1), 0, LoopTiming.Stream(), lag)
     assertEquals(lines(1), here.toString)
 
-object DuelBatchSuite:
+object DuelBatchSimulation:
   /** Goes straight on, by what is no arithmetic. */
   val Straight: Policy = (_, _, _, _, own, _, _) => own.toString.toDouble
 
@@ -266,6 +266,6 @@ object DuelBatchSuite:
 object DuelBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =
-      DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSuite.lag, threads = 1)
+      DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSimulation.lag, threads = 1)
     println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil))
-    println(DuelBatchSuite.numbers(batch.fly(DuelBatchSuite.mixed(1), captureRadiusM = 5), 0))
+    println(DuelBatchSimulation.numbers(batch.fly(DuelBatchSimulation.mixed(1), captureRadiusM = 5), 0))

@@ -10,7 +10,7 @@ import skein.signal.LatencyDistribution
 import skein.testing.Optimised
 import skein.units.Span
 
-class ClusterSubjectSuite extends munit.FunSuite, Optimised:
+class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
   private given Scenarios = Scenarios.ours
 
   private val questions = Vector[BudgetQuestion](

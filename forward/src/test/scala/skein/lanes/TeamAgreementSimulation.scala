@@ -12,8 +12,8 @@ import skein.testing.Unhurried
 /** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a policy compares
   * lies so near to another that rounding decides: that is told, with how near it was, by [[ErrorBound]].
   */
-class TeamAgreementSuite extends munit.FunSuite, Unhurried:
-  import TeamAgreementSuite.*
+class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
+  import TeamAgreementSimulation.*
 
   private val plant  = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val worlds = TimetableKernel.WORLDS
@@ -74,7 +74,7 @@ class TeamAgreementSuite extends munit.FunSuite, Unhurried:
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
 
-object TeamAgreementSuite:
+object TeamAgreementSimulation:
   /** Of what floats add up to in the vehicles' flight. */
   private val MostOffM = 5e-3
 

@@ -6,7 +6,7 @@ import skein.scenario.*
 import skein.settings.ScenarioSettings
 import skein.testing.Optimised
 
-class TeamSearchSuite extends munit.FunSuite, Optimised:
+class TeamSearchSimulation extends munit.FunSuite, Optimised:
   private given Scenarios = Scenarios.ours
 
   private val question = TeamQuestion(
@@ -46,7 +46,7 @@ class TeamSearchSuite extends munit.FunSuite, Optimised:
     val surround = ready.scenario(Vector(8.0, 8.0))
     val measures = surround.measures.filter(measure => Set("off ring", "gap")(measure.name))
     assertEquals(measures.map(_.reduced.nonEmpty), Vector(true, true))
-    val paths = (0 until 3).map(episode => TeamSearchSuite.flown(surround, ready, episode))
+    val paths = (0 until 3).map(episode => TeamSearchSimulation.flown(surround, ready, episode))
     val means = measures.map(measure =>
       paths.map(places =>
         val OverFlight(quantity, reduction, _) = measure.reduced.get
@@ -93,7 +93,7 @@ class TeamSearchSuite extends munit.FunSuite, Optimised:
       )
     )
 
-object TeamSearchSuite:
+object TeamSearchSimulation:
   import skein.forward.{Engagement, LoopObserver, Rollout}
   import skein.simd.WorldRandom
 

@@ -16,7 +16,7 @@ import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-class TimetableKernelSuite extends munit.FunSuite:
+class TimetableKernelSimulation extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
@@ -92,7 +92,7 @@ class TimetableKernelSuite extends munit.FunSuite:
     timing                   <- loops ++ predicted(model)
     (name, link)             <- flown
   do
-    // None of these worlds meets a threshold within 5 s: AgreementSuite would name it.
+    // None of these worlds meets a threshold within 5 s: AgreementSimulation would name it.
     test(
       s"$vehicles, $timing over $name: candidates fly by the timetable as by the scalar reference, 5 s to 2 mm"
     ):

@@ -12,7 +12,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 
 /** What a replay decides again, and what it finds where a recording was changed. */
-class ReplaySuite extends munit.FunSuite, Optimised:
+class ReplaySimulation extends munit.FunSuite, Optimised:
   private val planning = PlanSettings(horizonSteps = 10, searches = 1, slices = 2, blocksPerSlice = 1)
 
   private def flown(kind: LoopKind, fleet: Fleet): Recording = VirtualTime

@@ -6,7 +6,7 @@ import skein.policy.*
 import skein.signal.SplitMix64
 
 /** The homicidal chauffeur with ideal kinematics, on both sides of its threshold: R = 8 m, speeds 10 and 5 m/s. */
-class HomicidalChauffeurSuite extends munit.FunSuite:
+class HomicidalChauffeurSimulation extends munit.FunSuite:
   private val game      = HomicidalChauffeur(turningRadiusM = 8, speedRatio = 0.5)
   private val dodgeM    = game.speedRatio * game.turningRadiusM
   private val turnRate  = 10 / game.turningRadiusM

@@ -15,7 +15,7 @@ import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-class LoopDuelKernelSuite extends munit.FunSuite:
+class LoopDuelKernelSimulation extends munit.FunSuite:
   private val worlds = DuelKernel.WORLDS
   private val lag    = Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val models = Seq[(String, VelocityResponse)](
