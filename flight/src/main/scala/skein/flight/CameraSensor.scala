@@ -49,11 +49,11 @@ private[skein] final class CameraSensor(
 
   // Of one thread at a time: that of the stream, or of whoever asks while the simulator stands still.
   private var images, found = 0
-  private var newestSeen      = Option.empty[Seen]
-  private var fusion          = Fusion(eye.fusion)
-  private val due, lost       = LongAdder()
-  private val missed          = LongAdder()
-  private val over            = Promise[Done]()
+  private var newestSeen    = Option.empty[Seen]
+  private var fusion        = Fusion(eye.fusion)
+  private val due, lost     = LongAdder()
+  private val missed        = LongAdder()
+  private val over          = Promise[Done]()
 
   /** Completes when it was closed and all that was asked for has come to something. */
   def ended: Future[Done] = over.future

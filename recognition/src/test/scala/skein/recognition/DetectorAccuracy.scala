@@ -48,10 +48,10 @@ object DetectorAccuracy:
       VehicleDetector.model.fold(sys.error, identity),
       InputForm(Camera.width / 2, Camera.height / 2)
     )
-    val told     = VehicleDetector(Camera, detector, VehicleDetector.Looks.Quadrotor)
-    val images = DroneImages(Camera, seed)
-    var falsely  = 0
-    val rows     = ranges.toVector.map: range =>
+    val told    = VehicleDetector(Camera, detector, VehicleDetector.Looks.Quadrotor)
+    val images  = DroneImages(Camera, seed)
+    var falsely = 0
+    val rows    = ranges.toVector.map: range =>
       val seen = Vector.fill(count)(images.next(range)).map: image =>
         val boxes =
           detector.find(Camera.width, Camera.height, ByteBuffer.wrap(image.bgr)).fold(sys.error, identity)
@@ -105,7 +105,7 @@ object DetectorAccuracy:
   )
   val camera   = DetectorAccuracy.Camera
   val detector = VehicleDetector.shipped(camera).fold(sys.error, identity)
-  val images = DroneImages(camera, seed)
+  val images   = DroneImages(camera, seed)
   val some     = Vector.fill(32)(ByteBuffer.wrap(images.next().bgr))
   val times    =
     for _ <- 1 to 12; image <- some yield

@@ -15,7 +15,7 @@ import skein.units.*
   val (width, height) = (160, 120)
   val focalPx         = Pinhole(400, 300, Radians(StrictMath.toRadians(100))).focalPx
   val camera          = Pinhole(width, height, Radians(2 * StrictMath.atan(width / 2.0 / focalPx)))
-  val images        = DroneImages(camera, seed)
+  val images          = DroneImages(camera, seed)
   Files.createDirectories(Path.of(folder)): Unit
   Using.resources(
     npy(Path.of(folder, "images.npy"), "|u1", s"($count, $height, $width, 3)"),
@@ -23,8 +23,8 @@ import skein.units.*
   ): (pixels, truths) =>
     for _ <- 1 to count do
       val image = images.next()
-      val row     = ByteBuffer.allocate(20).order(ByteOrder.LITTLE_ENDIAN)
-      val known   = if image.positionFrd.isEmpty then 0 else if image.isPlain then 1 else -1
+      val row   = ByteBuffer.allocate(20).order(ByteOrder.LITTLE_ENDIAN)
+      val known = if image.positionFrd.isEmpty then 0 else if image.isPlain then 1 else -1
       row.putFloat(known.toFloat)
       for box <- image.box do
         row.putFloat((box.left + box.right) / 2f).putFloat((box.top + box.bottom) / 2f)

@@ -108,7 +108,7 @@ object FlightTopics:
   def knownAt(record: Record): Option[Instant] = record match
     case reading: ReadingRow     => Some(reading.state.receivedAt)
     case measured: Measurement   => Some(measured.receivedAt)
-    case image: CameraImage    => Some(image.receivedAt)
+    case image: CameraImage      => Some(image.receivedAt)
     case cloud: Cloud            => Some(cloud.receivedAt)
     case decision: DecisionRow   => Some(decision.decidedAt)
     case solved: SolvedRow       => Some(solved.receivedAt)
@@ -123,7 +123,7 @@ object FlightTopics:
     case reading: ReadingRow     => reading.vehicle
     case measured: Measurement   => s"${measured.vehicle} ${measured.sensor}"
     case sensing: Sensing        => s"${sensing.vehicle} ${sensing.sensor}"
-    case image: CameraImage    => s"${image.vehicle} ${image.camera} ${image.kind}"
+    case image: CameraImage      => s"${image.vehicle} ${image.camera} ${image.kind}"
     case cloud: Cloud            => s"${cloud.vehicle} ${cloud.lidar}"
     case decision: DecisionRow   => decision.vehicle
     case sighting: Sighting      => s"${sighting.decider} ${sighting.vehicle}"

@@ -87,7 +87,7 @@ private[record] final class FoxgloveViews(
         )
         View.text(planOf(name))(scene(drawn))
     case image: CameraImage => seen(image)
-    case cloud: Cloud         =>
+    case cloud: Cloud       =>
       val at = cloud.validAt + aheadOf(cloud.validAt, cloud.receivedAt)
       Vector(View(
         cloudOf(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true)),

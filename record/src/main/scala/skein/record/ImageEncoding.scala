@@ -15,8 +15,8 @@ object ImagingSensor:
   /** What a record is of. */
   def of(record: Record): Option[ImagingSensor] = record match
     case image: CameraImage => Some(camera(image.vehicle, image.camera, image.kind))
-    case cloud: Cloud         => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
-    case _                    => None
+    case cloud: Cloud       => Some(ImagingSensor(cloud.vehicle, cloud.lidar, isLidar = true))
+    case _                  => None
 
   def camera(vehicle: String, camera: String, kind: String): ImagingSensor =
     ImagingSensor(vehicle, if kind == "Scene" then camera else s"$camera/$kind", isLidar = false)

@@ -18,8 +18,8 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   def offer(record: Record): Unit = keep(record match
     // Many would not fit otherwise.
     case image: CameraImage => image.copy(pixels = image.pixels.compressed)
-    case cloud: Cloud         => cloud.copy(xyz = cloud.xyz.compressed)
-    case other                => other)
+    case cloud: Cloud       => cloud.copy(xyz = cloud.xyz.compressed)
+    case other              => other)
 
   private def keep(record: Record): Unit = synchronized:
     if record.isInstanceOf[Ending] && failed.isCompleted then kept += record: Unit

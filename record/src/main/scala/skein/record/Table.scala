@@ -95,7 +95,7 @@ private[record] object Table:
   val sighting: Table[Sighting]               = table("sighting", since = 3)
   val measurement: Table[Measurement]         = table("measurement", since = 5)
   val sensing: Table[Sensing]                 = table("sensing", since = 5)
-  val image: Table[CameraImage]             = table("image", since = 6)
+  val image: Table[CameraImage]               = table("image", since = 6)
   val cloud: Table[Cloud]                     = table("cloud", since = 6)
   val solved: Table[SolvedRow]                = table("solved", since = 6)
   val prediction: Table[Prediction]           = table("prediction")
