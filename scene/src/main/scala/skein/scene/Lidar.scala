@@ -10,7 +10,7 @@ import skein.units.Vector3
   * @param rangeM
   *   what is farther gives no point
   * @param horizontalFovDeg
-  *   from, to, clockwise from the front; other points are dropped, as in AirSim
+  *   from, to, clockwise from the front; other points are dropped, as in AirSim, and where both are equal none is
   * @param noiseM
   *   standard deviation of the range
   * @param fresh
@@ -42,7 +42,7 @@ final case class Lidar(
     (0 until rays).iterator.flatMap: ray =>
       val azimuth = (360.0 / perChannel * ray) % 360
       val seen    =
-        if start <= end then azimuth >= start && azimuth <= end else azimuth >= start || azimuth <= end
+        if start < end then azimuth >= start && azimuth <= end else azimuth >= start || azimuth <= end
       val elevation =
         if channels == 1 then upper else upper - (upper - lower) / (channels - 1) * (ray % channels)
       val (a, e) = (StrictMath.toRadians(azimuth), StrictMath.toRadians(elevation))

@@ -64,3 +64,8 @@ class LidarSuite extends munit.FunSuite:
     val narrow = scan(Lidar(horizontalFovDeg = (-20, 20)), Placement(Vector3(0, 0, -10)))
     assert(narrow.items.length > 1000)
     for p <- narrow.xyz.grouped(3) do assert(math.abs(math.toDegrees(math.atan2(p(1), p(0)))) < 20.01)
+
+  test("a field of view from an angle to the same one is the whole turn"):
+    for fov <- Seq((0.0, 0.0), (0.0, 360.0), (90.0, 90.0)) do
+      val lidar = Lidar(channels = 1, horizontalFovDeg = fov, verticalFovDeg = (-30, -30))
+      assertEquals(scan(lidar, Placement(Vector3(0, 0, -10))).items.length, lidar.rays, fov)
