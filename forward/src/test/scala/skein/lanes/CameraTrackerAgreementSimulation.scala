@@ -114,10 +114,10 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     val away = doubles.zip(floats).map((x, y) => math.abs(x - y))
     assert(away(0) < MostOffRad && away.tail.max < MostOffM, s"world $world: ${away.mkString(", ")} off")
     Option.when(isFound != (lanes.found(world) > 0)):
-      val pictured = lanes.by.pictured
-      val shown    = Seq(pictured.bound.nodes(0))
-      val inputs   = pictured.inputsOf(doubles)
-      val off      = inputs.zip(pictured.inputsOf(floats)).map((x, y) => math.abs(x - y))
+      val detected = lanes.by.detected
+      val shown    = Seq(detected.bound.nodes(0))
+      val inputs   = detected.inputsOf(doubles)
+      val off      = inputs.zip(detected.inputsOf(floats)).map((x, y) => math.abs(x - y))
       val bound    = ErrorBound.of(shown, inputs, off, Array.emptyDoubleArray)
       val drawn    = scalar.found < camera.detection
       val compared = Trace
