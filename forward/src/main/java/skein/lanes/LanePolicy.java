@@ -10,7 +10,7 @@ import skein.simd.LaneFunction;
 
 /**
  * Policies of one form in many worlds, each with parameters of its own, compiled from the policy
- * itself ({@link PolicyLanes}); {@code LanePolicySuite} holds them to it. Mutable: one per kernel
+ * itself ({@link PolicyLanes}); {@code LanePolicySimulation} holds them to it. Mutable: one per kernel
  * and role.
  */
 class LanePolicy {

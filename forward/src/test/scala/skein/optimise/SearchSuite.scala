@@ -1,14 +1,9 @@
 package skein.optimise
 
-import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, Duel, LoopTiming, Reduced, Rollout}
-import skein.lanes.DuelBatch
-import skein.policy.{Axis, PaperEvader, PaperPursuer, PolicyFamily, Role, SearchSpace}
+import skein.policy.{Axis, SearchSpace}
 import skein.signal.SplitMix64
-import skein.simd.WorldRandom
-import skein.testing.Unhurried
 
-class SearchSuite extends munit.FunSuite, Unhurried:
+class SearchSuite extends munit.FunSuite:
   private val space = SearchSpace(Vector(Axis("a", -2, 4), Axis("b", -3, 3)))
 
   private def depth(c: Vector[Double]): Double = math.pow(c(0) - 1, 2) + 2 * math.pow(c(1) + 0.5, 2)
@@ -117,40 +112,3 @@ class SearchSuite extends munit.FunSuite, Unhurried:
     for (candidates, episodes) <- Seq((1 << 17) -> 129, ((1 << 17) + 1) -> 128, 100_000 -> 1_000_000) do
       val mistake = intercept[IllegalArgumentException](race(candidates, episodes))
       assert(mistake.getMessage.contains("expected at most 16777216"), mistake.getMessage)
-
-  private val lag   = Reduced(0.9, 0.8, 0.05)
-  private val short = Duel.paper.copy(durationS = 15)
-
-  private def game(threads: Int): Evaluator = DuelEvaluator(
-    DuelBatch(short, LoopTiming.Stream(), lag, threads),
-    30,
-    PolicyFamily.paperPursuer,
-    Role.Pursuer,
-    PaperEvader(),
-    DelayTable.vpn,
-    Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise),
-    seed = 1
-  )
-
-  test("the value of a turn rate is the scalar reference's mean, and does not depend on the threads"):
-    val candidates = Vector(Vector(0.7), Vector(1.0), Vector(1.4))
-    val tallies    = game(1).tallies(candidates, 0 until 30)
-    assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
-    for (tally, candidate) <- tallies.zip(candidates) do
-      val pursuer   = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
-      val rollout   = Rollout(short.copy(pursuer = pursuer), LoopTiming.Stream(), DelayTable.vpn, lag)
-      val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
-      assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
-
-  test("the paper's pursuer over vpn: the search finds a turn rate at least as good as any of a fine grid"):
-    val turnRate  = PolicyFamily.paperPursuer.space
-    val evaluator = game(1)
-    val grid      = Search.run(turnRate, SearchMethod.Grid(29, 20), Direction.Minimise, 1, evaluator).head
-    val found = Search.run(turnRate, SearchMethod.CmaEs(10, 12, 20), Direction.Minimise, 1, evaluator).head
-    assert(found.tally.mean <= grid.tally.mean + 0.02, s"$found, grid $grid")
-
-  test("a cancelled flight of candidates ends within its batches and tells nothing"):
-    val asked      = AtomicInteger()
-    val candidates = space.random(400, 1).map(_ => PolicyFamily.paperPursuer.space.defaults)
-    assertEquals(game(1).talliesUnless(() => asked.incrementAndGet() > 2)(candidates, 0 until 4), None)
-    assert(asked.get <= 4, s"asked ${asked.get} times")

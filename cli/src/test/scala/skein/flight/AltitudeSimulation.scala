@@ -13,7 +13,7 @@ import skein.units.Span
 import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** AirSim's vehicles lag the more the higher they fly: models hold at one altitude. */
-class AltitudeSuite extends munit.FunSuite, TemporaryFolders:
+class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   private def settings(hocon: String): Either[String, FlySettings] = FlySettings.read(

@@ -8,7 +8,7 @@ import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.Scenarios
 import skein.signal.SplitMix64
 
-class EnvironmentBatchSuite extends munit.FunSuite:
+class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
   /** A batch, and what a learner reads and writes. */

@@ -7,7 +7,7 @@ import skein.testing.Unhurried
 import skein.units.*
 
 /** Each mischief alone is really done, borne by the loop, and over when calm begins. */
-class MischiefSuite extends munit.FunSuite, Unhurried:
+class MischiefSimulation extends munit.FunSuite, Unhurried:
   private def flown(messageFaults: MessageFaults): FlightTrace =
     val faultPlan = FaultPlan
       .of(11, Span.ofSeconds(8))

@@ -5,7 +5,7 @@ import skein.policy.*
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
-class LanePolicySuite extends munit.FunSuite:
+class LanePolicySimulation extends munit.FunSuite:
   private val worlds = LanePolicy.WORLDS
 
   private val families: Seq[(String, SplitMix64 => Policy)] =
@@ -61,7 +61,7 @@ class LanePolicySuite extends munit.FunSuite:
 
   test("a policy that is no formula says why, and where"):
     val refused = PolicyLanes.of(Impatient()).fold(_.getMessage, _ => fail("it was compiled"))
-    assert(refused.contains("LanePolicySuite.scala"), refused)
+    assert(refused.contains("LanePolicySimulation.scala"), refused)
     assert(refused.contains("System.nanoTime"), refused)
 
   for

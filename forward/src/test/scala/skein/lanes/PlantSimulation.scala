@@ -7,7 +7,7 @@ import skein.testing.Unhurried
 import skein.vehicle.{DrivenCar, PlaneReading, Plant}
 
 /** Vehicles of a user's own, as they are written. */
-class PlantSuite extends munit.FunSuite, Unhurried:
+class PlantSimulation extends munit.FunSuite, Unhurried:
   private val bicycle =
     PlantResponse(Bicycle(wheelbaseM = 1.2, steeringLagS = 0.3, mostMps2 = 4, antennaM = 0.4))
   private val short = Duel.paper.copy(

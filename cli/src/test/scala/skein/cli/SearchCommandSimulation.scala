@@ -2,7 +2,7 @@ package skein.cli
 
 import skein.testing.{Optimised, TemporaryFolders}
 
-class SearchCommandSuite extends munit.FunSuite, TemporaryFolders, Optimised:
+class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   test("with --json a search prints its result as data, and all else to the error output"):
     val words =
       "search --family lead-pursuit --candidates 8 --episodes 1 --fresh 2 --duration 12s --json --out".split(

@@ -10,7 +10,7 @@ import scala.concurrent.{Await, ExecutionContext, Future, Promise}
 import skein.testing.Unhurried
 
 /** What cannot be right in virtual time stops the run and names the culprit. */
-class EscapesSuite extends munit.FunSuite, Unhurried:
+class EscapesSimulation extends munit.FunSuite, Unhurried:
   private def stopped(limits: Limits = Limits(), config: String = "")(
       body: ActorSystem => Future[?]
   ): VirtualTimeException =
@@ -19,7 +19,7 @@ class EscapesSuite extends munit.FunSuite, Unhurried:
 
   private def assertCulprit(error: VirtualTimeException)(using munit.Location): Unit =
     assert(
-      error.getCause.getStackTrace.exists(_.getClassName.startsWith("skein.vtime.EscapesSuite")),
+      error.getCause.getStackTrace.exists(_.getClassName.startsWith("skein.vtime.EscapesSimulation")),
       "the cause does not show this suite's code"
     )
 
