@@ -122,8 +122,10 @@ object ClockAlignment:
   /** Bounds of the offset by one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
-  /** Readings that the estimate between the bounds is made from. */
-  val Memory = 128
+  /** Readings that the estimate between the bounds is made from: more of them estimate a quartile better, fewer follow
+    * drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million are followed within 0.5 ms.
+    */
+  val Memory = 384
 
   /** Runs of the simulator before the present one that are remembered: more cannot end within one answer's time. */
   val FormerRuns = 4

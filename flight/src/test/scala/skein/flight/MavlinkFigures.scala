@@ -36,13 +36,16 @@ import skein.units.*
           val age  = decisions.flatMap(_.trueAge).map(_.own.toMillis)
           val boot =
             if wire == "mavlink" then landed.recorder.recording.heading.flight.startedAt else Instant.Epoch
-          val errors = decisions.flatMap(d =>
-            d.trueAge.map(t =>
-              (t.own - d.decidedAt.since(boot + d.own.state.validAt.since(Instant.Epoch))).toMillis.abs
-            )
-          ).sorted
+          val errors = decisions.flatMap: d =>
+            d.trueAge.map: t =>
+              val error = t.own - d.decidedAt.since(boot + d.own.state.validAt.since(Instant.Epoch))
+              (atS = d.decidedAt.since(decisions.head.decidedAt).toSeconds, ms = error.toMillis.abs)
+          def told(fromS: Double, untilS: Double): String =
+            val some = errors.collect { case (atS, ms) if atS >= fromS && atS < untilS => ms }.sorted
+            def at(share: Double) = some((some.size * share).toInt.min(some.size - 1))
+            f"${at(0.5)}%.2f, ${at(0.99)}%.2f, ${some.last}%.2f"
           println(
-            f"  age errors ms: median ${errors(errors.size / 2)}%.3f p99 ${errors((errors.size * 0.99).toInt)}%.3f most ${errors.last}%.3f (boot ${boot.toNanos})"
+            s"  age errors, ms, median, 99 %, most: ${told(0, seconds)}; in the first 10 s ${told(0, 10)}, afterwards ${told(10, seconds)}"
           )
           println(
             f"$wire $link $loop $seed: ${landed.landed.outcome} decisions ${decisions.size} distance ${distances.sum / distances.size}%.3f age ${age.sum / age.size}%.2f ms, ${(System.nanoTime() - started) / 1e9}%.1f s"
