@@ -5,15 +5,13 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Promise}
 import skein.cluster.Certificates
-import skein.flight.{FlightAssembler, Solvers}
+import skein.flight.SolvedFlight
 import skein.kafka.{KafkaBroker, KafkaLink, KafkaSolver, KafkaTopics}
-import skein.link.{Address, TcpTransport}
-import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.link.Address
+import skein.loop.Outcome
 import skein.record.MemoryRecorder
 import skein.scenario.Scenarios
-import skein.settings.{FlySettings, SolverChoice}
-import skein.signal.LatencyProfile
-import skein.solver.*
+import skein.settings.SolverChoice
 import skein.testing.{Lengthy, TemporaryFolders}
 import skein.units.*
 
@@ -45,17 +43,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     super.afterAll()
 
   private def solver(topics: KafkaTopics)(told: String => Unit) =
-    KafkaSolver(
-      topics,
-      SolverDesk(
-        1,
-        "same",
-        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
-        Clock.system,
-        system.dispatcher
-      ),
-      told
-    )
+    KafkaSolver(topics, SolvedFlight.desk(), told)
 
   /** A short flight, or why it was not flown. */
   private def flown(
@@ -63,28 +51,12 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
       security: Map[String, String],
       patience: Span
   ): Either[String, MemoryRecorder] =
-    val settings = FlySettings(
-      List(LoopKind.Stream),
-      List(LatencyProfile.none),
-      duration = Span.ofSeconds(3),
-      period = Span.ofMillis(100),
-      seed = 7,
-      fallback = Fallback.Hover,
-      solver = Some(SolverChoice.Kafka(broker.address, prefix))
-    )
-    val topics    = KafkaTopics(broker.address, prefix)(security)
-    val assembler = FlightAssembler(
-      TcpTransport(),
-      Clock.system,
-      settings,
-      None,
-      solvers = Solvers("same", _ => Right(KafkaLink(topics)), patience)
-    )
-    val plan     = settings.plans.last
-    val recorder = MemoryRecorder(assembler.heading(plan, "real"))
-    Await.result(assembler.start(plan, recorder), 60.seconds).map: flying =>
+    val topics = KafkaTopics(broker.address, prefix)(security)
+    val flight =
+      SolvedFlight(SolverChoice.Kafka(broker.address, prefix), KafkaLink(topics), patience = patience)
+    Await.result(flight.start(), 60.seconds).map: flying =>
       assertEquals(Await.result(flying.landed, 60.seconds).outcome, Outcome.Completed)
-      recorder
+      flight.recorder
 
   test("with certificates of one set a flight is decided by a solver behind a broker"):
     val topics = KafkaTopics(broker.address, "trusted")(own)

@@ -9,13 +9,11 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 import skein.cluster.{Certificates, Tls}
-import skein.flight.{FlightAssembler, Solvers}
+import skein.flight.SolvedFlight
 import skein.link.{Address, Listening, TcpTransport, TransportError}
-import skein.loop.{Fallback, LoopKind, Outcome}
-import skein.record.MemoryRecorder
+import skein.loop.Outcome
 import skein.scenario.Scenarios
-import skein.settings.{FlySettings, SolverChoice}
-import skein.signal.LatencyProfile
+import skein.settings.SolverChoice
 import skein.solver.*
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
@@ -89,38 +87,31 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         assert(clue(why).isInstanceOf[TransportError.NotTrusted])
         assertEquals(heard.get, 0)
 
+  private def served[A](shows: SSLContext)(body: Address => A): A =
+    val server =
+      Await.result(SolverServer.start(loopback, transport(Some(shows)), SolvedFlight.desk()), 20.seconds)
+    try body(server.address)
+    finally Await.result(server.close(), 20.seconds): Unit
+
+  test(
+    "a flight that does not trust its solver, or is not trusted, is told so long before its patience ends"
+  ):
+    for
+      (solvers, flights, who) <- Seq(
+        (stranger, own, "whose side is refused here"),
+        (elsewhere, own, "whose side is refused here"),
+        (own, stranger, "refuse")
+      )
+    do
+      served(solvers): at =>
+        val link   = TcpLink(transport(Some(flights)), at)
+        val flight = SolvedFlight(SolverChoice.Tcp(at), link, patience = Span.ofSeconds(600))
+        val why    = Await.result(flight.start(), 30.seconds).swap.getOrElse(fail("it was flown"))
+        assert(clue(why).contains(s"no trusted connection to $at, "))
+        assert(clue(why).contains(who))
+
   test("a flight is decided by a solver over TLS"):
-    val desk = SolverDesk(
-      1,
-      "same",
-      Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
-      Clock.system,
-      system.dispatcher
-    )
-    val server   = Await.result(SolverServer.start(loopback, transport(Some(own)), desk), 20.seconds)
-    val settings = FlySettings(
-      List(LoopKind.Stream),
-      List(LatencyProfile.none),
-      duration = Span.ofSeconds(3),
-      period = Span.ofMillis(100),
-      seed = 7,
-      fallback = Fallback.Hover,
-      solver = Some(SolverChoice.Tcp(server.address))
-    )
-    val assembler = FlightAssembler(
-      TcpTransport(),
-      Clock.system,
-      settings,
-      None,
-      solvers = Solvers("same", _ => Right(TcpLink(transport(Some(own)), server.address)))
-    )
-    val plan     = settings.plans.last
-    val recorder = MemoryRecorder(assembler.heading(plan, "real"))
-    val flown    =
-      for
-        started <- assembler.start(plan, recorder)
-        landed  <- started.fold(fail(_), _.landed)
-        _       <- server.close()
-      yield landed.outcome
-    assertEquals(Await.result(flown, 60.seconds), Outcome.Completed)
-    assert(recorder.recording.solved.sizeIs > 10)
+    served(own): at =>
+      val flight = SolvedFlight(SolverChoice.Tcp(at), TcpLink(transport(Some(own)), at))
+      assertEquals(Await.result(flight.flown(), 60.seconds), Outcome.Completed)
+      assert(flight.recorder.recording.solved.sizeIs > 10)

@@ -193,7 +193,9 @@ final class FlightAssembler(
               .recoverWith:
                 case no: SolverClient.NoSolver =>
                   Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
-              .map(_ => Some(client))
+              .map: how =>
+                if plan.loop == LoopKind.Plan then how.warning.foreach(text => tell(s"${plan.id}: $text"))
+                Some(client)
 
   /** Who flies, with a policy that may learn. */
   private def learning(

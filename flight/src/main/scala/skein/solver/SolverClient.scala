@@ -3,7 +3,7 @@ package skein.solver
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{Future, Promise}
-import skein.loop.{Memory, Solved, Solver, TeamView}
+import skein.loop.{LoopKind, Memory, Solved, Solver, TeamView}
 import skein.record.EventKind
 import skein.solver.Exchange.{Counts, Verdict}
 import skein.units.*
@@ -31,7 +31,7 @@ final class SolverClient(
 
   private val hello   = MessageCodec.bytes(Message.Hello(flight, build, briefing))
   private val lock    = Object()
-  private val started = Promise[Unit]()
+  private val started = Promise[Welcomed]()
 
   // All below is guarded by the lock.
   private var exchange = Exchange.of(vehicles)
@@ -45,10 +45,10 @@ final class SolverClient(
   private val timer =
     system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
 
-  /** Completes when a solver has welcomed the flight; fails with [[SolverClient.NoSolver]] where one refuses, or none
+  /** Completes when a solver has welcomed the flight, with how; fails with [[SolverClient.NoSolver]] where one refuses, or none
     * answers within the patience.
     */
-  def ready(patience: Span): Future[Unit] =
+  def ready(patience: Span): Future[Welcomed] =
     val late = system.scheduler.scheduleOnce(patience.toDuration):
       val why = lock.synchronized(standing) match
         case Standing.Greeting(why) => why
@@ -99,7 +99,7 @@ final class SolverClient(
     case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
     case Right(message) =>
       message match
-        case Message.Welcome(`flight`, _)                    => welcomed()
+        case Message.Welcome(`flight`, _, byVectors)         => welcomed(Welcomed(byVectors))
         case Message.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case Message.Unknown(`flight`)                       => again("it does not know this flight")
         case Message.Tell(answer) if answer.flight == flight => heard(answer)
@@ -181,12 +181,15 @@ final class SolverClient(
       lock.synchronized:
         if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(reason)
 
-  private def welcomed(): Unit =
+  private def welcomed(how: Welcomed): Unit =
     val isNew = lock.synchronized:
       val was = standing
       standing = Standing.Welcome
       was != Standing.Welcome
-    if isNew && !started.trySuccess(()) then note(EventKind.Reconnected, None, "a solver is there again")
+    if isNew && !started.trySuccess(how) then
+      val again =
+        "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
+      note(EventKind.Reconnected, None, again.mkString("; "))
 
   private def refused(why: String): Unit =
     lock.synchronized:
@@ -197,6 +200,17 @@ object SolverClient:
   private val GreetEvery = Span.ofMillis(500)
 
   private val Silent = "nobody has answered; is ./skein decide started?"
+
+  /** By whom a flight is decided for.
+    *
+    * @param byVectors
+    *   whether its plans are searched by the JDK's vectors
+    */
+  final case class Welcomed(byVectors: Boolean):
+    /** For a flight that plans. */
+    def warning: Option[String] = Option.when(!byVectors)(
+      "the solver runs without jdk.incubator.vector, so candidates are flown one by one, some fifty times fewer"
+    )
 
   /** Nobody decides: why. */
   final case class NoSolver(reason: String) extends RuntimeException(reason, null, false, false):

@@ -4,6 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
+import skein.planning.Planner
 import skein.units.*
 
 /** A solver: decides for every flight that it welcomes, whatever link its questions come over.
@@ -20,6 +21,8 @@ import skein.units.*
   *   what is decided on
   * @param takes
   *   by how much an answer is held up, for trials
+  * @param byVectors
+  *   whether it searches plans by vectors, as it tells flights
   */
 final class SolverDesk(
     id: Long,
@@ -28,7 +31,8 @@ final class SolverDesk(
     clock: Clock,
     workers: ExecutionContext,
     takes: Question => Span = _ => Span.Zero,
-    told: String => Unit = _ => ()
+    told: String => Unit = _ => (),
+    byVectors: Boolean = Planner.isFast
 )(using system: ActorSystem):
   import SolverDesk.*
 
@@ -86,7 +90,7 @@ final class SolverDesk(
     if known then
       lock.synchronized:
         sessions = sessions.updatedWith(flight)(_.map(_.copy(reply = reply)))
-      answer(Message.Welcome(flight, id))
+      answer(Message.Welcome(flight, id, byVectors))
     else if theirs != build then
       no(
         s"this solver is build $build, the flight's program is build $theirs; start both from the same program"
@@ -107,7 +111,7 @@ final class SolverDesk(
                 told(
                   s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles"
                 )
-                answer(Message.Welcome(flight, id))
+                answer(Message.Welcome(flight, id, byVectors))
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)

@@ -9,11 +9,11 @@ import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Framing, Keep, Sink, So
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{Future, Promise}
 import scala.util.{Failure, Success, Try}
-import skein.link.{Address, Transport}
+import skein.link.{Address, Transport, TransportError}
 import skein.units.Span
 
 /** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same over sockets
-  * and in virtual time.
+  * and in virtual time. Where one side does not trust the other, twice and before any message came, it is refused.
   */
 final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem) extends MessageLink:
   import TcpLink.*
@@ -30,6 +30,8 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
     private val closed = Promise[Done]()
 
     @volatile private var isClosing = false
+    @volatile private var hasHeard  = false
+    @volatile private var mistrusts = 0
     @volatile private var whyDown   = s"no connection to $to yet"
 
     def connect(): Unit =
@@ -38,7 +40,9 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
         .via(switch.flow)
         .viaMat(framed.joinMat(transport.connect(to))(Keep.right))(Keep.both)
         .via(switch.flow)
-        .toMat(Sink.foreach(message => received(message.toArrayUnsafe())))(Keep.both)
+        .toMat(Sink.foreach: message =>
+          hasHeard = true
+          received(message.toArrayUnsafe()))(Keep.both)
         .run()
       connected.foreach: _ =>
         queue.set(Some(out))
@@ -49,7 +53,14 @@ final class TcpLink(transport: Transport, to: Address)(using system: ActorSystem
         whyDown = result match
           case Failure(error) => error.getMessage
           case Success(_)     => s"the solver at $to closed the connection"
+        // A solver that goes away in the middle of a handshake looks like this, too; but not twice.
+        mistrusts = result match
+          case Failure(_: TransportError.NotTrusted) if !hasHeard => mistrusts + 1
+          case _                                                  => 0
         if isClosing then closed.trySuccess(Done): Unit
+        else if mistrusts == MostMistrusts then
+          closed.trySuccess(Done): Unit
+          news(LinkNews.Refused(whyDown))
         else
           if wasUp then news(LinkNews.Down(whyDown))
           after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
@@ -81,8 +92,9 @@ object TcpLink:
   /** Messages of one side that wait until they are sent. */
   private[solver] val MostWaiting = 256
 
-  private val TryEvery    = Span.ofMillis(200)
-  private val CloseWithin = Span.ofMillis(500)
+  private val TryEvery      = Span.ofMillis(200)
+  private val CloseWithin   = Span.ofMillis(500)
+  private val MostMistrusts = 2
 
   /** A message behind its length. */
   private[solver] val framed: BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =

@@ -93,7 +93,11 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(fleet, plan.fleet(flown))
 
   /** What a flight is told by a desk of this build for a briefing. */
-  private def welcomed(briefing: Briefing, build: String = "ours"): Either[String, Unit] =
+  private def welcomed(
+      briefing: Briefing,
+      build: String = "ours",
+      byVectors: Boolean = true
+  ): Either[String, SolverClient.Welcomed] =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -106,7 +110,8 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
           "ours",
           Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
           clock,
-          system.dispatcher
+          system.dispatcher,
+          byVectors = byVectors
         )
         for
           _ <- SolverServer.start(at, network.host("solver"), desk)
@@ -119,7 +124,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
 
   test("a solver of another build, scenario or policy refuses, and says what differs"):
     val briefing = Briefing.of(settings, settings.plans.last)
-    assertEquals(welcomed(briefing), Right(()))
+    assertEquals(welcomed(briefing), Right(SolverClient.Welcomed(byVectors = true)))
     assertEquals(
       welcomed(briefing, build = "theirs"),
       Left(
@@ -130,6 +135,10 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assert(unknown.left.exists(_.startsWith("the solver refuses: ")), unknown)
     val other = welcomed(briefing.copy(agents = briefing.agents.map(_.replace("PaperPursuer", "Ambush"))))
     assert(other.left.exists(_.contains("the scenario is another here: the flight has Pursuer")), other)
+
+  test("a solver without vectors says so, for flights that plan"):
+    val told = welcomed(Briefing.of(settings, settings.plans.last), byVectors = false).map(_.warning)
+    assert(told.exists(_.exists(_.contains("jdk.incubator.vector"))), told)
 
   test("where no solver is, a flight waits for as long as it is told to, and says where it looked"):
     val run = VirtualTime.run(seed = 1): system =>

@@ -153,7 +153,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
 
   private val message: Gen[Message] = Gen.oneOf(
     Gen.zip(Gen.long, text, briefing).map(Message.Hello(_, _, _)),
-    pair.map(Message.Welcome(_, _)),
+    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(Message.Welcome(_, _, _)),
     Gen.zip(Gen.long, text).map(Message.Refused(_, _)),
     Gen.long.map(Message.Unknown(_)),
     question.map(Message.Ask(_)),
@@ -184,10 +184,10 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
     forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => MessageCodec.message(bytes).isLeft || bytes.length > 9)
 
   test("a mistake says what was expected and what came"):
-    val welcome = MessageCodec.bytes(Message.Welcome(1, 2))
+    val welcome = MessageCodec.bytes(Message.Welcome(1, 2, true))
     assertEquals(
       MessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 3 of the solver's protocol, came version 9")
+      Left("expected messages of version 4 of the solver's protocol, came version 9")
     )
     assertEquals(
       MessageCodec.message(welcome.updated(1, 42.toByte)),

@@ -4,16 +4,14 @@ import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
-import skein.flight.{FlightAssembler, Solvers}
-import skein.link.{Address, TcpTransport}
-import skein.loop.{Fallback, LoopKind, Outcome, Replay}
+import skein.flight.SolvedFlight
+import skein.link.Address
+import skein.loop.{LoopKind, Outcome, Replay}
 import skein.measure.SolverSummary
 import skein.policy.Action
 import skein.record.{EventKind, MemoryRecorder, Recording}
 import skein.scenario.Scenarios
-import skein.settings.{FlySettings, RecordedPlan, SolverChoice}
-import skein.signal.LatencyProfile
-import skein.solver.*
+import skein.settings.{RecordedPlan, SolverChoice}
 import skein.testing.Unhurried
 import skein.units.*
 
@@ -46,38 +44,19 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
       at: Address,
       repeats: Int = 1
   )(meanwhile: MemoryRecorder => Unit): Recording =
-    val topics   = KafkaTopics(at, prefix)()
-    val settings = FlySettings(
-      List(LoopKind.Predictive),
-      List(LatencyProfile.none),
-      duration = Span.ofSeconds(120),
-      period = Span.ofMillis(100),
-      seed = 7,
-      fallback = Fallback.Hover,
-      solver = Some(SolverChoice.Kafka(at, prefix))
+    val topics  = KafkaTopics(at, prefix)()
+    val solvers = (1 to repeats).map(id => KafkaSolver(topics, SolvedFlight.desk(id), _ => ()))
+    val flight  = SolvedFlight(
+      SolverChoice.Kafka(at, prefix),
+      KafkaLink(topics),
+      LoopKind.Predictive,
+      duration = Span.ofSeconds(120)
     )
-    val solvers = (1 to repeats).map: id =>
-      val desk = SolverDesk(
-        id,
-        "same",
-        Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
-        Clock.system,
-        system.dispatcher
-      )
-      KafkaSolver(topics, desk, _ => ())
     Await.result(Future.traverse(solvers)(_.start()), 60.seconds): Unit
-    val assembler = FlightAssembler(
-      TcpTransport(),
-      Clock.system,
-      settings,
-      None,
-      solvers = Solvers("same", _ => Right(KafkaLink(topics)))
-    )
-    val plan     = settings.plans.last
-    val recorder = MemoryRecorder(assembler.heading(plan, "real"))
+    val recorder = flight.recorder
     val outcome  =
       for
-        started <- assembler.start(plan, recorder)
+        started <- flight.start()
         flying = started.fold(fail(_), identity)
         _      <- Future(blocking(meanwhile(recorder))).andThen(_ => flying.stop("seen enough"))
         landed <- flying.landed

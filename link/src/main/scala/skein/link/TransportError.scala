@@ -36,10 +36,16 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
   /** One side does not trust the other, or shows nothing to be trusted by. */
   case NotTrusted(at: Address, reason: Throwable)
       extends TransportError(
-        s"no trusted connection to $at: ${reason.getMessage}; expected certificates of one set at both sides, which name the host",
+        s"no trusted connection to $at, ${TransportError.whoRefuses(reason)}: ${reason.getMessage}; expected certificates of one set at both sides, which name the host",
         reason
       )
 
   /** Anything else on the way to a connection. */
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)
+
+object TransportError:
+  /** By how the JDK's TLS words it. */
+  private def whoRefuses(reason: Throwable): String =
+    if s"${reason.getMessage}".contains("Received fatal alert") then "which refuses what this side shows"
+    else "whose side is refused here"

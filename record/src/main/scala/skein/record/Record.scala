@@ -17,9 +17,9 @@ sealed trait Record
 object Record:
   /** The large part of an image or a cloud. */
   def blobOf(record: Record): Option[Blob] = record match
-    case picture: CameraImage => Some(picture.pixels)
-    case cloud: Cloud         => Some(cloud.xyz)
-    case _                    => None
+    case image: CameraImage => Some(image.pixels)
+    case cloud: Cloud       => Some(cloud.xyz)
+    case _                  => None
 
 /** What was flown: exactly one row a recording.
   *

@@ -1,0 +1,65 @@
+package skein.flight
+
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.TcpTransport
+import skein.loop.{Fallback, LoopKind, Outcome}
+import skein.record.MemoryRecorder
+import skein.scenario.Scenarios
+import skein.settings.{FlySettings, SolverChoice}
+import skein.signal.LatencyProfile
+import skein.solver.*
+import skein.units.*
+
+/** A duel that is flown live and decided by a solver alone: what tests of the links between the two share.
+  *
+  * @param link
+  *   to the solver
+  */
+final class SolvedFlight(
+    by: SolverChoice,
+    link: MessageLink,
+    loop: LoopKind = LoopKind.Stream,
+    duration: Span = Span.ofSeconds(3),
+    patience: Span = Span.ofSeconds(30),
+    changed: FlySettings => FlySettings = identity
+)(using system: ActorSystem):
+  val settings: FlySettings = changed(FlySettings(
+    List(loop),
+    List(LatencyProfile.none),
+    duration,
+    period = Span.ofMillis(100),
+    seed = 7,
+    fallback = Fallback.Hover,
+    solver = Some(by)
+  ))
+  private val plan      = settings.plans.last
+  private val assembler = FlightAssembler(
+    TcpTransport(),
+    Clock.system,
+    settings,
+    None,
+    workers = _ => throw AssertionError("the flight's own process was to plan"),
+    solvers = Solvers(SolvedFlight.Build, _ => Right(link), patience)
+  )
+  val briefing: Briefing       = Briefing.of(settings, plan)
+  val recorder: MemoryRecorder = MemoryRecorder(assembler.heading(plan, "real"))
+
+  /** @return or why it is not flown */
+  def start(): Future[Either[String, FlightAssembly]] = assembler.start(plan, recorder)
+
+  def flown(): Future[Outcome] =
+    given ExecutionContext = system.dispatcher
+    start().flatMap(_.fold(why => throw AssertionError(why), _.landed)).map(_.outcome)
+
+object SolvedFlight:
+  /** Of both programs. */
+  val Build = "same"
+
+  def desk(id: Long = 1)(using system: ActorSystem)(using Scenarios): SolverDesk = SolverDesk(
+    id,
+    Build,
+    Briefing.plan(_).map(FlightDeciders.of(_, FlightAssembler.threads)),
+    Clock.system,
+    system.dispatcher
+  )
