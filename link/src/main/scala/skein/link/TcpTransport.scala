@@ -1,5 +1,6 @@
 package skein.link
 
+import java.io.IOException
 import java.net.{BindException, ConnectException, InetSocketAddress, UnknownHostException}
 import javax.net.ssl.{SSLContext, SSLEngine, SSLException}
 import org.apache.pekko.Done
@@ -108,16 +109,20 @@ object TcpTransport:
     engine.setSSLParameters(asked)
     engine
 
-  private type Explain = PartialFunction[Throwable, Throwable]
+  private[link] type Explain = PartialFunction[Throwable, Throwable]
 
-  private def connectError(to: Address, timeout: Span): Explain =
+  /** What a connection's failure means, in the words of [[TransportError]]. */
+  private[link] def connectError(to: Address, timeout: Span): Explain =
     case e: StreamTcpException => e.getCause match
         case c: ConnectException if c.getMessage.startsWith("Connect timeout") =>
           TransportError.NoAnswer(to, timeout)
         case _: ConnectException                                  => TransportError.NobodyListens(to)
         case null                                                 => TransportError.Lost(to, e.getMessage)
         case c if rootCause(c).isInstanceOf[UnknownHostException] => TransportError.UnknownHost(to)
-        case c                                                    => TransportError.Failed(to, c)
+        // The other side may accept and reset before this one has seen that it is connected.
+        case c: IOException if Option(c.getMessage).exists(_.startsWith("Connection reset")) =>
+          TransportError.Lost(to, c.getMessage)
+        case c => TransportError.Failed(to, c)
     case e: SSLException => TransportError.NotTrusted(to, e)
 
   private def listenError(at: Address): Explain =

@@ -2,6 +2,7 @@ package skein.link
 
 import java.net.{InetAddress, ServerSocket}
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.StreamTcpException
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
@@ -108,6 +109,14 @@ class TcpTransportLiveSuite extends munit.FunSuite:
     yield error match
       case TransportError.Lost(to, _) => assertEquals(to, server.address)
       case other                      => fail(s"expected Lost, got $other")
+
+  test("a connection that is reset before this side has seen it made is lost too"):
+    val to    = Address("127.0.0.1", 41451)
+    val reset = StreamTcpException("").initCause(java.io.IOException("Connection reset by peer"))
+    assertEquals(
+      TcpTransport.connectError(to, Span.ofSeconds(1))(reset),
+      TransportError.Lost(to, "Connection reset by peer")
+    )
 
   test("after close a listener accepts no more, and open connections go on"):
     for
