@@ -44,7 +44,7 @@ val publishCheck = taskKey[Unit]("fails where a part lacks what a release needs"
 
 // No sockets, no wall clock, no whole flights: for while one works. `test` has all that is not lengthy.
 addCommandAlias("testQuick", "testOnly *Suite *Laws *Golden -*LiveSuite")
-addCommandAlias("testAll", "python/testedWheel; testOnly *")
+addCommandAlias("testAll", "cli/stage; python/testedWheel; testOnly *")
 
 lazy val root =
   project

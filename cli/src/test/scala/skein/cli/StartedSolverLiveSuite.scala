@@ -1,0 +1,52 @@
+package skein.cli
+
+import java.io.File
+import java.nio.file.{Files, Path}
+import java.util.concurrent.TimeUnit
+import skein.testing.{Lengthy, TemporaryFolders}
+
+/** `decide` and `fly` as two programs that the launcher's script starts, as it is made by `cli/stage`: what it leaves out
+  * of their command lines, no test within a process sees.
+  */
+class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
+  private val launcher = Iterator
+    .iterate(File("").getAbsoluteFile)(_.getParentFile)
+    .find(File(_, "sbtw").exists)
+    .get
+    .toPath
+    .resolve("cli/target/universal/stage/bin/skein")
+
+  private lazy val scratch = temporaryFolder()
+
+  private def started(name: String, words: String*): (Process, Path) =
+    val log     = scratch.resolve(s"$name.log")
+    val builder =
+      ProcessBuilder(launcher.toString +: words*).redirectErrorStream(true).redirectOutput(log.toFile)
+    builder.environment.put("JAVA_HOME", sys.props("java.home")): Unit
+    (builder.start(), log)
+
+  /** Asks again and again, since the other process tells by its log alone when it has come so far. */
+  private def addressIn(log: Path, of: Process): String =
+    val said     = """decides at (tcp://\S+);""".r
+    val deadline = System.nanoTime + TimeUnit.MINUTES.toNanos(2)
+    def found    = said.findFirstMatchIn(Files.readString(log)).map(_.group(1))
+    while found.isEmpty && of.isAlive && System.nanoTime < deadline do Thread.sleep(20)
+    found.getOrElse(fail(s"no address in what the solver said: ${Files.readString(log)}"))
+
+  test("a flight's manoeuvres are planned by a solver of another process, with the JDK's vectors"):
+    assume(Files.exists(launcher), "./sbtw cli/stage makes the launcher")
+    val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")
+    try
+      val (flight, flightLog) = started(
+        "fly",
+        ("fly --loop plan --link none --duration 3s --deadline 400ms --twins 0 --solver " +
+          addressIn(solverLog, solver) + " --out " + scratch.resolve("flown")).split(' ')*
+      )
+      try assert(flight.waitFor(3, TimeUnit.MINUTES), Files.readString(flightLog))
+      finally flight.destroyForcibly(): Unit
+      val told = Files.readString(flightLog)
+      assertEquals(flight.exitValue, 0, told)
+      assert(clue(told).contains("plan, solver"))
+      assert(!told.contains("jdk.incubator.vector,"), told)
+      assert(clue(Files.readString(solverLog)).contains("has ended"))
+    finally solver.destroyForcibly(): Unit
