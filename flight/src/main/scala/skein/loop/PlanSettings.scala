@@ -1,5 +1,6 @@
 package skein.loop
 
+import scala.compiletime.ops.int.-
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
 import skein.planning.*
@@ -165,7 +166,7 @@ object PlanSettings:
   private val words: Vector[(String, Word[Any])] =
     constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
       summonAll[Tuple.Map[
-        Tuple.Take[mirror.MirroredElemTypes, 12],
+        Tuple.Take[mirror.MirroredElemTypes, Tuple.Size[mirror.MirroredElemTypes] - 2],
         Word
       ]].toList.asInstanceOf[List[Word[Any]]]
     )

@@ -9,7 +9,7 @@ final class DuelAgents extends TimetableAgents {
   private final float[] effort;
   private final float startHeading;
   private final int self;
-  private final LaneObservation sight;
+  private final LaneObservation observation;
 
   /** Whether somebody outside looks at what it sees. */
   private final boolean isTold;
@@ -29,7 +29,7 @@ final class DuelAgents extends TimetableAgents {
       LaneDynamics model,
       LanePolicy policy,
       float[] effort,
-      LaneObservation sight,
+      LaneObservation observation,
       boolean isTold,
       CameraTrackerLanes eye) {
     super(model.vehicles(duelist));
@@ -38,7 +38,7 @@ final class DuelAgents extends TimetableAgents {
     this.self = self;
     this.policy = policy;
     this.effort = effort;
-    this.sight = sight;
+    this.observation = observation;
     startHeading = (float) duelist.startHeadingRad();
   }
 
@@ -84,10 +84,10 @@ final class DuelAgents extends TimetableAgents {
       int number) {
     if (eye == null) {
       see(all, views, view, times, number);
-      policy.decide(sight, headings, before, all[1 - self].headings, known, headings, after);
+      policy.decide(observation, headings, before, all[1 - self].headings, known, headings, after);
     } else {
       believe(views[view + self] * WORLDS, times, number);
-      policy.decide(sight, headings, before, eye.heading(), 0, headings, after);
+      policy.decide(observation, headings, before, eye.heading(), 0, headings, after);
     }
     policy.commit(effort);
   }
@@ -97,31 +97,31 @@ final class DuelAgents extends TimetableAgents {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
-    sight.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
-    sight.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
+    observation.see(LaneObservation.X, theirs.seenX, opponentSeen, ours.seenX, ownSeen);
+    observation.see(LaneObservation.Y, theirs.seenY, opponentSeen, ours.seenY, ownSeen);
     if (needsVelocity()) {
-      sight.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
-      sight.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
+      observation.see(LaneObservation.VX, theirs.seenVx, opponentSeen, ours.seenVx, ownSeen);
+      observation.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
     }
-    Arrays.fill(sight.elapsed, times[number]);
+    Arrays.fill(observation.elapsed, times[number]);
     if (needsAges()) {
-      Arrays.fill(sight.ownAge, times[number + 1]);
-      Arrays.fill(sight.opponentAge, times[number + 2]);
+      Arrays.fill(observation.ownAge, times[number + 1]);
+      Arrays.fill(observation.opponentAge, times[number + 2]);
     }
   }
 
   /** The same by what is believed. */
   private void believe(int ownSeen, float[] times, int number) {
     eye.look(vehicles, ownSeen, times[number + 2], times[number + 3]);
-    sight.seeFromOwn(LaneObservation.X, eye.northM());
-    sight.seeFromOwn(LaneObservation.Y, eye.eastM());
+    observation.seeFromOwn(LaneObservation.X, eye.northM());
+    observation.seeFromOwn(LaneObservation.Y, eye.eastM());
     if (needsVelocity()) {
-      sight.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
-      sight.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
+      observation.see(LaneObservation.VX, eye.northMps(), 0, vehicles.seenVx, ownSeen);
+      observation.see(LaneObservation.VY, eye.eastMps(), 0, vehicles.seenVy, ownSeen);
     }
-    Arrays.fill(sight.elapsed, times[number]);
-    Arrays.fill(sight.ownAge, times[number + 1]);
-    System.arraycopy(eye.ageS(), 0, sight.opponentAge, 0, WORLDS);
+    Arrays.fill(observation.elapsed, times[number]);
+    Arrays.fill(observation.ownAge, times[number + 1]);
+    System.arraycopy(eye.ageS(), 0, observation.opponentAge, 0, WORLDS);
   }
 
   @Override

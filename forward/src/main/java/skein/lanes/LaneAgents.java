@@ -56,7 +56,7 @@ final class LaneAgents {
   private int now;
 
   private final int[] drawn = new int[2 * LANES];
-  private final LaneObservation sight = new LaneObservation();
+  private final LaneObservation observation = new LaneObservation();
 
   /** What was sent last and before that, what was decided last, and what is now. */
   final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
@@ -150,11 +150,11 @@ final class LaneAgents {
       see(LaneObservation.VY, opponents, LaneVehicles.SEEN_VY);
     }
     if (policy.needsAges()) {
-      age(readAt[self], sight.ownAge);
-      age(readAt[1 - self], sight.opponentAge);
+      age(readAt[self], observation.ownAge);
+      age(readAt[1 - self], observation.opponentAge);
     }
     if (!together) know(opponents, vectors, offers.joinedAt);
-    policy.decide(sight, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
+    policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
   }
 
   /** What the opponent sends after the offer was made is not known in it. */
@@ -176,7 +176,7 @@ final class LaneAgents {
   }
 
   private void see(int what, LaneAgents opponents, int from) {
-    sight.see(what, opponents.vehicles.state, from, vehicles.state, from);
+    observation.see(what, opponents.vehicles.state, from, vehicles.state, from);
   }
 
   /** When each decides and sends. */
@@ -206,7 +206,7 @@ final class LaneAgents {
       zero.blend(
               ((FloatVector) many.convertShape(VectorOperators.I2F, SPECIES, 0)).fma(longS, rest),
               many.compare(LT, never).cast(SPECIES))
-          .intoArray(sight.elapsed, i);
+          .intoArray(observation.elapsed, i);
     }
   }
 

@@ -78,12 +78,12 @@ class LanePolicy {
     for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
-  /** Whether it looks at the velocities of the sight. */
+  /** Whether it looks at the velocities of the observation. */
   boolean needsVelocity() {
     return form.needsVelocity();
   }
 
-  /** Whether it asks how old the sight's readings are. */
+  /** Whether it asks how old the observation's readings are. */
   boolean needsAges() {
     return form.needsAges();
   }
@@ -94,7 +94,7 @@ class LanePolicy {
    * what they differ by from the own.
    */
   void decide(
-      LaneObservation sight,
+      LaneObservation observation,
       Directions own,
       int ownAt,
       Directions known,
@@ -103,17 +103,17 @@ class LanePolicy {
       int intoAt) {
     // In the order of PolicyLanes.In, then of the outputs.
     for (int i = 0; i < LaneObservation.READ; i++) {
-      set(i, sight.opponent[i], sight.opponentAt[i]);
-      set(arrays.length - LaneObservation.READ + i, sight.own[i], sight.ownAt[i]);
+      set(i, observation.opponent[i], observation.opponentAt[i]);
+      set(arrays.length - LaneObservation.READ + i, observation.own[i], observation.ownAt[i]);
     }
-    set(4, sight.elapsed, 0);
+    set(4, observation.elapsed, 0);
     set(5, own.cos, ownAt);
     set(6, own.sin, ownAt);
     set(7, known.cos, knownAt);
     set(8, known.sin, knownAt);
     set(9, heading, 0);
-    set(10, sight.ownAge, 0);
-    set(11, sight.opponentAge, 0);
+    set(10, observation.ownAge, 0);
+    set(11, observation.opponentAge, 0);
     int outputs = form.inputs(), memories = form.memories();
     for (int i = 0; i < memories; i++) {
       set(12 + i, memory, i * WORLDS);
@@ -123,7 +123,7 @@ class LanePolicy {
     set(outputs + 1, into.sin, intoAt);
     set(outputs + 2, turned, 0);
     if (form.keepsHeading()) set(outputs + 3 + memories, newHeading, 0);
-    seen = sight;
+    seen = observation;
     function.apply(arrays, offsets, parameters, scratch);
   }
 

@@ -28,7 +28,7 @@ public final class SteppedDuels implements TimetableScores {
 
   private final LanePolicy[] policies;
   private final DuelAgents[] agents;
-  private final LaneObservation sight = new LaneObservation();
+  private final LaneObservation observation = new LaneObservation();
   private final float[] north = new float[WORLDS], east = new float[WORLDS];
   private final boolean[] isOutside;
   private final TimetableKernel kernel;
@@ -60,8 +60,8 @@ public final class SteppedDuels implements TimetableScores {
     float[] effort = new float[WORLDS];
     agents =
         new DuelAgents[] {
-          new DuelAgents(0, duel.evader(), model, policies[0], effort, sight, isOutside[0], null),
-          new DuelAgents(1, duel.pursuer(), model, policies[1], effort, sight, isOutside[1], null)
+          new DuelAgents(0, duel.evader(), model, policies[0], effort, observation, isOutside[0], null),
+          new DuelAgents(1, duel.pursuer(), model, policies[1], effort, observation, isOutside[1], null)
         };
     kernel = new TimetableKernel(agents, this);
   }
@@ -153,16 +153,16 @@ public final class SteppedDuels implements TimetableScores {
         operation * Timetable.Numbers());
     Directions own = agents[vehicle].headings, theirs = agents[1 - vehicle].headings;
     int known = operations[field + 3] * WORLDS, before = operations[field + 4] * WORLDS;
-    sight.difference(LaneObservation.X, north);
-    sight.difference(LaneObservation.Y, east);
+    observation.difference(LaneObservation.X, north);
+    observation.difference(LaneObservation.Y, east);
     turn(north, east, 0, own, before, into, 0);
-    sight.difference(LaneObservation.VX, north);
-    sight.difference(LaneObservation.VY, east);
+    observation.difference(LaneObservation.VX, north);
+    observation.difference(LaneObservation.VY, east);
     turn(north, east, 0, own, before, into, 2 * WORLDS);
     turn(theirs.cos, theirs.sin, known, own, before, into, 4 * WORLDS);
-    System.arraycopy(sight.elapsed, 0, into, 6 * WORLDS, WORLDS);
-    System.arraycopy(sight.ownAge, 0, into, 7 * WORLDS, WORLDS);
-    System.arraycopy(sight.opponentAge, 0, into, 8 * WORLDS, WORLDS);
+    System.arraycopy(observation.elapsed, 0, into, 6 * WORLDS, WORLDS);
+    System.arraycopy(observation.ownAge, 0, into, 7 * WORLDS, WORLDS);
+    System.arraycopy(observation.opponentAge, 0, into, 8 * WORLDS, WORLDS);
   }
 
   /** North and east, as ahead and to the right of a direction. */

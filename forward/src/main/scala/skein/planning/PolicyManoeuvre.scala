@@ -8,14 +8,14 @@ object PolicyManoeuvre:
   /** The policy is asked before each step of the horizon, where the vehicle has then flown under its answers, and all
     * others straight on. Its headings are met as fast as the limits allow.
     *
-    * @param sight
+    * @param observation
     *   at the beginning
     * @param situation
     *   of the same vehicle at the same moment
     */
   def of(
       policy: TeamPolicy,
-      sight: TeamObservation,
+      observation: TeamObservation,
       situation: Situation,
       limits: Limits,
       steps: Int,
@@ -24,16 +24,16 @@ object PolicyManoeuvre:
     val flyer           = ManoeuvreRollout.Flyer(situation.own, situation.response, dtS)
     val (turns, speeds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
     var heading         = situation.headingRad
-    def ownIn(values: IArray[Double], own: Double) = values.updated(sight.self, own)
+    def ownIn(values: IArray[Double], own: Double) = values.updated(observation.self, own)
     for step <- 0 until steps do
       val aheadS = step * dtS
       val turnS  = if step == 0 then situation.sinceDecisionS else dtS
       val course = policy.course(
-        sight.copy(
-          northM = ownIn(later(sight.northM, sight.northMps, aheadS), flyer.x),
-          eastM = ownIn(later(sight.eastM, sight.eastMps, aheadS), flyer.y),
-          northMps = ownIn(sight.northMps, flyer.vx),
-          eastMps = ownIn(sight.eastMps, flyer.vy),
+        observation.copy(
+          northM = ownIn(later(observation.northM, observation.northMps, aheadS), flyer.x),
+          eastM = ownIn(later(observation.eastM, observation.eastMps, aheadS), flyer.y),
+          northMps = ownIn(observation.northMps, flyer.vx),
+          eastMps = ownIn(observation.eastMps, flyer.vy),
           headingRad = heading,
           elapsedS = turnS
         )

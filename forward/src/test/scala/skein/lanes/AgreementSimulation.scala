@@ -130,7 +130,7 @@ object AgreementSimulation:
     val made: ArrayBuffer[Made] = ArrayBuffer.empty
 
     override def decide(
-        sight: LaneObservation,
+        observation: LaneObservation,
         own: Directions,
         ownAt: Int,
         known: Directions,
@@ -138,7 +138,7 @@ object AgreementSimulation:
         into: Directions,
         intoAt: Int
     ): Unit =
-      super.decide(sight, own, ownAt, known, knownAt, into, intoAt)
+      super.decide(observation, own, ownAt, known, knownAt, into, intoAt)
       made += Made(lastInputs, lastOutputs)
 
   /** Notes what a policy sees, and answers as it does. */

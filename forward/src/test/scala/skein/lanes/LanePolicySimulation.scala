@@ -23,12 +23,12 @@ class LanePolicySimulation extends munit.FunSuite:
   // In few worlds a rounding error decides between two ways.
   for (name, draw) <- families do
     test(s"$name decides by lanes as the scalar policy does"):
-      val random         = SplitMix64(11)
-      val (sight, lanes) = (LaneObservation(), LanePolicy.of(draw(random)))
-      val (own, known)   = (Directions(worlds), Directions(worlds))
-      val into           = Directions(worlds)
-      val read           = Vector.fill(LaneObservation.READ)(Array.ofDim[Float](worlds))
-      for (numbers, what) <- read.zipWithIndex do sight.seeFromOwn(what, numbers)
+      val random               = SplitMix64(11)
+      val (observation, lanes) = (LaneObservation(), LanePolicy.of(draw(random)))
+      val (own, known)         = (Directions(worlds), Directions(worlds))
+      val into                 = Directions(worlds)
+      val read                 = Vector.fill(LaneObservation.READ)(Array.ofDim[Float](worlds))
+      for (numbers, what) <- read.zipWithIndex do observation.seeFromOwn(what, numbers)
       var off = Vector.empty[Double]
       for _ <- 1 to 8 do
         def uniform(most: Double) = most * (2 * random.nextDouble() - 1)
@@ -38,11 +38,11 @@ class LanePolicySimulation extends munit.FunSuite:
         for (policy, world) <- policies.zipWithIndex do
           lanes.take(world, policy)
           for (numbers, most) <- read.zip(Seq(25, 25, 12, 12)) do numbers(world) = uniform(most).toFloat
-          sight.elapsed(world) = (0.1 * random.nextDouble()).toFloat
+          observation.elapsed(world) = (0.1 * random.nextDouble()).toFloat
           known.fill(world, world + 1, knownHeadings(world))
         own.fill(0, worlds, ownHeading)
         lanes.start(ownHeading.toFloat)
-        lanes.decide(sight, own, 0, known, 0, into, 0)
+        lanes.decide(observation, own, 0, known, 0, into, 0)
         off = off ++ policies.zipWithIndex.map: (policy, world) =>
           val heading = policy.heading(
             read(0)(world),
@@ -51,7 +51,7 @@ class LanePolicySimulation extends munit.FunSuite:
             read(3)(world),
             ownHeading,
             knownHeadings(world),
-            sight.elapsed(world)
+            observation.elapsed(world)
           )
           val apart  = math.hypot(into.cos(world) - math.cos(heading), into.sin(world) - math.sin(heading))
           val turned = math.abs(math.IEEEremainder(heading - ownHeading, 2 * math.Pi))

@@ -4,13 +4,13 @@ import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.vehicle.ReducedModel
 
 class PolicyManoeuvreSuite extends munit.FunSuite:
-  private val situation = Situation(Motion(1, 2, 3, 0), 0, 0.1, ReducedModel.airSimAt(5), Vector.empty)
-  private val sight     =
+  private val situation   = Situation(Motion(1, 2, 3, 0), 0, 0.1, ReducedModel.airSimAt(5), Vector.empty)
+  private val observation =
     TeamObservation(0, IArray(1.0, 20.0), IArray(2.0, 0.0), IArray(3.0, 0.0), IArray(0.0, 5.0), 0, 0.1)
   private val limits = Limits(0, 6, 4)
 
   private def flown(policy: TeamPolicy): Manoeuvre =
-    PolicyManoeuvre.of(policy, sight, situation, limits, steps = 30, dtS = 0.1)
+    PolicyManoeuvre.of(policy, observation, situation, limits, steps = 30, dtS = 0.1)
 
   test(
     "a course is turned to as fast as the limits allow, by the shorter way, and no faster than they allow"
