@@ -18,6 +18,14 @@ def check(what, holds, found=None):
     print(f"ok: {what}" + ("" if found is None else f" ({found})"))
 
 
+def comes_to(what, holds, within_s=20):
+    """Checks what is so after a while, however busy the machine is."""
+    until = time.monotonic() + within_s
+    while not holds() and time.monotonic() < until:
+        time.sleep(0.02)
+    check(what, holds())
+
+
 def passed():
     print(f"PASSED {checks} checks in {time.monotonic() - started:.1f} s")
 

@@ -4,7 +4,7 @@ import sys
 import time
 
 import airsim
-from checking import arrives, check, near, passed, refusal
+from checking import arrives, check, comes_to, near, passed, refusal
 
 
 def place(vector):
@@ -41,11 +41,13 @@ for x, y in [(5, 0), (5, 5), (0, 5), (0, 0)]:
 
 # State and sensors
 client.hoverAsync().join()
-time.sleep(2)
+comes_to(
+    "stands in the air",
+    lambda: client.simGetGroundTruthKinematics().linear_velocity.get_length() < 0.05,
+)
 state = client.getMultirotorState()
 truth = client.simGetGroundTruthKinematics()
 pose = client.simGetVehiclePose()
-check("stands in the air", truth.linear_velocity.get_length() < 0.3, place(truth.linear_velocity))
 check("estimate is the truth", state.kinematics_estimated.position.distance_to(truth.position) < 0.1)
 check("pose is the truth", pose.position.distance_to(truth.position) < 0.1)
 check("orientation is a rotation", near(pose.orientation.get_length(), 1, 1e-5))
@@ -131,8 +133,9 @@ check("lands", client.landAsync().get() is True)
 touch = client.simGetCollisionInfo()
 check("touched the ground", touch.has_collided is True and touch.object_name == "Ground")
 check("disarms", client.armDisarm(False) is True)
-time.sleep(0.1)
-check("is landed", client.getMultirotorState().landed_state == airsim.LandedState.Landed)
+comes_to(
+    "is landed", lambda: client.getMultirotorState().landed_state == airsim.LandedState.Landed
+)
 client.reset()
 check("reset: at its start", client.simGetVehiclePose().position.get_length() == 0)
 check("reset: no api control", client.isApiControlEnabled() is False)
