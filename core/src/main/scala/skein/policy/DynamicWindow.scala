@@ -1,6 +1,7 @@
 package skein.policy
 
 import skein.units.*
+import skein.vehicle.FirstOrderLag
 
 /** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The Dynamic Window
   * Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23). Headings and speeds that could be
@@ -44,9 +45,9 @@ final case class DynamicWindow(
       case Some(scan) => best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, last, scan)
     (went, ())
 
-  // What is left of the velocity at each instant looked at, and how far it has carried.
+  // The instants looked at, and how far the velocity has carried until then.
   private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray
-  private val left           = instants.map(t => StrictMath.exp(-t / lagS))
+  private val carries        = instants.map(FirstOrderLag(lagS).carriesS)
   private val (laneN, laneE) =
     (StrictMath.cos(laneHeading.value), StrictMath.sin(laneHeading.value))
 
@@ -86,9 +87,8 @@ final case class DynamicWindow(
     var at            = 0
     var free          = instants.length
     while at < instants.length do
-      val carried = lagS * (1 - left(at))
-      north = position.x + n * instants(at) + (velocity.x - n) * carried
-      east = position.y + e * instants(at) + (velocity.y - e) * carried
+      north = position.x + n * instants(at) + (velocity.x - n) * carries(at)
+      east = position.y + e * instants(at) + (velocity.y - e) * carries(at)
       var point = 0
       while point < points.length do
         val (dn, de) = (points(point) - north, points(point + 1) - east)

@@ -106,17 +106,15 @@ final class LagVehicles extends LaneVehicles {
     this.periodS = periodS;
     this.earliestS = (float) earliestS;
     allocate(8);
-    double lagSeconds = model.lagS();
-    lagS = (float) lagSeconds;
+    lagS = (float) model.lagS();
     speedMps = (float) (duelist.speed() * model.gain());
-    double left = StrictMath.exp(-periodS / lagSeconds);
-    periodDecay = (float) left;
-    periodGain = (float) (lagSeconds * (1 - left));
+    periodDecay = (float) model.lag().remains(periodS);
+    periodGain = (float) model.lag().carriesS(periodS);
     rowsS = new float[4 + (int) Math.ceil((longestS + earliestS) / periodS)];
     remains = new float[rowsS.length];
     for (int i = 0; i < remains.length; i++) {
       rowsS[i] = (float) (i * periodS);
-      remains[i] = (float) StrictMath.exp(-i * periodS / lagSeconds);
+      remains[i] = (float) model.lag().remains(i * periodS);
     }
   }
 

@@ -1,7 +1,7 @@
 package skein.forward
 
 import skein.signal.Kinematics
-import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{FirstOrderLag, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** A first-order model of the response to commanded velocity: v' = (gain · command(t − deadTime) − v) / lag.
   *
@@ -9,8 +9,9 @@ import skein.vehicle.{ReducedModel, ReducedVehicleModel, VehicleModel}
   *   0: the velocity jumps
   */
 final case class Reduced(gain: Double, lagS: Double, deadTimeS: Double) extends VelocityResponse:
-  require(lagS >= 0 && deadTimeS >= 0, s"lag $lagS s and dead time $deadTimeS s must not be negative")
-  def create(): Vehicle = LagVehicle(this)
+  require(deadTimeS >= 0, s"a dead time must not be negative, came $deadTimeS s")
+  val lag: FirstOrderLag = FirstOrderLag(lagS)
+  def create(): Vehicle  = LagVehicle(this)
 
   def model: ReducedModel = ReducedModel.lag(gain, lagS, deadTimeS)
 
@@ -44,21 +45,15 @@ private[skein] final class LagVehicle(model: Reduced) extends Vehicle:
     coming.until(timeS): (atS, vxWanted, vyWanted) =>
       glide(atS)
       wantedX = vxWanted; wantedY = vyWanted
-      if model.lagS == 0 then
-        vx = wantedX; vy = wantedY
     glide(timeS)
 
   override def seen: Kinematics = level(down)
 
   private def glide(until: Double): Unit =
-    val dt = until - now
-    if model.lagS > 0 then
-      val keep = StrictMath.exp(-dt / model.lagS)
-      val gain = model.lagS * (1 - keep)
-      x += wantedX * dt + (vx - wantedX) * gain
-      y += wantedY * dt + (vy - wantedY) * gain
-      vx = wantedX + (vx - wantedX) * keep
-      vy = wantedY + (vy - wantedY) * keep
-    else
-      x += vx * dt; y += vy * dt
+    val dt               = until - now
+    val (carries, stays) = (model.lag.carriesS(dt), model.lag.remains(dt))
+    x += wantedX * dt + (vx - wantedX) * carries
+    y += wantedY * dt + (vy - wantedY) * carries
+    vx = wantedX + (vx - wantedX) * stays
+    vy = wantedY + (vy - wantedY) * stays
     now = until

@@ -147,8 +147,8 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
       val dt = atS - actedS
       into(at) = dt.toFloat
-      into(at + 1) = if model.lagS == 0 then 0 else (-model.lagS * StrictMath.expm1(-dt / model.lagS)).toFloat
-      into(at + 2) = if model.lagS == 0 then 0 else StrictMath.exp(-dt / model.lagS).toFloat
+      into(at + 1) = model.lag.carriesS(dt).toFloat
+      into(at + 2) = model.lag.remains(dt).toFloat
       if acts then actedS = atS
 
 private object LagDynamics:

@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.forward.Duelist
 import skein.units.Span
-import skein.vehicle.{ConstantVelocity, ReducedModel, ReducedVehicleModel, VehicleModel}
+import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, ReducedVehicleModel, VehicleModel}
 
 /** A kind of model that carries readings forward by [[Timetable]]s. */
 private[skein] trait TimetablePredictor:
@@ -65,13 +65,13 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
   def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, course)
 
   private def course(flown: Vector[ReducedPlotter.Flown], totalS: Double): Course =
-    val lag                = model.lagS
-    def reached(t: Double) = -StrictMath.expm1(-t / lag)
-    def moved(t: Double)   = t - lag * reached(t)
+    val lag                = FirstOrderLag(model.lagS)
+    def reached(t: Double) = lag.carriesS(t) / model.lagS
+    def moved(t: Double)   = t - lag.carriesS(t)
     val parts              = flown.map: part =>
       val (left, after) = (totalS - part.fromS, totalS - part.untilS)
       Course.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
-    Course(parts.toArray, lag * reached(totalS), StrictMath.exp(-totalS / lag))
+    Course(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
 /** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
 private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
