@@ -23,13 +23,14 @@ final class Formula private (
     guards: Vector[Guard],
     of: Class[?]
 ):
-  private val reader = PathReader(parameterPaths, guards)
+  private val check  = FormCheck(guards)
+  private val reader = NumberReader(parameterPaths)
 
   /** How the parameters are called, for example `.weights(3)`. */
   val parameters: Vector[String] = parameterPaths.map(_.toString)
 
   /** Whether another object's method is this formula, with parameters of its own. */
-  def fits(other: AnyRef): Boolean = (other.getClass eq of) && reader.fits(other)
+  def fits(other: AnyRef): Boolean = (other.getClass eq of) && check.fits(other)
 
   /** The parameters of an object that [[fits]]. */
   def parametersOf(other: AnyRef): Array[Double] = reader.read(other)
@@ -216,28 +217,16 @@ final class Evaluation(nodes: Vector[Node]):
     Formula.compute(order, input, parameters, values)
     answers.map(values(_))
 
-/** Reads numbers inside of objects of one form, each object on the way once. */
-private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
-  private val places               = mutable.LinkedHashMap.empty[Path, Int]
-  private def place(of: Path): Int =
-    of.before.foreach(place)
-    places.getOrElseUpdate(of, places.size)
-  private val wanted   = paths.map(place).toArray
-  private val guarded  = guards.map(guard => place(guard.path)).toArray
+/** Whether objects are of one form, by what stands at some places inside of them. */
+private final class FormCheck(guards: Vector[Guard]):
+  private val walk     = PathWalk(guards.map(_.path))
   private val expected = guards.map(_.expected).toArray
-  private val steps    = places.keysIterator.map(_.step).toArray
-  private val before   = places.keysIterator.map(_.before.fold(-1)(places)).toArray
-  for case Step.Of(field) <- steps do field.setAccessible(true)
-
-  def read(root: AnyRef): Array[Double] =
-    val found = walk(root)
-    wanted.map(at => found(at).asInstanceOf[java.lang.Double].doubleValue)
 
   def fits(root: AnyRef): Boolean =
     val found = walk(root)
     var i     = 0
-    while i < guarded.length && holds(expected(i), found(guarded(i))) do i += 1
-    i == guarded.length
+    while i < expected.length && holds(expected(i), found(walk.places(i))) do i += 1
+    i == expected.length
 
   private def holds(expected: Any, value: AnyRef): Boolean = expected match
     case null                => value == null
@@ -245,8 +234,45 @@ private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
     case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
     case number              => value == number
 
-  /** What stands at each place; nothing behind what is not of the form. */
-  private def walk(root: AnyRef): Array[AnyRef] =
+/** Reads numbers inside of objects of one form; those of an array without an object for each, for networks have hundreds. */
+private final class NumberReader(paths: Vector[Path]):
+  private val walk = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
+  private val indices           = paths.map(indexOf).toArray
+  private def indexOf(of: Path) = of.step match
+    case Step.At(index) => index
+    case _              => -1
+
+  def read(root: AnyRef): Array[Double] =
+    val found   = walk(root)
+    val numbers = Array.ofDim[Double](indices.length)
+    var i       = 0
+    while i < numbers.length do
+      val index = indices(i)
+      numbers(i) = found(walk.places(i)) match
+        case several: Array[Double] if index >= 0 => several(index)
+        case several if index >= 0                => unboxed(java.lang.reflect.Array.get(several, index))
+        case number                               => unboxed(number)
+      i += 1
+    numbers
+
+  private def unboxed(number: AnyRef) = number.asInstanceOf[java.lang.Double].doubleValue
+
+/** Finds what stands at some places inside of objects, each object on the way once. */
+private final class PathWalk(paths: Vector[Path]):
+  private val all                  = mutable.LinkedHashMap.empty[Path, Int]
+  private def place(of: Path): Int =
+    of.before.foreach(place)
+    all.getOrElseUpdate(of, all.size)
+
+  /** Where in what is found each path's end is. */
+  val places: Array[Int] = paths.map(place).toArray
+
+  private val steps  = all.keysIterator.map(_.step).toArray
+  private val before = all.keysIterator.map(_.before.fold(-1)(all)).toArray
+  for case Step.Of(field) <- steps do field.setAccessible(true)
+
+  /** Nothing stands behind what is not of the form. */
+  def apply(root: AnyRef): Array[AnyRef] =
     val found = Array.ofDim[AnyRef](steps.length)
     var i     = 0
     while i < steps.length do
@@ -256,12 +282,8 @@ private final class PathReader(paths: Vector[Path], guards: Vector[Guard]):
         case _ if from == null => null
         case Step.Of(field)    =>
           if field.getDeclaringClass.isInstance(from) then field.get(from) else null
-        case Step.At(index) => from match
-            case numbers: Array[Double] => if index < numbers.length then Double.box(numbers(index)) else null
-            case objects: Array[AnyRef] => if index < objects.length then objects(index) else null
-            case numbers: Array[Int]    => if index < numbers.length then Int.box(numbers(index)) else null
-            case _                      =>
-              if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
-              else null
+        case Step.At(index) =>
+          if index < java.lang.reflect.Array.getLength(from) then java.lang.reflect.Array.get(from, index)
+          else null
       i += 1
     found

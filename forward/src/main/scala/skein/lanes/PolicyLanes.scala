@@ -91,11 +91,12 @@ private[skein] final class PolicyLanes private (formula: Formula):
     LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1), parameters = parameters)
 
   private val plain      = derived.forall(_.op == Op.Param)
+  private val indices    = derived.iterator.map(_.index).toArray
   private val evaluation = Evaluation(derived)
 
   def parametersOf(policy: Policy): Array[Double] =
     val own = formula.parametersOf(policy)
-    if plain then derived.iterator.map(node => own(node.index)).toArray
+    if plain then indices.map(own(_))
     else evaluation(Array.emptyDoubleArray, own)
 
   /** The function's inputs for what one policy sees and remembers. */
