@@ -236,8 +236,8 @@ private final class FormCheck(guards: Vector[Guard]):
 
 /** Reads numbers inside of objects of one form; those of an array without an object for each, for networks have hundreds. */
 private final class NumberReader(paths: Vector[Path]):
-  private val walk = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
-  private val indices           = paths.map(indexOf).toArray
+  private val walk    = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
+  private val indices = paths.map(indexOf).toArray
   private def indexOf(of: Path) = of.step match
     case Step.At(index) => index
     case _              => -1
