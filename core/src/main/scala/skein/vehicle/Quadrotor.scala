@@ -21,7 +21,7 @@ final class Quadrotor(
 
   private val controller =
     cascade.fold(FlightController(gains, stepS))(TunedFlightController(gains, _, stepS))
-  private val rotorKeep      = StrictMath.exp(-stepS / rotorTimeConstantS)
+  private val rotorKeep      = FirstOrderLag(rotorTimeConstantS).remains(stepS)
   private val rollTorque     = rotorOffsetM * maxThrustN
   private val halfStep       = stepS / 2
   private val halfStepSquare = halfStep * halfStep

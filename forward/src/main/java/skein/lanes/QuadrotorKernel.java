@@ -15,6 +15,7 @@ import skein.vehicle.Airframe;
 import skein.vehicle.Atmosphere;
 import skein.vehicle.ControllerGains;
 import skein.vehicle.Environment;
+import skein.vehicle.FirstOrderLag;
 import skein.vehicle.Quadrotor;
 import skein.vehicle.QuadrotorState;
 
@@ -65,7 +66,7 @@ public final class QuadrotorKernel {
   private static final FloatVector GYRO_DOWN =
       constant((float) ((FRAME.inertiaFront() - FRAME.inertiaRight()) / FRAME.inertiaDown()));
   private static final FloatVector ROTOR_KEEP =
-      constant((float) StrictMath.exp(-REFERENCE.stepS() / FRAME.rotorTimeConstantS()));
+      constant((float) new FirstOrderLag(FRAME.rotorTimeConstantS()).remains(REFERENCE.stepS()));
 
   private static final FloatVector RATE_P = constant((float) GAINS.rateP()),
       MAX_RATE = constant((float) GAINS.maxRate());
