@@ -68,6 +68,7 @@ object Works:
     val all      = new DuelWorlds:
       def size: Int                       = worlds
       override def shareEpisodes: Boolean = true
+      override def withEfforts: Boolean   = false
       def key(world: Int): Int            = WorldRandom.key(thread, 0, world / 256)
       def link(world: Int): DelayTable    = DelayTable.vpn
       def pursuer(world: Int): Policy     = policies(world % 256)
@@ -88,6 +89,7 @@ object Works:
   /** Pursuers of different turn rates, so many of them per episode. */
   final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
     override def shareEpisodes: Boolean = perEpisode > 1
+    override def withEfforts: Boolean   = false // as in a search for the distance
     def key(world: Int): Int            = WorldRandom.key(seed, 0, world / perEpisode)
     def link(world: Int): DelayTable    = delays
     def pursuer(world: Int): Policy     = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)

@@ -13,4 +13,7 @@ final case class FirstOrderLag(lagS: Double):
   def remains(afterS: Double): Double = if lagS == 0 then 0 else StrictMath.exp(-afterS / lagS)
 
   /** For how long an undiminished error would carry as far, s: lag · (1 − e^(−t / lag)). */
-  def carriesS(afterS: Double): Double = if lagS == 0 then 0 else -lagS * StrictMath.expm1(-afterS / lagS)
+  def carriesS(afterS: Double): Double = carriedS(remains(afterS))
+
+  /** The same, by what [[remains]]. */
+  def carriedS(remains: Double): Double = lagS * (1 - remains)

@@ -409,7 +409,8 @@ final class LagVehicles extends LaneVehicles {
       int slot = number & slots - 1, from = slot * SLOT + world;
       float wait = commands[from + AT] - ageS(slot, row), acted = end - wait;
       if (wait <= 0 && acted < 0 && rowOf[slot] < row) {
-        float caughtUp = (float) (1 - lag.remains(acted)), response = (float) (acted - lag.carriesS(acted));
+        double remains = lag.remains(acted);
+        float caughtUp = (float) (1 - remains), response = (float) (acted - lag.carriedS(remains));
         float changeX = commands[from + CHANGE_X], changeY = commands[from + CHANGE_Y];
         state[SEEN_X + world] -= changeX * response;
         state[SEEN_Y + world] -= changeY * response;

@@ -29,28 +29,46 @@ class LanePolicy {
   /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
   private final float[] initial, memory, newMemory;
 
-  /** How far each world's decided heading is from the one before, by the shorter way, rad. */
+  /** How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts. */
   final float[] turned = new float[WORLDS];
 
   /** The heading commanded last, rad, for policies that turn from it, and the one decided. */
   final float[] heading = new float[WORLDS], newHeading = new float[WORLDS];
 
-  LanePolicy(PolicyLanes form) {
+  private final boolean withEffort;
+
+  /** So many directions and changes of the heading are decided, before what is remembered. */
+  private final int decided;
+
+  /**
+   * @param withEffort whether {@link #turned} is asked for
+   */
+  LanePolicy(PolicyLanes form, boolean withEffort) {
     this.form = form;
-    function = form.function();
+    this.withEffort = withEffort;
+    decided = withEffort ? 3 : 2;
+    function = withEffort ? form.function() : form.functionWithoutEffort();
     parameters = new float[form.parameters() * WORLDS];
     scratch = new float[function.scratch()];
     // What the own readings tell comes last.
-    arrays = new float[form.inputs() + form.outputs().size() + LaneObservation.READ][];
+    arrays = new float[form.inputs() + decided + form.outputs().size() - 3 + LaneObservation.READ][];
     offsets = new int[arrays.length];
     initial = new float[form.memories() * WORLDS];
     memory = new float[initial.length];
     newMemory = new float[initial.length];
   }
 
+  LanePolicy(PolicyLanes form) {
+    this(form, true);
+  }
+
   /** Lanes that fly policies of this policy's form, which must be a formula. */
   static LanePolicy of(Policy policy) {
-    return new LanePolicy(PolicyLanes.get(policy));
+    return of(policy, true);
+  }
+
+  static LanePolicy of(Policy policy, boolean withEffort) {
+    return new LanePolicy(PolicyLanes.get(policy), withEffort);
   }
 
   /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
@@ -117,12 +135,12 @@ class LanePolicy {
     int outputs = form.inputs(), memories = form.memories();
     for (int i = 0; i < memories; i++) {
       set(12 + i, memory, i * WORLDS);
-      set(outputs + 3 + i, newMemory, i * WORLDS);
+      set(outputs + decided + i, newMemory, i * WORLDS);
     }
     set(outputs, into.cos, intoAt);
     set(outputs + 1, into.sin, intoAt);
-    set(outputs + 2, turned, 0);
-    if (form.keepsHeading()) set(outputs + 3 + memories, newHeading, 0);
+    if (withEffort) set(outputs + 2, turned, 0);
+    if (form.keepsHeading()) set(outputs + decided + memories, newHeading, 0);
     seen = observation;
     function.apply(arrays, offsets, parameters, scratch);
   }
@@ -183,6 +201,7 @@ class LanePolicy {
   void commit(float[] effort) {
     if (form.keepsHeading()) System.arraycopy(newHeading, 0, heading, 0, WORLDS);
     System.arraycopy(newMemory, 0, memory, 0, memory.length);
+    if (!withEffort) return;
     for (int i = 0; i < WORLDS; i += LANES)
       FloatVector.fromArray(SPECIES, effort, i)
           .add(FloatVector.fromArray(SPECIES, turned, i))

@@ -52,7 +52,7 @@ public final class SteppedDuels implements TimetableScores {
   public SteppedDuels(
       Duel duel, LaneDynamics model, Policy evader, Policy pursuer, boolean[] isOutside) {
     this.isOutside = isOutside.clone();
-    policies = new LanePolicy[] {LanePolicy.of(evader), LanePolicy.of(pursuer)};
+    policies = new LanePolicy[] {LanePolicy.of(evader, false), LanePolicy.of(pursuer, false)};
     for (int world = 0; world < WORLDS; world++) {
       policies[0].take(world, evader);
       policies[1].take(world, pursuer);

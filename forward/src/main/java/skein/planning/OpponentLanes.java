@@ -44,7 +44,7 @@ final class OpponentLanes {
 
   private void use(PolicyLanes form) {
     this.form = form;
-    function = form.course();
+    function = form.functionOfDifferences();
     parameters = new float[form.parameters() * SIZE];
     scratch = new float[function.scratch()];
     seen = new float[form.inputs()][SIZE];

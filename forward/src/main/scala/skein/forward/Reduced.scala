@@ -50,8 +50,9 @@ private[skein] final class LagVehicle(model: Reduced) extends Vehicle:
   override def seen: Kinematics = level(down)
 
   private def glide(until: Double): Unit =
-    val dt               = until - now
-    val (carries, stays) = (model.lag.carriesS(dt), model.lag.remains(dt))
+    val dt      = until - now
+    val stays   = model.lag.remains(dt)
+    val carries = model.lag.carriedS(stays)
     x += wantedX * dt + (vx - wantedX) * carries
     y += wantedY * dt + (vy - wantedY) * carries
     vx = wantedX + (vx - wantedX) * stays

@@ -17,6 +17,9 @@ private[skein] final class Course(
   private[lanes] def bytes: Long = 48 + 56L * parts.length
 
 private[skein] object Course:
+  /** Of what is not carried forward. */
+  private[lanes] val Nowhere: Course = Course(Array.empty)
+
   /** In the place of a command: none yet. */
   val Rest: Int = -1
 

@@ -26,7 +26,7 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
         val (pursuer, evader, link) = wanted
         val own = Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
         rollout = Rollout(own, timing, link, model)
-      into.set(world, rollout.fly(worlds.key(world), captureRadiusM))
+      into.set(world, rollout.fly(worlds.key(world), captureRadiusM), worlds.withEfforts)
 
 /** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know are flown by
   * another.
@@ -35,9 +35,9 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
 
   /** A kernel and its policies, and the worlds that will fly by it. */
-  protected abstract class Lanes(pursuer: Policy, evader: Policy):
-    protected val pursuers: LanePolicy = LanePolicy.of(pursuer)
-    protected val evaders: LanePolicy  = LanePolicy.of(evader)
+  protected abstract class Lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean):
+    protected val pursuers: LanePolicy = LanePolicy.of(pursuer, withEfforts)
+    protected val evaders: LanePolicy  = LanePolicy.of(evader, withEfforts)
     private val ofLane                 = Array.ofDim[Int](batch)
     private var filled                 = 0
 
@@ -83,18 +83,17 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
         into.meanDistanceM(world) = flown.meanDistance(lane)
         into.meanLast10sM(world) = flown.meanLast10s(lane)
         into.captureS(world) = flown.captureS(lane)
-        into.pursuerEffortRad(world) = flown.pursuerEffortRad(lane)
-        into.evaderEffortRad(world) = flown.evaderEffortRad(lane)
+        into.setEfforts(world, withEfforts, flown.pursuerEffortRad(lane), flown.evaderEffortRad(lane))
       filled = 0
 
-  protected def lanes(pursuer: Policy, evader: Policy): Lanes
+  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes
 
   /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
 
   private type Form = Either[Untraceable, PolicyLanes]
 
-  private val byForm = collection.mutable.HashMap.empty[(AnyRef, AnyRef), Lanes]
+  private val byForm = collection.mutable.HashMap.empty[(Form, Form, Boolean), Lanes]
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     val filled  = collection.mutable.LinkedHashSet.empty[Lanes]
@@ -113,7 +112,11 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
         lastPursuer = pursuer
         lastEvader = evader
       if forms._1.isRight && forms._2.isRight && canFly(worlds.link(world)) then
-        val chosen = byForm.getOrElseUpdate(forms, lanes(pursuer, evader))
+        val chosen =
+          byForm.getOrElseUpdate(
+            (forms._1, forms._2, worlds.withEfforts),
+            lanes(pursuer, evader, worlds.withEfforts)
+          )
         chosen.add(worlds, world)
         filled += chosen
       else unknown += world
@@ -128,7 +131,7 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
     case table: DelayTable => LoopDuelKernel.refusal(timing, table.maxS, model) == null
     case _                 => false
 
-  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
+  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes = new Lanes(pursuer, evader, withEfforts):
     private val keys    = Array.ofDim[Int](batch)
     private val links   = Array.ofDim[DelayTable](batch)
     private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
@@ -163,7 +166,7 @@ private final class TimetableFlyer(
 
   protected def canFly(link: Delays): Boolean = true
 
-  protected def lanes(pursuer: Policy, evader: Policy): Lanes = new Lanes(pursuer, evader):
+  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes = new Lanes(pursuer, evader, withEfforts):
     protected val kernel: TimetableDuels = TimetableDuels(
       duel,
       timing,

@@ -16,6 +16,11 @@ trait DuelWorlds:
     */
   def shareEpisodes: Boolean = false
 
+  /** Whether efforts are asked for. They cost a tenth of a flight: how far a direction is from the one before takes an
+    * arccosine.
+    */
+  def withEfforts: Boolean = true
+
   /** [[WorldRandom.key]] of the world: decides all delays. Worlds of one key and one link meet the same delays. */
   def key(world: Int): Int
   def link(world: Int): Delays
@@ -23,6 +28,7 @@ trait DuelWorlds:
   def evader(world: Int): Policy
 
 /** What each world came to; see [[Outcome]] for the meanings. One number per world, in metres, seconds and radians.
+  * Efforts are NaN where they were not [[DuelWorlds.withEfforts asked for]].
   *
   * @param flown
   *   how many worlds were flown: all, unless the call was cancelled. The others' smallest distance is 0, as are all
@@ -37,10 +43,13 @@ final class DuelOutcomes private[skein] (size: Int):
 
   private[skein] def flown_=(worlds: Int): Unit = done = worlds
 
-  private[skein] def set(world: Int, outcome: Outcome): Unit =
+  private[skein] def set(world: Int, outcome: Outcome, withEfforts: Boolean = true): Unit =
     minDistanceM(world) = outcome.minDistanceM.toFloat
     meanDistanceM(world) = outcome.meanDistanceM.toFloat
     meanLast10sM(world) = outcome.meanLast10sM.toFloat
     captureS(world) = outcome.captureS.toFloat
-    pursuerEffortRad(world) = outcome.pursuerEffortRad.toFloat
-    evaderEffortRad(world) = outcome.evaderEffortRad.toFloat
+    setEfforts(world, withEfforts, outcome.pursuerEffortRad.toFloat, outcome.evaderEffortRad.toFloat)
+
+  private[lanes] def setEfforts(world: Int, areAsked: Boolean, pursuerRad: Float, evaderRad: Float): Unit =
+    pursuerEffortRad(world) = if areAsked then pursuerRad else Float.NaN
+    evaderEffortRad(world) = if areAsked then evaderRad else Float.NaN

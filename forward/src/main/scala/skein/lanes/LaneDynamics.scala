@@ -145,10 +145,11 @@ private final class LagDynamics(model: Reduced) extends LaneDynamics:
   def clock(): VehicleClock = new VehicleClock:
     private var actedS                                                      = 0.0
     def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit =
-      val dt = atS - actedS
+      val dt      = atS - actedS
+      val remains = model.lag.remains(dt)
       into(at) = dt.toFloat
-      into(at + 1) = model.lag.carriesS(dt).toFloat
-      into(at + 2) = model.lag.remains(dt).toFloat
+      into(at + 1) = model.lag.carriedS(remains).toFloat
+      into(at + 2) = remains.toFloat
       if acts then actedS = atS
 
 private object LagDynamics:

@@ -84,11 +84,18 @@ private[skein] final class PolicyLanes private (formula: Formula):
   def inputs: Int = In.Memory + memories
 
   /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and the own ones. */
-  val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
+  lazy val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
 
-  /** Computes [[outputs]] but how far the decided heading is from the one before. */
-  lazy val course: LaneFunction =
-    LaneCompiler.compile(inputs, outputs.patch(2, Nil, 1), parameters = parameters)
+  // But how far the decided heading is from the one before.
+  private def course = outputs.patch(2, Nil, 1)
+
+  /** The same but how far the decided heading is from the one before. */
+  lazy val functionWithoutEffort: LaneFunction =
+    LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)
+
+  /** The same of differences, which [[inputs]] are then. */
+  lazy val functionOfDifferences: LaneFunction =
+    LaneCompiler.compile(inputs, course, parameters = parameters)
 
   private val plain      = derived.forall(_.op == Op.Param)
   private val indices    = derived.iterator.map(_.index).toArray

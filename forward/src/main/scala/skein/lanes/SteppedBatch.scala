@@ -43,7 +43,7 @@ private final class SteppedBatch(
         nextNs(lane) = 0
       vehicles.use(some.length * Vehicles)
       flyAll(some.length)
-      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
+      for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome, worlds.withEfforts)
 
   private def flyAll(count: Int): Unit =
     var flying = count

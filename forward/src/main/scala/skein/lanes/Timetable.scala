@@ -1,5 +1,6 @@
 package skein.lanes
 
+import java.util.Comparator
 import skein.forward.{
   Delays,
   Duelist,
@@ -115,7 +116,8 @@ private final class TimetableCompiler(
   import TimetableKernel.{ACT, DECIDE, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
   /** By time, and events of one time as they were noted. Only commands act later than what was noted after them. */
-  private val order = notes.all.sortBy(_.atS).toArray
+  private val order = notes.all.toArray
+  java.util.Arrays.sort(order, Comparator.comparingDouble[Note](_.atS))
 
   /** Behind the last score. */
   private val end = order.lastIndexWhere(_.kind == SCORE) + 1

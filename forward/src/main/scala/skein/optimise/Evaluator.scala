@@ -107,6 +107,7 @@ final class DuelEvaluator(
   private final class Worlds(policies: Array[Policy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                       = policies.length * keys.length
     override def shareEpisodes: Boolean = DuelEvaluator.this.shareEpisodes
+    override def withEfforts: Boolean   = objective.hasEffort
     def key(world: Int): Int            = keys(world % keys.length)
     def link(world: Int): Delays        = DuelEvaluator.this.link
     def pursuer(world: Int): Policy     = DuelEvaluator.this.pursuer(policies(world / keys.length))

@@ -61,6 +61,9 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
   /** The radius within which an episode counts as a capture, m; 0 where no measure asks. */
   def captureRadiusM: Double = terms.flatMap((_, measure) => measure.captureRadiusM).headOption.getOrElse(0.0)
 
+  /** Whether an effort counts. */
+  def hasEffort: Boolean = terms.exists((_, measure) => measure == DuelMeasure.Effort)
+
   /** Of one episode.
     *
     * @param role

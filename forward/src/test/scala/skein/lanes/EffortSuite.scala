@@ -1,0 +1,35 @@
+package skein.lanes
+
+import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Reduced}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
+import skein.simd.WorldRandom
+
+/** Efforts are computed where they are asked for, and nothing else depends on that. */
+class EffortSuite extends munit.FunSuite:
+  private val duel = Duel.paper.copy(durationS = 5)
+
+  private def flown(shared: Boolean, efforts: Boolean, timing: LoopTiming): DuelOutcomes =
+    val worlds = new DuelWorlds:
+      def size: Int                       = 200
+      override def shareEpisodes: Boolean = shared
+      override def withEfforts: Boolean   = efforts
+      def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then world % 2 else world)
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.002 * world)
+      def evader(world: Int): Policy      = PaperEvader()
+    DuelBatch(duel, timing, Reduced.AirSim, threads = 1).fly(worlds)
+
+  for
+    shared <- Seq(true, false)
+    timing <- Seq(
+      LoopTiming.Stream(),
+      LoopTiming.Predictive(predictor = Reduced.AirSim.predictor)
+    ) // by lanes, and shared or scalar
+  do
+    test(s"${timing.productPrefix}, ${if shared then "one episode for all" else "delays of their own"}"):
+      val (with_, without) = (flown(shared, true, timing), flown(shared, false, timing))
+      for world <- 0 until 200 do
+        assert(with_.pursuerEffortRad(world) > 0 && with_.evaderEffortRad(world) > 0, s"world $world")
+        assert(without.pursuerEffortRad(world).isNaN && without.evaderEffortRad(world).isNaN, s"world $world")
+        assertEqualsFloat(without.meanDistanceM(world), with_.meanDistanceM(world), 1e-3f, s"world $world")
+        assertEqualsFloat(without.minDistanceM(world), with_.minDistanceM(world), 1e-3f, s"world $world")
