@@ -263,9 +263,7 @@ abstract class LaneFlights extends LaneVehicles {
         VectorMask<Float> isLate = late.cast(SPECIES);
         int from = (back & mask) * size;
         for (int number = i; number < size; number += WORLDS)
-          FloatVector.fromArray(SPECIES, chosen, number)
-              .blend(FloatVector.fromArray(SPECIES, pieces, from + number), isLate)
-              .intoArray(chosen, number);
+          FloatVector.fromArray(SPECIES, pieces, from + number).intoArray(chosen, number, isLate);
         late = since.compare(LT, zero);
       }
       ((FloatVector) since.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS).intoArray(sinceS, i);
