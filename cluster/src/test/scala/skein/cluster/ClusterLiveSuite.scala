@@ -166,6 +166,10 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       shipping.close()
       shipment.close()
 
+  private def garbage(port: Int): Unit =
+    Garbage.send(port, 0 until 330)(Garbage.of)
+    Garbage.send(port, 0 until 40)(Garbage.endless)
+
   /** A worker is there before the garbage and while it comes, another one afterwards. */
   private def assertUnharmed(coordinator: Coordinating, tls: Option[Tls])(send: Int => Unit): Unit =
     val to           = coordinator.node.address
@@ -185,15 +189,13 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     ben.stop()
 
   test("a stranger's garbage at the port harms nothing: who is there works on, and others join"):
-    coordinating(assertUnharmed(_, None)(Garbage.send(_, 0 until 440)(Garbage.of)))
+    coordinating(assertUnharmed(_, None)(garbage))
 
-  test("nor does it where certificates are asked for, not even where its frames would be read for ever"):
+  test("nor does it where certificates are asked for"):
     val own         = tls(lab.head)
     val coordinator = Coordinating(temporaryFolder(), tls = Some(own))
     try
-      assertUnharmed(coordinator, Some(own)): port =>
-        Garbage.send(port, 440 until 660)(Garbage.of)
-        Garbage.send(port, 0 until 40)(Garbage.endless)
+      assertUnharmed(coordinator, Some(own))(garbage)
     finally coordinator.close()
 
   test("what a worker had that leaves is computed by another"):

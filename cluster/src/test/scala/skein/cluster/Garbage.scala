@@ -27,7 +27,7 @@ private[cluster] object Garbage:
       catch case _: IOException => () // It is cut off midway.
       finally socket.close()
 
-  /** Pekko 1.2.1 reads a frame for ever whose length is below zero or close to 2³¹: docs/guides/cluster.md, "Limits". */
+  /** What Pekko would read for ever: [[FrameCheck]]. */
   def endless(number: Int): Array[Byte] =
     val random = Random(number)
     lying(random, if random.nextBoolean() then Int.MaxValue else -1 - random.nextInt(1 << 30))
@@ -57,16 +57,19 @@ private[cluster] object Garbage:
     // A length of a GiB, or of one byte more than is allowed, and little behind it.
     random =>
       val lie = if random.nextBoolean() then 1 << 30 else MessageCodec.MostBytes + (64 << 10) + 1
-      lying(random, lie),
+      lying(random, lie)
+    ,
     // Frames as long as they say, with noise for the envelope and the message.
-    random => pekko(1 + random.nextInt(3)) ++ Array.fill(1 + random.nextInt(8))(frame(noise(random, 512))).flatten,
+    random =>
+      pekko(1 + random.nextInt(3)) ++ Array.fill(1 + random.nextInt(8))(frame(noise(random, 512))).flatten,
     // The envelope begins as an honest one.
     random => pekko(1 + random.nextInt(3)) ++ frame(Array[Byte](0, 0) ++ noise(random, 512)),
     random => pekko(random.nextInt(256)) ++ frame(noise(random, 64)),
     // TLS: a greeting that is noise, one that is cut off, and an alert.
     random =>
       val content = noise(random, 512)
-      Array[Byte](22, 3, 1) ++ length(content.length, ByteOrder.BIG_ENDIAN).drop(2) ++ content,
+      Array[Byte](22, 3, 1) ++ length(content.length, ByteOrder.BIG_ENDIAN).drop(2) ++ content
+    ,
     random => Array[Byte](22, 3, 1, 127, -1, 1, 0) ++ noise(random, 256),
     random => Array[Byte](21, 3, 3, 0, 2, 2, random.nextInt(256).toByte)
   )
