@@ -15,21 +15,27 @@ import java.nio.file.Files
   val folder = Files.createTempDirectory("seeds")
   try
     for workers <- Seq(1, 2, 5) do
-      var (messages, deaths, cuts, restarts)     = (0L, 0L, 0L, 0L)
-      var (repeated, doubled, lost, overdue)     = (0L, 0L, 0L, 0L)
+      var (messages, deaths, cuts, restarts) = (0L, 0L, 0L, 0L)
+      var (repeated, doubled, lost, overdue) = (0L, 0L, 0L, 0L)
       for seed <- 1L to seeds do
-        val diesAt = if seed % 2 == 0 then Seq(5.0 + seed % 7, 20.0 + seed % 11) else Nil
+        val diesAt = if seed % 2 == 0 then Seq(2.0 + seed % 3, 6.0 + seed % 4) else Nil
         val flown  = CoordinatorSimulation(seed, workers, blocks, folder)
         try
           flown.fly(deathsAnHour = 60, cutsAnHour = 120, restarts = diesAt)()
           def clue = s"$workers workers, seed $seed"
-          require(flown.isDone, s"$clue: ${flown.done} of $blocks blocks are done, and nothing happens any more")
+          require(
+            flown.isDone,
+            s"$clue: ${flown.done} of $blocks blocks are done, and nothing happens any more"
+          )
           require(flown.result == alone, s"$clue: another answer than that of one process")
           require(flown.acceptedTwice == 0, s"$clue: ${flown.acceptedTwice} answers were counted again")
           require(flown.restarts == diesAt.size, s"$clue: the coordinator died ${flown.restarts} times")
         finally flown.close()
         val audit = Ledger.audit(flown.file)
-        require(audit == Ledger.Audit(blocks, repeats = 0, broken = 0), s"$workers workers, seed $seed: $audit")
+        require(
+          audit == Ledger.Audit(blocks, repeats = 0, broken = 0),
+          s"$workers workers, seed $seed: $audit"
+        )
         Files.delete(flown.file)
         messages += flown.messages
         deaths += flown.deaths

@@ -106,7 +106,9 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     try
       for (worker, told) <- workers do
         assert(until(Files.readString(told).contains(": joining"))(!worker.isAlive), Files.readString(told))
-      val said = searched(question ++ Seq("--cluster", at, "--block", "256", "--out", out.toString))
+      // If no worker works, the search waits for others.
+      val words = question ++ Seq("--cluster", at, "--block", "256", "--out", out.toString)
+      val said  = Await.result(Future(blocking(searched(words))), 4.minutes)
       for (worker, _) <- workers do
         val counted = s"-${worker.pid} +1 +(\\d+)".r.findFirstMatchIn(said).fold(0)(_.group(1).toInt)
         assert(counted > 0, said)

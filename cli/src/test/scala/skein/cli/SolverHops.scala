@@ -38,10 +38,11 @@ import skein.scenario.Scenarios
     of.fold("none")(ms => f"p50 ${ms.median}%.1f ms, p99 ${ms.p99}%.1f ms")
 
   def told(file: Path): String =
-    val recording = RecordingReader.read(file).fold(error => throw IllegalStateException(error.message), identity)
-    val summary   = FlightSummary.of(recording)
-    val headline  = summary.headline.fold("none")(metres => f"$metres%.2f")
-    val hop       = summary.solver.fold("decided here"): solver =>
+    val recording =
+      RecordingReader.read(file).fold(error => throw IllegalStateException(error.message), identity)
+    val summary  = FlightSummary.of(recording)
+    val headline = summary.headline.fold("none")(metres => f"$metres%.2f")
+    val hop      = summary.solver.fold("decided here"): solver =>
       s"${solver.answers} answers, added ${spread(solver.roundTripsMs)}, ${solver.missed} missed"
     s"${summary.name}: $hop; age at command ${spread(summary.commandAgesMs)}; result $headline"
 
@@ -55,14 +56,17 @@ import skein.scenario.Scenarios
     try
       while solver.isAlive && !said(log).contains("decides at") do Thread.sleep(50)
       for number <- 1 to flights do
-        val flown  = folder.resolve(s"$kind-$number")
-        val words  = s"fly --loop predictive --link $link --duration ${seconds}s --twins 0 --solver $at --out $flown"
+        val flown = folder.resolve(s"$kind-$number")
+        val words =
+          s"fly --loop predictive --link $link --duration ${seconds}s --twins 0 --solver $at --out $flown"
         val own    = folder.resolve(s"$kind-$number.log")
         val flight = started(own, words.split(' ').toSeq*)
         try require(flight.waitFor() == 0, s"$words: ${said(own)}")
         finally flight.destroyForcibly(): Unit
         val recordings =
-          Using.resource(Files.list(flown))(_.iterator.asScala.filter(_.toString.endsWith(".duckdb")).toVector.sorted)
+          Using.resource(
+            Files.list(flown)
+          )(_.iterator.asScala.filter(_.toString.endsWith(".duckdb")).toVector.sorted)
         for file <- recordings do println(s"$kind, flight $number: ${told(file)}")
     finally
       solver.destroy()

@@ -47,14 +47,18 @@ class DeploymentSuite extends munit.FunSuite:
       assert(document.contains(key), s"$key of $document")
 
   test("services select the pods that are there, at the ports and by the names that the commands use"):
-    val space      = in("kustomization.yaml").head("/namespace")
+    val space       = in("kustomization.yaml").head("/namespace")
     val Vector(job) = of("Job")
     val Vector(set) = of("StatefulSet")
-    for (pods, service) <- Seq(job -> job("/spec/template/spec/subdomain"), set -> set("/spec/serviceName")) do
+    for (pods, service) <- Seq(job -> job("/spec/template/spec/subdomain"), set -> set("/spec/serviceName"))
+    do
       val Some(found) = of("Service").find(_("/metadata/name") == service): @unchecked
       assertEquals(found("/spec/selector/app"), pods("/spec/template/metadata/labels/app"))
       val port = found("/spec/ports/0/port")
-      assert(pods.exists((at, value) => at.endsWith("/containerPort") && value == port), s"$service, port $port")
+      assert(
+        pods.exists((at, value) => at.endsWith("/containerPort") && value == port),
+        s"$service, port $port"
+      )
       val args = below(pods, "/spec/template/spec/containers/0/args").mkString("\n")
       assert(clue(args).contains(s".$service.$space.svc.cluster.local:$port"))
     val coordinator =
@@ -92,6 +96,7 @@ class DeploymentSuite extends munit.FunSuite:
 
   test("workers in the compose file reach the coordinator's port on its loopback"):
     val Vector(file) = documents(Files.readString(root.resolve("deploy/compose.yaml")))
-    val Some(at) = "--cluster (\\S+)".r.findFirstMatchIn(file("/services/coordinator/command")).map(_.group(1)): @unchecked
+    val Some(at)     =
+      "--cluster (\\S+)".r.findFirstMatchIn(file("/services/coordinator/command")).map(_.group(1)): @unchecked
     assert(file("/services/worker/command").contains(s"--join $at "))
     assertEquals(file("/services/worker/network_mode"), "service:coordinator")

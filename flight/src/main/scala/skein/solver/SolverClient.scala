@@ -34,9 +34,9 @@ final class SolverClient(
   private val started = Promise[Welcomed]()
 
   // All below is guarded by the lock.
-  private var exchange = Exchange.of(vehicles)
-  private var waiting  = Map.empty[Int, Waiting]
-  private var standing = Standing.Greeting(Silent)
+  private var exchange       = Exchange.of(vehicles)
+  private var waiting        = Map.empty[Int, Waiting]
+  private var standing       = Standing.Greeting(Silent)
   private var rehearsals     = link.rehearsals
   private var rehearsedUntil = Option.empty[Instant]
 

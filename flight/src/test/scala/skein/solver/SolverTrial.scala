@@ -46,7 +46,7 @@ object SolverTrial:
     import system.dispatcher
 
     /** Whether each message to the solver was a greeting. */
-    val greetings = Vector.newBuilder[Boolean]
+    val greetings                                         = Vector.newBuilder[Boolean]
     private var desk                                      = Option.empty[SolverDesk]
     private var received: Array[Byte] => Unit             = _ => ()
     private var news: LinkNews => Unit                    = _ => ()

@@ -87,9 +87,9 @@ object LaneDigests:
       TeamCandidate(Engagement.of(one.fleet, 3), Vector(Judged(OffRing(5 + 0.1 * number), Reduction.Rms, 0)))
     val out = TeamBatch(timing, model, threads = 1).fly(
       new TeamWorlds:
-        def size: Int                             = candidates.size
-        def key(world: Int): Int                  = WorldRandom.key(5, 0, 1)
-        def link(world: Int): Delays              = links(1)
+        def size: Int                            = candidates.size
+        def key(world: Int): Int                 = WorldRandom.key(5, 0, 1)
+        def link(world: Int): Delays             = links(1)
         def candidate(world: Int): TeamCandidate = candidates(world)
     )
     val bits = Bits()
@@ -126,12 +126,17 @@ object LaneDigests:
   def lines: Seq[String] =
     val lines = ArrayBuffer(s"${LaneMath.LANES} lanes")
     for
-      (plant, model)    <- plants
-      timing            <- loops(model)
-      shared            <- Seq(true, false)
+      (plant, model)        <- plants
+      timing                <- loops(model)
+      shared                <- Seq(true, false)
       ((name, pursuer), at) <- pursuers.zipWithIndex
       // The scalar engine, which knows no lanes, flies the others.
-      if DuelBatch(Duel.paper, timing, model, threads = 1).fliesByLanes(pursuer(0), PaperEvader(), shared, Nil)
+      if DuelBatch(
+        Duel.paper,
+        timing,
+        model,
+        threads = 1
+      ).fliesByLanes(pursuer(0), PaperEvader(), shared, Nil)
     do
       val aside = Seq(0.0, 2.0)(at % 2)
       val count = if plant == "quadrotor" then 9 else 141

@@ -10,8 +10,10 @@ class LaneDigestsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
   private def started(bytes: Int): (Process, Path, Path) =
     val (out, err) = (Files.createTempFile(folders, "out", ""), Files.createTempFile(folders, "err", ""))
     val java       = Path.of(sys.props("java.home"), "bin", "java").toString
-    val options    = Seq(s"-XX:MaxVectorSize=$bytes", "--add-modules", "jdk.incubator.vector", "-XX:+UseSerialGC")
-    val command    = (java +: options) ++ Seq("-cp", sys.props("java.class.path"), "skein.lanes.printLaneDigests")
+    val options    =
+      Seq(s"-XX:MaxVectorSize=$bytes", "--add-modules", "jdk.incubator.vector", "-XX:+UseSerialGC")
+    val command =
+      (java +: options) ++ Seq("-cp", sys.props("java.class.path"), "skein.lanes.printLaneDigests")
     (ProcessBuilder(command*).redirectOutput(out.toFile).redirectError(err.toFile).start(), out, err)
 
   private lazy val folders = temporaryFolder()

@@ -11,7 +11,8 @@ final class BrokerProcess private (process: Process, val address: Address):
 
   /** As by `kill -9`: it writes nothing more, and tells nobody. */
   def kill(): Unit =
-    if !process.destroyForcibly().waitFor(60, TimeUnit.SECONDS) then throw IllegalStateException("it lives on")
+    if !process.destroyForcibly().waitFor(60, TimeUnit.SECONDS) then
+      throw IllegalStateException("it lives on")
 
 object BrokerProcess:
   private val Started = """broker at port (\d+)""".r

@@ -75,11 +75,11 @@ class KafkaLiveSuite extends munit.FunSuite, Unhurried:
   test(
     "a broker that is killed and started again in a flight: until it is back the deadline's fallback decides for all, who hover; then they fly on, and all is recorded"
   ):
-    val own                = Files.createTempDirectory("kafka-killed")
-    val log                = Files.createTempFile("kafka-killed", ".log")
-    val first              = BrokerProcess.start(own, 0, log.toFile)
-    var last               = first
-    var killedAt, backFrom = Instant.Epoch
+    val own                                      = Files.createTempDirectory("kafka-killed")
+    val log                                      = Files.createTempFile("kafka-killed", ".log")
+    val first                                    = BrokerProcess.start(own, 0, log.toFile)
+    var last                                     = first
+    var killedAt, backFrom                       = Instant.Epoch
     def hovers(seen: Recording, vehicle: String) =
       seen.decisions.count(one =>
         one.vehicle == vehicle && one.decidedAt > killedAt && one.action.contains(Action.Hover)
