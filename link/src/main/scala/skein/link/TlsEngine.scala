@@ -1,14 +1,12 @@
-package skein.cluster
+package skein.link
 
 import java.nio.ByteBuffer
 import javax.net.ssl.{SSLEngine, SSLEngineResult}
-import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.remote.artery.tcp.ConfigSSLEngineProvider
 
 /** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the whole of a record,
   * however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for 18, and so tries for ever.
   */
-private[cluster] final class TlsEngine(own: SSLEngine) extends SSLEngine:
+private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
   import TlsEngine.*
 
   /** @param source
@@ -58,10 +56,3 @@ private object TlsEngine:
 
   /** Of an encrypted record: RFC 8446, 5.2. */
   private val Most = (1 << 14) + 256
-
-/** Engines by Pekko's own settings for certificates. */
-private[cluster] final class TlsEngines(system: ActorSystem) extends ConfigSSLEngineProvider(system):
-  override def createServerSSLEngine(hostname: String, port: Int): SSLEngine =
-    TlsEngine(super.createServerSSLEngine(hostname, port))
-  override def createClientSSLEngine(hostname: String, port: Int): SSLEngine =
-    TlsEngine(super.createClientSSLEngine(hostname, port))
