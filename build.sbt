@@ -179,7 +179,7 @@ lazy val blocks = project
 /** Blocks computed by any number of machines that come and go, over Pekko Cluster. */
 lazy val cluster = project
   .settings(artifact("cluster", "Work on many machines that come and go, counted once, over Pekko Cluster"))
-  .dependsOn(blocks, testing % Test)
+  .dependsOn(blocks, link, testing % Test)
   .settings(libraryDependencies ++= pekkoCluster ++ munit)
 
 /** Recordings. */

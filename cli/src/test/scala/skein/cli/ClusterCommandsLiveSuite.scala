@@ -1,11 +1,13 @@
 package skein.cli
 
+import java.net.ServerSocket
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
+import scala.util.Using
 import skein.blocks.Ledger
 import skein.cluster.WorkerProcesses
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
@@ -91,6 +93,28 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       ),
       "a worker outlived its search"
     )
+
+  test("workers with vectors of 8 and of 16 lanes find together what one process finds, to the bit"):
+    val at      = s"127.0.0.1:${Using.resource(ServerSocket(0))(_.getLocalPort)}"
+    val out     = folder("lanes")
+    val workers = Seq(32, 64).map: bytes =>
+      val words = Seq("worker", "--join", at, "--threads", "1", "--patience", "4min")
+      val java  = WorkerProcesses.likeThis("skein.cli.Main", words)
+      val told  = Files.createTempFile(parent, s"lanes-$bytes", ".log")
+      val own   = ProcessBuilder((java.head +: s"-XX:MaxVectorSize=$bytes" +: java.tail)*)
+      (own.redirectErrorStream(true).redirectOutput(told.toFile).start(), told)
+    try
+      for (worker, told) <- workers do
+        assert(until(Files.readString(told).contains(": joining"))(!worker.isAlive), Files.readString(told))
+      // If no worker works, the search waits for others.
+      val words = question ++ Seq("--cluster", at, "--block", "256", "--out", out.toString)
+      val said  = Await.result(Future(blocking(searched(words))), 4.minutes)
+      for (worker, _) <- workers do
+        val counted = s"-${worker.pid} +1 +(\\d+)".r.findFirstMatchIn(said).fold(0)(_.group(1).toInt)
+        assert(counted > 0, said)
+        assertEquals(worker.waitFor(), 0)
+      assertSame(out)
+    finally workers.foreach(_._1.destroyForcibly(): Unit)
 
   test("who cannot compute is told: options that need workers, and workers that cannot start"):
     def refused(words: String*): String =

@@ -278,7 +278,7 @@ object DocumentedCommands:
   /** Commands that suites of their own run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(
     "search --family lead-pursuit --workers 2" -> classOf[ClusterCommandsLiveSuite],
-    "torture --workers 2"                      -> classOf[TortureElsewhereLiveSuite]
+    "torture --workers 2"                      -> classOf[ElsewhereLiveSuite]
   )
 
   def kindOf(command: String): Kind =

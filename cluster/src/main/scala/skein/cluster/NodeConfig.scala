@@ -21,11 +21,19 @@ private[cluster] object NodeConfig:
       )
     yield ConfigFactory
       .defaultOverrides()
-      .withFallback(tls.fold(ConfigFactory.empty)(_.config))
-      .withFallback(ConfigFactory.parseString(plain(listen)))
+      .withFallback(tls.fold(ConfigFactory.parseString(Plain))(_.config))
+      .withFallback(ConfigFactory.parseString(common(listen)))
       .withFallback(ConfigFactory.load())
 
-  private def plain(listen: Endpoint) = s"""
+  /** Without certificates. */
+  private val Plain = """
+    pekko.remote.artery {
+      transport = tls-tcp
+      ssl.ssl-engine-provider = "skein.cluster.PlainEngines"
+    }
+  """
+
+  private def common(listen: Endpoint) = s"""
     pekko {
       loglevel = "ERROR"
       stdout-loglevel = "OFF"
@@ -43,7 +51,6 @@ private[cluster] object NodeConfig:
       remote {
         warn-about-direct-use = off
         artery {
-          transport = tcp
           canonical.hostname = ${ConfigUtil.quoteString(listen.host)}
           canonical.port = ${listen.port}
           # On a machine that has much else to do, 3 s are not enough.

@@ -39,6 +39,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
     ConfigFactory.parseString(s"""
       pekko.remote.artery {
         transport = tls-tcp
+        ssl.ssl-engine-provider = "skein.cluster.TlsEngines"
         ssl.config-ssl-engine {
           key-store = ${quoted(keyStore.toAbsolutePath)}
           trust-store = ${quoted(trustStore.toAbsolutePath)}

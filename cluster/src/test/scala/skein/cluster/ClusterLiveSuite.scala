@@ -1,6 +1,5 @@
 package skein.cluster
 
-import java.net.Socket
 import java.nio.file.{Files, Path}
 import java.util.concurrent.atomic.AtomicInteger
 import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, Semaphore, TimeUnit}
@@ -167,28 +166,37 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       shipping.close()
       shipment.close()
 
-  test("a stranger's garbage at the port harms nothing"):
-    coordinating: coordinator =>
-      val random = java.util.Random(1)
-      val port   = coordinator.node.address.port
-      for size <- Seq(1, 16, 1 << 10, 1 << 20) do
-        val socket = Socket("127.0.0.1", port)
-        val noise  = Array.ofDim[Byte](size)
-        random.nextBytes(noise)
-        try socket.getOutputStream.write(noise)
-        catch case _: java.io.IOException => () // It is cut off midway.
-        finally socket.close()
-      // What begins as Pekko's own wire does, and goes on with a frame of 2 GiB.
-      val lying = Socket("127.0.0.1", port)
-      try
-        lying.getOutputStream.write("AKKA".getBytes("US-ASCII") ++ Array[Byte](
-          1, -1, -1, -1, 127
-        ) ++ Array.ofDim[Byte](4096))
-      catch case _: java.io.IOException => ()
-      finally lying.close()
-      val (node, _, _) = worker(coordinator.node.address, "anna", Reversing())
-      assertEquals(computed(coordinator.node), answers)
-      node.stop()
+  private def garbage(port: Int): Unit =
+    Garbage.send(port, 0 until 330)(Garbage.of)
+    Garbage.send(port, 0 until 40)(Garbage.endless)
+
+  /** A worker is there before the garbage and while it comes, another one afterwards. */
+  private def assertUnharmed(coordinator: Coordinating, tls: Option[Tls])(send: Int => Unit): Unit =
+    val to           = coordinator.node.address
+    val sent         = CountDownLatch(1)
+    val (anna, _, _) = worker(to, "anna", Reversing(() => sent.await()), tls = tls)
+    assert(coordinator.joined.tryAcquire(60, TimeUnit.SECONDS), "anna has not joined")
+    val answered = coordinator.node.compute(works)
+    send(to.port)
+    sent.countDown()
+    val (ben, _, _) = worker(to, "ben", Reversing(), tls = tls)
+    assert(coordinator.joined.tryAcquire(60, TimeUnit.SECONDS), "ben has not joined")
+    assertEquals(Await.result(answered, 60.seconds).fold(fail(_), _.get), answers)
+    val now = coordinator.node.progress
+    assertEquals(now.coordinator.workers.keySet, Set("anna", "ben"))
+    assertEquals((now.died, now.coordinator.counts.lost), (0, 0L))
+    anna.stop()
+    ben.stop()
+
+  test("a stranger's garbage at the port harms nothing: who is there works on, and others join"):
+    coordinating(assertUnharmed(_, None)(garbage))
+
+  test("nor does it where certificates are asked for"):
+    val own         = tls(lab.head)
+    val coordinator = Coordinating(temporaryFolder(), tls = Some(own))
+    try
+      assertUnharmed(coordinator, Some(own))(garbage)
+    finally coordinator.close()
 
   test("what a worker had that leaves is computed by another"):
     coordinating: coordinator =>

@@ -6,6 +6,11 @@ import scala.concurrent.Future
 /** What messages cross between a flight and a solver. It may lose, delay, repeat and reorder them; it never changes one. */
 trait MessageLink:
 
+  /** How often a flight and its solver greet one another before the flight, so that the first questions do not wait for
+    * what they cross to be compiled.
+    */
+  def rehearsals: Int = 0
+
   /** Begins to reach for the other side, and goes on until it is closed.
     *
     * @param received

@@ -34,9 +34,11 @@ final class SolverClient(
   private val started = Promise[Welcomed]()
 
   // All below is guarded by the lock.
-  private var exchange = Exchange.of(vehicles)
-  private var waiting  = Map.empty[Int, Waiting]
-  private var standing = Standing.Greeting(Silent)
+  private var exchange       = Exchange.of(vehicles)
+  private var waiting        = Map.empty[Int, Waiting]
+  private var standing       = Standing.Greeting(Silent)
+  private var rehearsals     = link.rehearsals
+  private var rehearsedUntil = Option.empty[Instant]
 
   // Other threads that are told of news meanwhile wait for it.
   private lazy val open = link.open(received, told)
@@ -182,14 +184,24 @@ final class SolverClient(
         if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(reason)
 
   private def welcomed(how: Welcomed): Unit =
-    val isNew = lock.synchronized:
-      val was = standing
-      standing = Standing.Welcome
-      was != Standing.Welcome
-    if isNew && !started.trySuccess(how) then
-      val again =
-        "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
-      note(EventKind.Reconnected, None, again.mkString("; "))
+    if rehearses() then greet()
+    else
+      val isNew = lock.synchronized:
+        val was = standing
+        standing = Standing.Welcome
+        was != Standing.Welcome
+      if isNew && !started.trySuccess(how) then
+        val again =
+          "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
+        note(EventKind.Reconnected, None, again.mkString("; "))
+
+  /** Whether it greets once more, before the first question. */
+  private def rehearses(): Boolean = lock.synchronized:
+    val until = rehearsedUntil.getOrElse(clock.now() + RehearsedFor)
+    val again = rehearsals > 0 && clock.now() < until
+    rehearsedUntil = Some(until)
+    rehearsals = if again then rehearsals - 1 else 0
+    again
 
   private def refused(why: String): Unit =
     lock.synchronized:
@@ -198,6 +210,9 @@ final class SolverClient(
 
 object SolverClient:
   private val GreetEvery = Span.ofMillis(500)
+
+  /** At most; a slow link's code need not be fast. */
+  private val RehearsedFor = Span.ofSeconds(3)
 
   private val Silent = "nobody has answered; is ./skein decide started?"
 

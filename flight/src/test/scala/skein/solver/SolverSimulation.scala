@@ -46,6 +46,25 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assertEquals(trial.counts.late, trial.events(EventKind.LateReply).size.toLong)
     trial
 
+  for
+    (name, rehearsals, fate, expected) <- Seq[(String, Int, (To, Int) => Seq[Span], Range)](
+      ("all arrive", 30, (_, _) => Seq(Span.ofMillis(5)), 31 to 31),
+      // The ninth message is lost: greeted again after half a second.
+      ("one is lost", 30, (_, sent) => if sent == 9 then Nil else Seq(Span.ofMillis(5)), 31 to 32),
+      ("they take long, and after 3 s it flies", 1000, (_, _) => Seq(Span.ofMillis(100)), 15 to 100)
+    )
+  do
+    test(s"a link is rehearsed by greetings before the first question, and by none later: $name"):
+      var sent  = Vector.empty[Boolean]
+      val trial = SolverTrial.fly(fate = fate, rehearsals = rehearsals)(hand =>
+        hand.at(4)(hand.breakLink("cut"))
+        hand.at(4.5)(hand.mendLink())
+        hand.at(5.3) { sent = hand.greetings.result() }
+      )
+      assertEquals(trial.outcome, Outcome.Completed)
+      assert(clue(expected).contains(clue(sent.takeWhile(identity).size)))
+      assert(clue(sent.dropWhile(identity).count(identity)) <= 3)
+
   test(
     "decisions are made elsewhere, at the solver's time on the controller's clock, and replay from the recording"
   ):

@@ -41,8 +41,12 @@ object SolverTrial:
   val planning: PlanSettings = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
 
   /** What a test does to a trial under way. */
-  final class Hand(val system: ActorSystem, start: Long => SolverDesk) extends MessageLink:
+  final class Hand(val system: ActorSystem, start: Long => SolverDesk, override val rehearsals: Int)
+      extends MessageLink:
     import system.dispatcher
+
+    /** Whether each message to the solver was a greeting. */
+    val greetings                                         = Vector.newBuilder[Boolean]
     private var desk                                      = Option.empty[SolverDesk]
     private var received: Array[Byte] => Unit             = _ => ()
     private var news: LinkNews => Unit                    = _ => ()
@@ -73,6 +77,7 @@ object SolverTrial:
       after(Span.ofMillis(1).toDuration, system.scheduler)(Future.unit).foreach(_ => news(LinkNews.Up))
       new OpenLink:
         def send(message: Array[Byte]): Either[String, Unit] = down.toLeft:
+          greetings += MessageCodec.message(message).exists(_.isInstanceOf[Message.Hello])
           crossing(To.Solver)(desk.foreach(_.received(Seq(message), reply).fold(sys.error(_), identity)))
         def close(): Future[Done] = Future.successful(Done)
 
@@ -97,7 +102,8 @@ object SolverTrial:
       fleet: Fleet = PaperDuel().fleet,
       solverClock: Span = Span.ofSeconds(-7),
       takes: Question => Span = _ => Span.Zero,
-      fate: (To, Int) => Seq[Span] = (_, _) => Seq(Span.ofMillis(5))
+      fate: (To, Int) => Seq[Span] = (_, _) => Seq(Span.ofMillis(5)),
+      rehearsals: Int = 0
   )(act: Hand => Unit = _ => ()): SolverTrial =
     val run = VirtualTime.run(seed): system =>
       given ActorSystem      = system
@@ -122,7 +128,8 @@ object SolverTrial:
         FlightDeciders(fleet, plans.map(FlightDeciders.Plans(_, planning.deadline, by)))
       val hand = Hand(
         system,
-        id => SolverDesk(id, "same", _ => Right(deciders), theirs, system.dispatcher, hold(id))
+        id => SolverDesk(id, "same", _ => Right(deciders), theirs, system.dispatcher, hold(id)),
+        rehearsals
       )
       hand.fate = fate
       hand.start(1)

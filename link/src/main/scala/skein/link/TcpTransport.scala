@@ -98,7 +98,7 @@ object TcpTransport:
     // The name is verified as a browser does.
     asked.setEndpointIdentificationAlgorithm("HTTPS")
     engine.setSSLParameters(asked)
-    engine
+    TlsEngine(engine)
 
   private def accepting(context: SSLContext): SSLEngine =
     val engine = context.createSSLEngine()
@@ -107,7 +107,7 @@ object TcpTransport:
     asked.setProtocols(Protocols)
     asked.setNeedClientAuth(true)
     engine.setSSLParameters(asked)
-    engine
+    TlsEngine(engine)
 
   private[link] type Explain = PartialFunction[Throwable, Throwable]
 

@@ -1,0 +1,43 @@
+package skein.cluster
+
+import java.nio.ByteBuffer
+
+/** Looks over what a connection of Pekko's brings, which is four letters, a stream's number, and frames behind their
+  * lengths in four bytes each, the lowest first. Pekko 1.2.1 does not check a length: it reads a frame for ever whose length
+  * is below zero or close to 2³¹, and waits for all of one that is too long. Mutable; of one connection.
+  *
+  * @param most
+  *   bytes of a frame
+  */
+private[cluster] final class FrameCheck(most: Int):
+  private var skips  = FrameCheck.Header
+  private var length = 0
+  private var digits = 0
+
+  /** Takes the next bytes, between the buffer's position and its limit, which stay where they are.
+    *
+    * @return
+    *   a length that no frame has, if there is one
+    */
+  def refused(bytes: ByteBuffer): Option[Int] =
+    var at    = bytes.position()
+    var wrong = Option.empty[Int]
+    while wrong.isEmpty && at < bytes.limit() do
+      if skips > 0 then
+        val passed = skips.min(bytes.limit() - at)
+        skips -= passed
+        at += passed
+      else
+        length |= (bytes.get(at) & 0xff) << 8 * digits
+        digits += 1
+        at += 1
+        if digits == 4 then
+          if length < 0 || length > most then wrong = Some(length)
+          else skips = length
+          length = 0
+          digits = 0
+    wrong
+
+private object FrameCheck:
+  /** The letters and the stream's number. */
+  private val Header = 5

@@ -1,0 +1,13 @@
+package skein.cluster
+
+import javax.net.ssl.SSLEngine
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.remote.artery.tcp.ConfigSSLEngineProvider
+import skein.link.TlsEngine
+
+/** Engines by Pekko's own settings for certificates. */
+private[cluster] final class TlsEngines(system: ActorSystem) extends ConfigSSLEngineProvider(system):
+  override def createServerSSLEngine(hostname: String, port: Int): SSLEngine =
+    TlsEngine(super.createServerSSLEngine(hostname, port))
+  override def createClientSSLEngine(hostname: String, port: Int): SSLEngine =
+    TlsEngine(super.createClientSSLEngine(hostname, port))

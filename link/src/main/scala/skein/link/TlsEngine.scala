@@ -1,0 +1,58 @@
+package skein.link
+
+import java.nio.ByteBuffer
+import javax.net.ssl.{SSLEngine, SSLEngineResult}
+
+/** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the whole of a record,
+  * however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for 18, and so tries for ever.
+  */
+private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
+  import TlsEngine.*
+
+  /** @param source
+    *   begins with a record, since a call takes whole ones
+    */
+  def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
+    // What is no record it refuses by itself, once, and is closed then.
+    own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count)
+
+  private def isRecord(source: ByteBuffer): Boolean =
+    def u8(index: Int) = source.get(source.position() + index) & 0xff
+    (source.remaining < 1 || Types.contains(u8(0))) && (source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most)
+
+  export own.{
+    wrap,
+    getDelegatedTask,
+    closeInbound,
+    isInboundDone,
+    closeOutbound,
+    isOutboundDone,
+    getSupportedCipherSuites,
+    getEnabledCipherSuites,
+    setEnabledCipherSuites,
+    getSupportedProtocols,
+    getEnabledProtocols,
+    setEnabledProtocols,
+    getSession,
+    beginHandshake,
+    getHandshakeStatus,
+    setUseClientMode,
+    getUseClientMode,
+    setNeedClientAuth,
+    getNeedClientAuth,
+    setWantClientAuth,
+    getWantClientAuth,
+    setEnableSessionCreation,
+    getEnableSessionCreation
+  }
+
+private object TlsEngine:
+  /** From `change_cipher_spec` to `application_data`: RFC 8446, 5.1. */
+  private val Types = 20 to 23
+
+  private val Header = 5
+
+  private val NoRecord = ByteBuffer.wrap("no record".getBytes("US-ASCII"))
+
+  /** Of an encrypted record: RFC 8446, 5.2. */
+  private val Most = (1 << 14) + 256

@@ -1,0 +1,40 @@
+package skein.link
+
+import java.nio.ByteBuffer
+import javax.net.ssl.SSLEngineResult.{HandshakeStatus, Status}
+import javax.net.ssl.{SSLContext, SSLEngine, SSLException}
+
+class TlsEngineSuite extends munit.FunSuite:
+  private def engine(asClient: Boolean): SSLEngine =
+    val made = SSLContext.getDefault.createSSLEngine("lab", 1)
+    made.setUseClientMode(asClient)
+    TlsEngine(made)
+
+  private val into = ByteBuffer.allocate(1 << 15)
+
+  private val lies = Seq[(String, Array[Byte])](
+    "a record of 32 KiB"                  -> Array[Byte](22, 3, 1, 127, -1),
+    "one byte more than a record has"     -> Array[Byte](23, 3, 3, 65, 1),
+    "the format of before TLS, of 32 KiB" -> Array[Byte](-1, -1, 1, 3, 1),
+    "a type that is none"                 -> Array[Byte](24, 3, 3, 0, 2),
+    "a single byte of noise"              -> Array[Byte](-128)
+  )
+
+  for (name, bytes) <- lies do
+    test(s"what is no record is refused at once, and nothing is waited for: $name"):
+      val server = engine(asClient = false)
+      server.beginHandshake()
+      intercept[SSLException](server.unwrap(ByteBuffer.wrap(bytes), into)): Unit
+      assertEquals(server.unwrap(ByteBuffer.wrap(bytes), into).getStatus, Status.CLOSED)
+
+  test("a greeting passes, in whatever pieces it comes"):
+    val (client, server) = (engine(asClient = true), engine(asClient = false))
+    client.beginHandshake()
+    val greeting = ByteBuffer.allocate(1 << 15)
+    assertEquals(client.wrap(ByteBuffer.allocate(0), greeting).getStatus, Status.OK)
+    greeting.flip(): Unit
+    for size <- 0 until greeting.limit() do
+      val piece = greeting.duplicate().limit(size)
+      assertEquals(server.unwrap(piece, into).getStatus, Status.BUFFER_UNDERFLOW)
+    val result = server.unwrap(greeting, into)
+    assertEquals((result.getStatus, result.getHandshakeStatus), (Status.OK, HandshakeStatus.NEED_TASK))
