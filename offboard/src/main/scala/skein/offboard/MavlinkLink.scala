@@ -10,6 +10,7 @@ import scala.collection.concurrent.TrieMap
 import scala.concurrent.{Future, Promise}
 import skein.mavlink.*
 import skein.port.VehicleError
+import skein.signal.ClockAlignment
 import skein.units.*
 
 /** Vehicles that speak MAVLink over one connection. It speaks as a ground station: heartbeats, and a TIMESYNC behind
@@ -45,6 +46,9 @@ final class MavlinkLink private (
 
   /** What is known of a vehicle now. */
   def control(number: Int): Control = controls(number)
+
+  /** The flight's clock, which is the first vehicle's, against the controller's; none before that was heard. */
+  def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
   /** Asks something of a vehicle. */
   private[offboard] def ask(number: Int)(what: (

@@ -11,6 +11,9 @@ import skein.units.*
   */
 final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span):
 
+  /** TIMESYNCs that count. */
+  def exchanges: Int = alignment.latest.size
+
   def answered(sentAt: Instant, answeredAt: Instant, receivedAt: Instant): VehicleClock =
     VehicleClock(
       alignment.updated(Stamped((), answeredAt, sentAt, receivedAt)),
