@@ -121,9 +121,10 @@ final class FlightAssembler(
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val team         = Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver, reached.clocks)
-        val startedAt    = clock.now()
-        val watchdog     = SimulatorWatchdog(
+        val team         =
+          Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver, reached.clocks)
+        val startedAt = clock.now()
+        val watchdog  = SimulatorWatchdog(
           monitor,
           clock,
           startedAt,

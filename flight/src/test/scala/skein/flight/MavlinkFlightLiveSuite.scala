@@ -86,8 +86,9 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
     )
 
   test("the duel flies by datagrams over an emulated link that delays each by itself"):
-    val profile = LatencyProfile.parse("uniform:10ms..30ms", Left(_)).fold(error => fail(error.message), identity)
-    val link    = EmulatedLink(LinkProfile.symmetric(profile), seed = 1, Clock.system)
+    val profile =
+      LatencyProfile.parse("uniform:10ms..30ms", Left(_)).fold(error => fail(error.message), identity)
+    val link = EmulatedLink(LinkProfile.symmetric(profile), seed = 1, Clock.system)
     flies(byDatagrams): server =>
       LinkProxy
         .start(

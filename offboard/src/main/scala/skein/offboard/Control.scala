@@ -22,8 +22,7 @@ import skein.units.Decimals.fixed
   * @param highestM
   *   and so far above it
   * @param exchanges
-  *   a vehicle is ready after so many TIMESYNCs, at most [[skein.signal.ClockAlignment.Memory]]; until then, one leaves
-  *   every [[Control.Tick]]
+  *   a vehicle is ready after so many TIMESYNCs; until then, one leaves every [[Control.Tick]]
   */
 final case class OffboardSettings(
     renewEvery: Span = Span.ofMillis(100),

@@ -178,7 +178,7 @@ class ControlSuite extends munit.FunSuite:
       assert(!done.next.isArmed)
 
   test("clocks are aligned by TIMESYNCs every 10 ms before it is ready, and by one in 100 ms afterwards"):
-    val begun = known().copy(settings = OffboardSettings(exchanges = 5))
+    val begun             = known().copy(settings = OffboardSettings(exchanges = 5))
     val (aligned, counts) =
       (1 to 50).foldLeft((begun, Vector.empty[Int])): (before, tick) =>
         val now  = at(20 + 10 * tick)
