@@ -60,7 +60,7 @@ final class FlyCommand(using Scenarios)
         .fold(Right(None))(Arguments.address(_).map(Some(_)))
       _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
         s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's wire is TCP as it is"
-      _         <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
+      _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is of the built-in simulator; what flies in --simulator is its own affair"

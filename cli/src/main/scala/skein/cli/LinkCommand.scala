@@ -95,7 +95,9 @@ object LinkCommand
       val proxy     = Edge.await(
         LinkProxy.start(listenAt, to, link, transport, unreachable = warn, isDatagrams = isUdp)
       )
-      Console.out.println(s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it")
+      Console.out.println(
+        s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it"
+      )
       val stopped = CountDownLatch(1)
       Edge.untilInterrupted(() => stopped.countDown()):
         stopped.await()

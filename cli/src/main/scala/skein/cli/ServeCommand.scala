@@ -80,14 +80,14 @@ object ServeCommand
         s"$flies: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
       _ <- Expect.that(options.mavlinkInstance.isEmpty || options.mavlink.value):
         "--mavlink-instance: expected together with --mavlink"
-      instance = options.mavlinkInstance.getOrElse(0)
+      instance     = options.mavlinkInstance.getOrElse(0)
       mostInstance = MavlinkSettings.MostSystems - world.vehicles.size
       _ <- Expect.that(!options.mavlink.value || instance >= 0 && instance <= mostInstance):
         s"--mavlink-instance: expected 0 to $mostInstance, came $instance"
       mavlink =
         Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
-      hil     = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
-      shows   = Shows()
+      hil   = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
+      shows = Shows()
       _ <- options.view.serving(shows)(
         serve(
           SimulatorSettings(

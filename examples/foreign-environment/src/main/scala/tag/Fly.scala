@@ -26,7 +26,12 @@ val scenario = Surround(vehicles = 4, ringM = 5, pursuerMps = 10, evaderMps = 5)
   given system: ActorSystem = ActorSystem("tag")
   given Scenarios           = Scenarios(ScenarioKind(scenario))
   val flights               = (LoopKind.Paused, LatencyProfile.none) +:
-    Vector(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive).map((_, LatencyProfile.vpn))
+    Vector(
+      LoopKind.Sequential,
+      LoopKind.Futures,
+      LoopKind.Stream,
+      LoopKind.Predictive
+    ).map((_, LatencyProfile.vpn))
   Files.createDirectories(Path.of(folder)): Unit
   try
     val files = flights.map((loop, link) => flown(path, Path.of(folder), loop, link))

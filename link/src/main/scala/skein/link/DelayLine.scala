@@ -82,7 +82,7 @@ private[link] final class DelayLine(
         case Some(due) =>
           // All but a datagram is due after what entered before.
           underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
-        case None      =>
+        case None =>
           bytesUnderWay -= waiting.bytes.size
           counts.bytesLost.add(waiting.bytes.size)
 
@@ -96,9 +96,9 @@ private[link] final class DelayLine(
           val now = sinceStart()
           while atSender.nonEmpty && roomAt <= now do
             val Waiting(bytes, since, delay) = atSender.dequeue()
-            val (piece, rest) =
+            val (piece, rest)                =
               if isDatagrams then (bytes, ByteString.empty) else bytes.splitAt(line.pieceBytes)
-            val sent                         = line.send(now, piece.size)
+            val sent = line.send(now, piece.size)
             roomAt = sent.roomAt
             if held then counts.bytesHeldBack.add(piece.size)
             counts.longestWaitNs.accumulate((sent.sentAt - since).toNanos)
@@ -159,7 +159,7 @@ private[link] final class DelayLine(
         if isAvailable(out) && underWay.headOption.exists(_.due <= now) then
           val segments =
             if isDatagrams then Seq(underWay.dequeue()) else underWay.removeHeadWhile(_.due <= now)
-          val bytes    = segments.foldLeft(ByteString.empty)(_ ++ _.bytes)
+          val bytes = segments.foldLeft(ByteString.empty)(_ ++ _.bytes)
           bytesUnderWay -= bytes.size
           counts.bytesDelivered.add(bytes.size)
           push(out, bytes)

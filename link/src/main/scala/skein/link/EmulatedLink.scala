@@ -79,7 +79,9 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
         counters,
         isDatagrams
       ))
-      if profile.cutsSegments && !isDatagrams then delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index))) else delayed
+      if profile.cutsSegments && !isDatagrams then
+        delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index)))
+      else delayed
     BidiFlow.fromFlows(
       line(toServer, index),
       line(toClient, index + 1)

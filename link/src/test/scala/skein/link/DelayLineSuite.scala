@@ -77,7 +77,7 @@ class DelayLineSuite extends munit.FunSuite:
     assert(came.map(_._2).sliding(2).forall(pair => pair(0) < pair(1)))
 
   test("datagrams come out as they went in, each after its own delay, so later ones overtake"):
-    val sent                              = 500
+    val sent                                = 500
     def delays(came: Seq[(String, Double)]) = came.map((text, ms) => ms - text.stripSuffix(";").toInt)
     val came = over(LatencyProfile.vpn, isDatagrams = true)(line => arrivals(every(1, sent), line))
     assertEquals(came.map(_._1).toSet, (0 until sent).map(i => s"$i;").toSet)

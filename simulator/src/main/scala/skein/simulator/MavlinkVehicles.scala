@@ -10,7 +10,8 @@ import skein.vehicle.Setpoint
   * for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is disarmed; before and after,
   * AirSim's API can fly it.
   */
-private[simulator] final class MavlinkVehicles(simulation: Simulation, settings: MavlinkSettings) extends PeerProtocol:
+private[simulator] final class MavlinkVehicles(simulation: Simulation, settings: MavlinkSettings)
+    extends PeerProtocol:
   import MavlinkVehicles.*
 
   private val world      = simulation.world
