@@ -7,11 +7,11 @@ import skein.report.Report
 import skein.scenario.{Scenarios, Surround}
 import skein.settings.{FlySettings, Wire}
 import skein.signal.LatencyProfile
-import skein.testing.{Optimised, TemporaryFolders}
+import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 import skein.units.*
 
 /** A team over one MAVLink connection, and its report. */
-class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
+class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
   private given Scenarios = OurScenarios.all
 
   folder.test("six vehicles on one link surround an evader, and the report tells of it"): folder =>
