@@ -133,7 +133,7 @@ lazy val simulator = project
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
   .dependsOn(scene, autopilot, hil % "compile->compile;test->test", airsim % "compile->compile;test->test")
   .dependsOn(vtime % Test, testing % Test)
-  .settings(underAgent, libraryDependencies ++= pekkoTyped ++ munit)
+  .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= pekkoTyped ++ munit)
 
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
 lazy val mcap = project

@@ -107,3 +107,43 @@ def test_mistakes_are_told_to_the_flight_and_to_who_begins():
         EnvironmentSimulator(Point(), step_s=0, vehicles={"One": None}, body=body, action=action)
     with pytest.raises(ValueError, match="expected one, since a Gymnasium environment has one agent, came 2"):
         EnvironmentSimulator(Point(), step_s=1, vehicles={"One": None, "Two": None}, body=body, action=action)
+
+
+def test_rewards_of_a_mujoco_environment_are_those_of_its_own_loop_to_the_digit():
+    gymnasium = pytest.importorskip("gymnasium")
+    pytest.importorskip("mujoco")
+
+    def jacobian(seen):
+        """Of the fingertip's place by the two joints: links of 10 and 11 cm."""
+        cos_1, cos_2, sin_1, sin_2 = seen[0:4]
+        cos, sin = cos_1 * cos_2 - sin_1 * sin_2, sin_1 * cos_2 + cos_1 * sin_2
+        return np.array([[-0.1 * sin_1 - 0.11 * sin, -0.11 * sin], [0.1 * cos_1 + 0.11 * cos, 0.11 * cos]])
+
+    def fingertip(agent, seen):
+        (x, y), (vx, vy) = seen[4:6] + seen[8:10], jacobian(seen) @ seen[6:8]
+        return Body((x, y, 0.0), (vx, vy, 0.0))
+
+    def torques(agent, seen, velocity):
+        error = np.array(velocity[:2]) - jacobian(seen) @ seen[6:8]
+        return np.clip(3 * jacobian(seen).T @ error, -1, 1).astype(np.float32)
+
+    served = EnvironmentSimulator(
+        gymnasium.make("Reacher-v5"), step_s=0.02, vehicles={"Arm": None}, body=fingertip, action=torques, seed=11
+    )
+    own = gymnasium.make("Reacher-v5")
+    seen, _ = own.reset(seed=11)
+    rewards, ends = [], []
+    with served as simulator, Flight(simulator) as flight:
+        told = flight.ask()["vehicles"]["Arm"]
+        for step in range(60):
+            velocity = [0.2 * np.cos(0.1 * step), 0.2 * np.sin(0.1 * step), 0.0]
+            told = flight.ask(velocities={"Arm": velocity})["vehicles"]["Arm"]
+            if not any(ends):
+                seen, reward, terminated, truncated, _ = own.step(torques(None, seen, velocity))
+                assert (told["reward"], told["terminated"], told["truncated"]) == (reward, terminated, truncated)
+                assert told["body"][:2] == list(fingertip(None, seen).position_ned[:2])
+                rewards.append(reward)
+                ends.append(truncated)
+    # Its own limit of steps ends it; the arm has moved.
+    assert len(rewards) == 50 and ends[-1]
+    assert len(set(rewards)) == 50

@@ -10,7 +10,7 @@ import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.scene.Scene
-import skein.settings.{FlightPlan, FlySettings}
+import skein.settings.{FlightPlan, FlySettings, Wire}
 import skein.units.{Clock, Expect}
 import skein.view.Shows
 
@@ -18,7 +18,8 @@ import skein.view.Shows
 final case class FlyOptions(
     flights: FlightOptions,
     @arg(doc =
-      "a simulator that runs already, AirSim for example; without it, each flight has a built-in one"
+      "a simulator that runs already, AirSim for example; with --mavlink by UDP, or by TCP as tcp://HOST:PORT; without it, " +
+        "each flight has a built-in one"
     )
     simulator: Option[String],
     @arg(doc =
@@ -53,8 +54,13 @@ final class FlyCommand(using Scenarios)
       settings <- options.flights.settings
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
-      simulator <- options.simulator.fold(Right(None))(Arguments.address(_).map(Some(_)))
-      _         <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
+      isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
+      simulator <- options.simulator
+        .map(_.stripPrefix(FlyCommand.Tcp))
+        .fold(Right(None))(Arguments.address(_).map(Some(_)))
+      _ <- Expect.that(!isTcp || settings.wire == Wire.Mavlink):
+        s"--simulator: ${FlyCommand.Tcp} is for --mavlink alone; AirSim's wire is TCP as it is"
+      _ <- Expect.that(simulator.isEmpty || settings.scene.isEmpty):
         "--scene is of the built-in simulator; what stands in the world of --simulator is its own affair"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is of the built-in simulator; what flies in --simulator is its own affair"
@@ -84,7 +90,7 @@ final class FlyCommand(using Scenarios)
             requests = OutsideRequests()
             shown    =
               Option.when(options.view.view.value)(OnShow(shows, requests, scene, settings.imagingSensors))
-            live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured)
+            live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp)
             flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
           yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), options.twins, out)))
         case ClockKind.Virtual =>
@@ -178,6 +184,8 @@ final class FlyCommand(using Scenarios)
     Expect.that(failures.isEmpty)(failures.mkString("\n"))
 
 private[cli] object FlyCommand:
+  private val Tcp = "tcp://"
+
   /** Loops that this process has compiled: its next command need not. */
   @volatile private var warm = Set.empty[LoopKind]
 

@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.util.concurrent.CountDownLatch
-import mainargs.{ParserForClass, arg}
+import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.link.*
 import skein.signal.{Bandwidth, LatencyProfile}
@@ -13,6 +13,10 @@ final case class LinkOptions(
     listen: String,
     @arg(doc = "the server behind the link")
     to: String,
+    @arg(doc =
+      "carries datagrams, and not TCP: each comes out as it went in, after a delay of its own, so a later one may come first"
+    )
+    udp: Flag,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
         "lognormal:36ms,0.3 or file:PATH; times are round trips; correlated:250ms,PROFILE holds each for a while"
@@ -48,7 +52,7 @@ object LinkCommand
       listenAt <- Arguments.address(options.listen).left.map("--listen: " + _)
       to       <- Arguments.address(options.to).left.map("--to: " + _)
       profile  <- profileOf(options)
-      _        <- serve(listenAt, to, profile, options.seed)
+      _        <- serve(listenAt, to, profile, options)
     yield ()
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
@@ -76,13 +80,24 @@ object LinkCommand
     case Some(text) =>
       Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, came '$text'").map(Some(_))
 
-  private def serve(listenAt: Address, to: Address, profile: LinkProfile, seed: Long): Either[String, Unit] =
+  private def serve(
+      listenAt: Address,
+      to: Address,
+      profile: LinkProfile,
+      options: LinkOptions
+  ): Either[String, Unit] =
     given system: ActorSystem   = ActorSystem("skein")
     def warn(reason: Throwable) = Console.err.println(s"skein link: ${reason.getMessage}")
     try
-      val link  = EmulatedLink(profile, seed, Clock.system)
-      val proxy = Edge.await(LinkProxy.start(listenAt, to, link, TcpTransport(), unreachable = warn))
-      Console.out.println(s"${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it")
+      val link      = EmulatedLink(profile, options.seed, Clock.system)
+      val isUdp     = options.udp.value
+      val transport = if isUdp then UdpTransport() else TcpTransport()
+      val proxy     = Edge.await(
+        LinkProxy.start(listenAt, to, link, transport, unreachable = warn, isDatagrams = isUdp)
+      )
+      Console.out.println(
+        s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it"
+      )
       val stopped = CountDownLatch(1)
       Edge.untilInterrupted(() => stopped.countDown()):
         stopped.await()

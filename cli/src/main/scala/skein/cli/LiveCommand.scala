@@ -21,6 +21,8 @@ import skein.units.Clock
   *   for what is written beside the recordings
   * @param requests
   *   that end or hold flights from outside
+  * @param isMavlinkByTcp
+  *   see [[FlightAssembler]]
   */
 private[cli] final class LiveCommand(
     settings: FlySettings,
@@ -29,7 +31,8 @@ private[cli] final class LiveCommand(
     shown: Option[OnShow],
     sinks: RecordOptions.Sinks,
     requests: OutsideRequests,
-    secured: SolverSecurity.Checked
+    secured: SolverSecurity.Checked,
+    isMavlinkByTcp: Boolean
 ):
   import LiveCommand.*
 
@@ -44,7 +47,8 @@ private[cli] final class LiveCommand(
       tell = tell,
       calledOff = requests.calledOff,
       solvers = SolverOptions.reached(settings, secured),
-      isWatched = shown.isDefined
+      isWatched = shown.isDefined,
+      isMavlinkByTcp = isMavlinkByTcp
     )
     try if simulator.isEmpty then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
     finally

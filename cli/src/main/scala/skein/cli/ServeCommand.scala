@@ -36,6 +36,12 @@ final case class ServeOptions(
         "programs, a vehicle each; all vehicles also at UDP 18570"
     )
     mavlink: Flag,
+    @arg(
+      name = "mavlink-instance",
+      doc =
+        "for a second serve --mavlink: the first vehicle's number, as PX4's -i, by which ports and systems are higher; 0 unless told otherwise"
+    )
+    mavlinkInstance: Option[Int],
     @arg(doc =
       "lets an autopilot outside fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), ardupilot (JSON, UDP 9002, 9012, …) " +
         "or betaflight (UDP 9002, one vehicle)"
@@ -72,9 +78,16 @@ object ServeCommand
       flies = if autopilot.isDefined then "--hil" else "--mavlink"
       _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value || !world.vehicles.exists(_.isCar)):
         s"$flies: expected multirotors alone, came the car ${world.vehicles.find(_.isCar).fold("")(_.name)}"
-      mavlink = Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host))
-      hil     = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
-      shows   = Shows()
+      _ <- Expect.that(options.mavlinkInstance.isEmpty || options.mavlink.value):
+        "--mavlink-instance: expected together with --mavlink"
+      instance     = options.mavlinkInstance.getOrElse(0)
+      mostInstance = MavlinkSettings.MostSystems - world.vehicles.size
+      _ <- Expect.that(!options.mavlink.value || instance >= 0 && instance <= mostInstance):
+        s"--mavlink-instance: expected 0 to $mostInstance, came $instance"
+      mavlink =
+        Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
+      hil   = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
+      shows = Shows()
       _ <- options.view.serving(shows)(
         serve(
           SimulatorSettings(

@@ -54,6 +54,20 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertRefused(FlyCommand(), cars :+ "--mavlink", "came mavlink, which cars do not speak: Lead")
 
+  test("what is for MAVLink alone is refused without it"):
+    assertRefused(FlyCommand(), Seq("--simulator", "tcp://127.0.0.1:5760"), "tcp:// is for --mavlink alone")
+    assertRefused(
+      FlyCommand(),
+      Seq("--mavlink", "--simulator", "tcp://127.0.0.1"),
+      "expected HOST:PORT, for example 127.0.0.1:41451, came '127.0.0.1'"
+    )
+    assertRefused(ServeCommand, Seq("--mavlink-instance", "1"), "expected together with --mavlink")
+    assertRefused(
+      ServeCommand,
+      Seq("--mavlink", "--mavlink-instance", "250"),
+      "--mavlink-instance: expected 0 to 249, came 250"
+    )
+
   test("a tolerance without end holds for everything, and is refused"):
     for value <- Seq("Infinity", "NaN", "0", "-1") do
       assertRefused(

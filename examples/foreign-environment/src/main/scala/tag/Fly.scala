@@ -17,7 +17,7 @@ import skein.vehicle.ConstantVelocity
 /** Three pursuers ring an evader, in whatever world is behind the socket. */
 val scenario = Surround(vehicles = 4, ringM = 5, pursuerMps = 10, evaderMps = 5)
 
-/** Flies it paused, as its truth, and by three loops over the paper's VPN; writes recordings and a report.
+/** Flies it paused, as its truth, and by four loops over the paper's VPN; writes recordings and a report.
   *
   * @param path
   *   of the environment's socket
@@ -26,7 +26,12 @@ val scenario = Surround(vehicles = 4, ringM = 5, pursuerMps = 10, evaderMps = 5)
   given system: ActorSystem = ActorSystem("tag")
   given Scenarios           = Scenarios(ScenarioKind(scenario))
   val flights               = (LoopKind.Paused, LatencyProfile.none) +:
-    Vector(LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive).map((_, LatencyProfile.vpn))
+    Vector(
+      LoopKind.Sequential,
+      LoopKind.Futures,
+      LoopKind.Stream,
+      LoopKind.Predictive
+    ).map((_, LatencyProfile.vpn))
   Files.createDirectories(Path.of(folder)): Unit
   try
     val files = flights.map((loop, link) => flown(path, Path.of(folder), loop, link))

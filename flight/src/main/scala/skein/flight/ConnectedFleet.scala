@@ -2,6 +2,7 @@ package skein.flight
 
 import scala.concurrent.Future
 import skein.port.{SteppedTime, VehiclePort}
+import skein.signal.ClockAlignment
 
 /** The vehicles of a flight, reached over a wire and at their starts.
   *
@@ -13,6 +14,8 @@ import skein.port.{SteppedTime, VehiclePort}
   *   what recognises in their cameras' images
   * @param films
   *   of their other cameras
+  * @param clocks
+  *   the vehicles' clock against the controller's, where it is known already
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],
@@ -21,7 +24,8 @@ private[flight] final case class ConnectedFleet(
     ping: () => Future[Any],
     isOther: () => Future[Either[String, Option[String]]],
     cameras: Vector[CameraSensor] = Vector.empty,
-    films: Vector[FilmedCamera] = Vector.empty
+    films: Vector[FilmedCamera] = Vector.empty,
+    clocks: Option[ClockAlignment] = None
 )
 
 /** Why a flight cannot be flown, as a line for a person. */

@@ -35,6 +35,8 @@ import skein.units.*
   *   why a flight, by its name, goes no further while its vehicles are brought to their starts
   * @param isWatched
   *   whether its records are shown, so that images and clouds are offered that are not recorded
+  * @param isMavlinkByTcp
+  *   whether `simulator` is reached by TCP where it speaks MAVLink, and not by datagrams
   */
 final class FlightAssembler(
     transport: Transport,
@@ -46,7 +48,8 @@ final class FlightAssembler(
     learnsOn: Option[ExecutionContext] = None,
     calledOff: String => Option[String] = _ => None,
     solvers: Solvers = Solvers.none,
-    isWatched: Boolean = false
+    isWatched: Boolean = false,
+    isMavlinkByTcp: Boolean = false
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -118,9 +121,10 @@ final class FlightAssembler(
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val team         = Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver)
-        val startedAt    = clock.now()
-        val watchdog     = SimulatorWatchdog(
+        val team         =
+          Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver, reached.clocks)
+        val startedAt = clock.now()
+        val watchdog  = SimulatorWatchdog(
           monitor,
           clock,
           startedAt,
@@ -222,14 +226,15 @@ final class FlightAssembler(
           Future.successful(Done)
         taught(lessons, explore)
 
-  /** By a connection of bytes to a simulator of its own, by datagrams to any other. */
+  /** By a connection of bytes to a simulator of its own, to any other by datagrams unless told otherwise. */
   private def overMavlink(
       plan: FlightPlan,
       server: Option[SimulatorServer],
       opened: Opened
   ): Future[ConnectedFleet] =
     val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
-    val by      = if server.isDefined then transport else UdpTransport()
+    val isTcp   = server.isDefined || isMavlinkByTcp
+    val by      = if isTcp then transport else UdpTransport()
     def plain() = by.connect(at)
     def linked: Flow[ByteString, ByteString, ?] =
       if plan.link == LatencyProfile.none then plain()
@@ -239,7 +244,7 @@ final class FlightAssembler(
           .join(plain())
     val origin  = server.map(_ => WorldSettings.DefaultOrigin)
     val mavlink =
-      MavlinkFleet(fleet, clock, origin, plain, isDatagrams = server.isEmpty, () => calledOff(plan.id))
+      MavlinkFleet(fleet, clock, origin, plain, isDatagrams = !isTcp, () => calledOff(plan.id))
     def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
@@ -249,7 +254,14 @@ final class FlightAssembler(
       (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
     yield
       val _ = opened.closing(link)(_.close())
-      ConnectedFleet(vehicles, None, at.toString, () => Future.unit, () => Future.successful(Right(None)))
+      ConnectedFleet(
+        vehicles,
+        None,
+        at.toString,
+        () => Future.unit,
+        () => Future.successful(Right(None)),
+        clocks = link.clocks
+      )
 
   private def serve(): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)

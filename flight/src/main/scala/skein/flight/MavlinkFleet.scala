@@ -51,7 +51,7 @@ private[flight] final class MavlinkFleet(
           .recover { case StartPositioning.NotReady(reason) => Left(reason) }
           .flatMap(result => link.close().map(_ => result))
 
-  /** Opens the connection that is flown over.
+  /** Opens the connection that is flown over, and aligns the clocks over it before anything is decided.
     *
     * @param isStream
     *   whether what stands between makes a stream of it
@@ -61,7 +61,14 @@ private[flight] final class MavlinkFleet(
       isStream: Boolean
   ): Future[Either[String, (MavlinkLink, Vector[MavlinkVehicle])]] =
     MavlinkLink
-      .open(flow, systems, clock, origin, settings, isDatagrams = isDatagrams && !isStream)
+      .open(
+        flow,
+        systems,
+        clock,
+        origin,
+        settings.copy(exchanges = Exchanges),
+        isDatagrams = isDatagrams && !isStream
+      )
       .map(_.left.map(_.message).map(link => (link, systems.map(MavlinkVehicle(link, _)))))
 
   private def leaveGround(vehicle: MavlinkVehicle): Future[Vector3] =
@@ -85,6 +92,9 @@ private[flight] final class MavlinkFleet(
 private object MavlinkFleet:
   /** Of the geofence above the highest start, m: vehicles climb to their layers first. */
   private val AboveM = 100.0
+
+  /** TIMESYNCs before the first decision: 3 s of them. */
+  private val Exchanges = 300
 
   /** So far off the ground a vehicle flies, m. */
   private val RisenM = 1.0

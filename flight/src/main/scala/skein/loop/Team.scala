@@ -6,12 +6,15 @@ import skein.loop.planning.PlanWorkers
 import skein.policy.Fleet
 import skein.port.VehiclePort
 import skein.record.Recorder
+import skein.signal.ClockAlignment
 import skein.units.*
 
 /** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in them.
   *
   * @param solver
   *   decides in the policies' place; the settings then have a deadline
+  * @param clocks
+  *   the vehicles' clock against the controller's, as far as known before the first reading
   */
 final class Team(
     val fleet: Fleet,
@@ -20,7 +23,8 @@ final class Team(
     recorder: Recorder,
     val settings: LoopSettings,
     workers: PlanWorkers = PlanWorkers.none,
-    solver: Option[Solver] = None
+    solver: Option[Solver] = None,
+    clocks: Option[ClockAlignment] = None
 )(using ExecutionContext):
   require(ports.size == fleet.agents.size, "one vehicle per agent")
   require(solver.isEmpty || settings.deadline.isDefined, "who is asked elsewhere needs a deadline")
@@ -34,8 +38,8 @@ final class Team(
   val hold: Hold = Hold()
 
   private val parts    = TeamParts(fleet)
-  private val sensing  = TeamSensing(fleet, ports, clock, settings, parts, log)
-  private val viewing  = TeamViewing(fleet, settings, hold, sensing, parts, log)
+  private val sensing  = TeamSensing(fleet, ports, clock, settings, clocks, parts, log)
+  private val viewing  = TeamViewing(fleet, settings, clocks, hold, sensing, parts, log)
   private val deciding = TeamDeciding(fleet, clock, settings, deciders, workers, solver, sensing, parts, log)
   private val steering = TeamSteering(fleet, ports, clock, settings, hold, sensing, parts, log)
 

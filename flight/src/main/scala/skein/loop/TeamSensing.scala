@@ -17,6 +17,7 @@ private final class TeamSensing(
     ports: Vector[VehiclePort],
     clock: Clock,
     settings: LoopSettings,
+    clocksBefore: Option[ClockAlignment],
     parts: TeamParts,
     log: TeamLog
 )(using ExecutionContext):
@@ -26,7 +27,7 @@ private final class TeamSensing(
   private val asked = AtomicLongArray(ports.size)
 
   // Known as answers come, before anything is made of them.
-  private val clocks = AtomicReference(Option.empty[ClockAlignment])
+  private val clocks = AtomicReference(clocksBefore)
 
   /** Asks a vehicle where it is; the answer, or the error, is recorded. From any thread. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] =

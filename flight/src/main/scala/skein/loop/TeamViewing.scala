@@ -7,12 +7,14 @@ import skein.flow.Hold
 import skein.forecast.{Commanded, Evidence, Forecast}
 import skein.policy.Fleet
 import skein.record.EventKind
+import skein.signal.ClockAlignment
 import skein.units.*
 
 /** Joins what a loop is told to views of the team, and says who shall decide upon them. */
 private final class TeamViewing(
     fleet: Fleet,
     settings: LoopSettings,
+    clocks: Option[ClockAlignment],
     hold: Hold,
     sensing: TeamSensing,
     parts: TeamParts,
@@ -30,13 +32,15 @@ private final class TeamViewing(
     Broadcast[DecisionRequest](deciders).addAttributes(parts.named("cast"))
 
   /** Joins events to views; emits those on which somebody shall decide. */
-  def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(TeamView.empty(fleet.agents.size))
+  def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(nothingSeen)
 
   /** The same, with all that a forecast needs. */
   def viewWithForecast: Flow[LoopEvent, DecisionRequest, NotUsed] =
     viewFrom(
-      TeamView.empty(fleet.agents.size).copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+      nothingSeen.copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
     )
+
+  private def nothingSeen = TeamView.empty(fleet.agents.size).copy(alignment = clocks)
 
   private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
     val meter = parts.meter("view")

@@ -30,6 +30,7 @@ object RecordedPlan:
   private val DeadlineNs    = "deadlineNs"
   private val Images        = "images"
   private val Plant         = "plant"
+  private val Spoken        = "wire"
 
   /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
   val PolicyName = "policy"
@@ -58,6 +59,9 @@ object RecordedPlan:
     ) ++ Option.when(!settings.plant.isAirSim)(Parameter(
       Plant,
       settings.plant.text
+    )) ++ Option.when(settings.wire != Wire.AirSim)(Parameter(
+      Spoken,
+      settings.wire.label
     )) ++ plan.solver.toSeq.map(choice => Parameter(SolverSummary.Parameter, choice.text)) ++
       Option.when(settings.images.nonEmpty)(
         Parameter(Images, settings.images.map(_.text).mkString(" "))
@@ -102,6 +106,7 @@ object RecordedPlan:
       fallback <- optional(Replay.Fallback, "hold, repeat, hover or a policy")(Fallback.parse(_).toOption)
       solver   <- optional(SolverSummary.Parameter, "where a solver is")(SolverChoice.parse(_).toOption)
       plant    <- optional(Plant, SimulatedBody.forms)(SimulatedBody.recorded(_).toOption)
+      wire     <- optional(Spoken, Wire.values.map(_.label).mkString(" or "))(Wire.parse(_).toOption)
       images   <- optional(Images, "sources of images, with a space between two"): text =>
         val (wrong, sources) = text.split(' ').toList.partitionMap(ImageSource.parse)
         Option.when(wrong.isEmpty)(sources)
@@ -132,7 +137,8 @@ object RecordedPlan:
         fallback = fallback.getOrElse(settings.fallback),
         scene = Some(scene),
         images = images.getOrElse(Nil),
-        plant = plant.getOrElse(settings.plant)
+        plant = plant.getOrElse(settings.plant),
+        wire = wire.getOrElse(settings.wire)
       ),
       FlightPlan(flight.id, loop, link, flight.seed, policy, solver)
     )

@@ -1,11 +1,10 @@
 package skein.flight
 
-import java.net.{DatagramSocket, InetAddress}
 import org.apache.pekko.actor.ActorSystem
-import scala.concurrent.Await
+import scala.concurrent.{Await, Future}
 import scala.concurrent.duration.*
 import skein.airsim.{VehicleSettings, WorldSettings}
-import skein.link.{Address, TcpTransport}
+import skein.link.*
 import skein.loop.{LoopKind, Outcome}
 import skein.record.MemoryRecorder
 import skein.settings.{FlySettings, Wire}
@@ -14,7 +13,7 @@ import skein.simulator.*
 import skein.testing.Waiting
 import skein.units.*
 
-/** A flight over MAVLink by UDP, with a simulator that runs already, as PX4's would; its clock runs faster, since the ways to
+/** Flights over MAVLink by UDP and by TCP, with a simulator that runs already, as PX4's would; its clock runs faster, since the ways to
   * the starts are most of it.
   */
 class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
@@ -33,19 +32,23 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
   )
   private val plan = settings.plans.head
 
-  private def assembler(port: Int) =
-    FlightAssembler(TcpTransport(), Clock.system, settings, Some(Address("127.0.0.1", port)))
+  private def assembler(port: Int, isTcp: Boolean = false) = FlightAssembler(
+    TcpTransport(),
+    Clock.system,
+    settings,
+    Some(Address("127.0.0.1", port)),
+    isMavlinkByTcp = isTcp
+  )
 
   /** Begins where nobody is to be found while the other test flies. */
   private val unheard =
     val flying = assembler(9)
     flying.start(plan, MemoryRecorder(flying.heading(plan, "real")))
 
-  test("the duel flies by datagrams: vehicles take off, come to their starts, and are flown to the end"):
-    val port =
-      val socket = DatagramSocket(0, InetAddress.getLoopbackAddress)
-      try socket.getLocalPort
-      finally socket.close()
+  /** Vehicles take off, come to their starts, and are flown to the end. */
+  private def flies(mavlink: MavlinkSettings, isTcp: Boolean = false)(
+      reached: SimulatorServer => Future[Address]
+  ): Unit =
     val vehicles = settings.fleet.agents.zipWithIndex.map((agent, index) =>
       VehicleSettings(agent.name, Vector3(0, 5 * index, 0))
     )
@@ -55,7 +58,7 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
           WorldSettings(vehicles),
           Address("127.0.0.1", 0),
           speed = 3,
-          mavlink = Some(MavlinkSettings(udp = Vector(MavlinkPort(Address("127.0.0.1", port)))))
+          mavlink = Some(mavlink)
         ),
         TcpTransport(),
         Clock.system
@@ -63,7 +66,7 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
       10.seconds
     )
     try
-      val flying   = assembler(port)
+      val flying   = assembler(Await.result(reached(server), 10.seconds).port, isTcp)
       val recorder = MemoryRecorder(flying.heading(plan, "real"))
       val assembly = Await.result(flying.start(plan, recorder), 3.minutes).fold(fail(_), identity)
       val landed   = Await.result(assembly.landed, 1.minute)
@@ -71,6 +74,32 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Waiting:
       assert(recorder.recording.decisions.size > 60, s"${recorder.recording.decisions.size} decisions")
     finally
       val _ = Await.result(server.close(), 10.seconds)
+
+  private val byDatagrams = MavlinkSettings(udp = Vector(MavlinkPort(Address("127.0.0.1", 0))))
+
+  test("the duel flies by datagrams"):
+    flies(byDatagrams)(server => Future.successful(server.peerAddresses.head))
+
+  test("the duel flies by TCP"):
+    flies(MavlinkSettings(listen = Some(Address("127.0.0.1", 0))), isTcp = true)(server =>
+      Future.successful(server.peerAddresses.head)
+    )
+
+  test("the duel flies by datagrams over an emulated link that delays each by itself"):
+    val profile =
+      LatencyProfile.parse("uniform:10ms..30ms", Left(_)).fold(error => fail(error.message), identity)
+    val link = EmulatedLink(LinkProfile.symmetric(profile), seed = 1, Clock.system)
+    flies(byDatagrams): server =>
+      LinkProxy
+        .start(
+          Address("127.0.0.1", 0),
+          server.peerAddresses.head,
+          link,
+          UdpTransport(),
+          isDatagrams = true
+        )
+        .map(_.address)(using system.dispatcher)
+    assert(link.counts.bytesToServer > 10_000 && link.counts.bytesToClient > 10_000, s"${link.counts}")
 
   test("where nobody speaks MAVLink, the flight says so"):
     val why = Await.result(unheard, 1.minute)

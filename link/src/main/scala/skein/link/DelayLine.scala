@@ -8,7 +8,8 @@ import scala.collection.mutable
 import skein.units.*
 
 /** One direction of one connection over an emulated link: bytes, the end of sending and failures come out as late as
-  * a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket.
+  * a [[Delivery]] decides, in order. What is due at once comes out as one segment, as from a socket. Datagrams stay as they
+  * are, and come out when each is due, whichever entered first.
   *
   * '''Emits when''' downstream pulls and the oldest bytes are due.
   * '''Backpressures when''' `maxBytes` or more are under way.
@@ -35,7 +36,8 @@ private[link] final class DelayLine(
     sinceStart: () => Span,
     maxBytes: Int,
     broken: TransportError,
-    counts: LineCounters
+    counts: LineCounters,
+    isDatagrams: Boolean = false
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import DelayLine.*
 
@@ -50,6 +52,7 @@ private[link] final class DelayLine(
       private val underWay      = mutable.Queue.empty[Segment]
       private val atSender      = mutable.Queue.empty[Waiting] // for the bottleneck
       private var roomAt        = Span.Zero
+      private var wakesAt       = Span.Zero
       private var bytesUnderWay = 0                            // and at the sender
       private var ending: Option[Option[Throwable]] = None // once all bytes have left the sender
       private var end: Option[End]                  = None
@@ -76,8 +79,10 @@ private[link] final class DelayLine(
 
       /** Bytes leave their sender's side. */
       private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
-        case Some(due) => underWay.enqueue(Segment(waiting.bytes, due))
-        case None      =>
+        case Some(due) =>
+          // All but a datagram is due after what entered before.
+          underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
+        case None =>
           bytesUnderWay -= waiting.bytes.size
           counts.bytesLost.add(waiting.bytes.size)
 
@@ -91,8 +96,9 @@ private[link] final class DelayLine(
           val now = sinceStart()
           while atSender.nonEmpty && roomAt <= now do
             val Waiting(bytes, since, delay) = atSender.dequeue()
-            val (piece, rest)                = bytes.splitAt(line.pieceBytes)
-            val sent                         = line.send(now, piece.size)
+            val (piece, rest)                =
+              if isDatagrams then (bytes, ByteString.empty) else bytes.splitAt(line.pieceBytes)
+            val sent = line.send(now, piece.size)
             roomAt = sent.roomAt
             if held then counts.bytesHeldBack.add(piece.size)
             counts.longestWaitNs.accumulate((sent.sentAt - since).toNanos)
@@ -151,8 +157,9 @@ private[link] final class DelayLine(
       private def deliver(): Unit =
         val now = sinceStart()
         if isAvailable(out) && underWay.headOption.exists(_.due <= now) then
-          val segments = underWay.removeHeadWhile(_.due <= now)
-          val bytes    = segments.foldLeft(ByteString.empty)(_ ++ _.bytes)
+          val segments =
+            if isDatagrams then Seq(underWay.dequeue()) else underWay.removeHeadWhile(_.due <= now)
+          val bytes = segments.foldLeft(ByteString.empty)(_ ++ _.bytes)
           bytesUnderWay -= bytes.size
           counts.bytesDelivered.add(bytes.size)
           push(out, bytes)
@@ -164,7 +171,9 @@ private[link] final class DelayLine(
           case (None, None)                                 => ()
 
       private def wakeAt(due: Span): Unit =
-        if !isTimerActive(Timer.Deliver) then scheduleOnce(Timer.Deliver, (due - sinceStart()).toDuration)
+        if !isTimerActive(Timer.Deliver) || due < wakesAt then
+          wakesAt = due
+          scheduleOnce(Timer.Deliver, (due - sinceStart()).toDuration)
 
       private def pullIfIdle(): Unit = if !isClosed(in) && !hasBeenPulled(in) then pull(in)
 

@@ -14,15 +14,20 @@ import skein.units.*
   *   the reset or silence that ends this connection
   * @param stallsMet
   *   counts the stalls that held something up
+  * @param isInOrder
+  *   whether what enters first comes out first
   */
 private[link] final class Delivery(
     sampler: LatencySampler,
     stalls: Iterator[(from: Span, until: Span)],
     val break: Option[TimedFault],
-    stallsMet: LongAdder
+    stallsMet: LongAdder,
+    isInOrder: Boolean = true
 ):
   private val upcomingStalls = stalls.buffered
   private var lastDue        = Span.Zero
+  // What leaves from now on may still fall into these.
+  private var met = Vector.empty[(from: Span, until: Span)]
 
   /** The delay of what enters now, sampled.
     *
@@ -31,12 +36,12 @@ private[link] final class Delivery(
     */
   def delay(now: Span): Span = sampler.oneWay(now)
 
-  /** When bytes come out that leave at a moment: in the order of the calls, a delay later, and never within a stall.
-    * None if they are lost.
-    */
+  /** When bytes come out that leave at a moment: a delay later, and never within a stall. None if they are lost. */
   def due(leave: Span, delay: Span): Option[Span] =
-    lastDue = afterStalls(lastDue.max(leave + delay))
-    Option.unless(lossBegins.exists(_ <= lastDue))(lastDue)
+    met = met.filter(_.until > leave)
+    val due = afterStalls(if isInOrder then lastDue.max(leave + delay) else leave + delay)
+    lastDue = lastDue.max(due)
+    Option.unless(lossBegins.exists(_ <= due))(due)
 
   /** When bytes come out that enter and leave now. */
   def due(now: Span): Option[Span] = due(now, delay(now))
@@ -49,10 +54,11 @@ private[link] final class Delivery(
   private val lossBegins: Option[Span] = break.map(_.at)
 
   private def afterStalls(due: Span): Span =
-    var released = due
+    var released = met.foldLeft(due)((at, stall) => if stall.from <= at then at.max(stall.until) else at)
     while upcomingStalls.hasNext && upcomingStalls.head.from <= released do
-      val end = upcomingStalls.next().until
-      if end > released then
-        released = end
+      val stall = upcomingStalls.next()
+      if stall.until > released then
+        met = met :+ stall
+        released = stall.until
         stallsMet.increment()
     released

@@ -55,19 +55,33 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     *
     * @param broken
     *   the error that both sides get when the link breaks the connection
+    * @param isDatagrams
+    *   whether each piece is a datagram: it comes out as it went in, never joined to another, each after a delay of its own,
+    *   so a later one may come first
     */
-  def connection(broken: TransportError): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
+  def connection(
+      broken: TransportError,
+      isDatagrams: Boolean = false
+  ): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
     val index                                   = 2 * connections.getAndIncrement()
     val whole                                   = AtomicBoolean(true)
     def countBreak()                            = if whole.getAndSet(false) then disconnects.increment()
     def line(direction: Direction, index: Long) =
       val counters =
         LineCounters(direction.delivered, bytesLost, bytesHeldBack, longestWaitNs, () => countBreak())
-      val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index))
-      val delayed = Flow.fromGraph(
-        DelayLine(open, direction.bottleneck, () => sinceStart, profile.maxBytesInFlight, broken, counters)
-      )
-      if profile.cutsSegments then delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index))) else delayed
+      val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index), !isDatagrams)
+      val delayed = Flow.fromGraph(DelayLine(
+        open,
+        direction.bottleneck,
+        () => sinceStart,
+        profile.maxBytesInFlight,
+        broken,
+        counters,
+        isDatagrams
+      ))
+      if profile.cutsSegments && !isDatagrams then
+        delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index)))
+      else delayed
     BidiFlow.fromFlows(
       line(toServer, index),
       line(toClient, index + 1)
@@ -89,9 +103,12 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
 
   private def sinceStart: Span = clock.now().since(start)
 
-  private def delivery(latency: LatencyProfile, seed: Long)(opened: Span): Delivery = Delivery(
+  private def delivery(latency: LatencyProfile, seed: Long, isInOrder: Boolean = true)(
+      opened: Span
+  ): Delivery = Delivery(
     LatencySampler(latency, stateSeed, seed),
     profile.faults.stalls(faultSeed),
     profile.faults.breakOf(opened, faultSeed),
-    stalls
+    stalls,
+    isInOrder
   )

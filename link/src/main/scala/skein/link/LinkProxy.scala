@@ -10,7 +10,7 @@ import scala.concurrent.{ExecutionContext, Future}
   * server's address, over the link in both directions. A client that gets through here while the server does not
   * listen sees its connection break.
   *
-  * A connection is accepted without delay; only what crosses it is delayed.
+  * A connection is accepted without delay; only what crosses it is delayed. By datagrams, whoever is heard is a connection.
   */
 final class LinkProxy private (listening: Listening, link: EmulatedLink, switch: SharedKillSwitch):
 
@@ -32,6 +32,8 @@ object LinkProxy:
     *   open at the same time; further clients wait to be accepted
     * @param unreachable
     *   told why, when an accepted connection cannot be continued to the server
+    * @param isDatagrams
+    *   whether the transport carries datagrams: see [[EmulatedLink.connection]]
     */
   def start(
       listenAt: Address,
@@ -39,7 +41,8 @@ object LinkProxy:
       link: EmulatedLink,
       transport: Transport,
       maxConnections: Int = 1024,
-      unreachable: Throwable => Unit = _ => ()
+      unreachable: Throwable => Unit = _ => (),
+      isDatagrams: Boolean = false
   )(using ActorSystem): Future[LinkProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
@@ -47,7 +50,7 @@ object LinkProxy:
     def forward(incoming: Incoming): Future[Done] =
       val server = BidiFlow
         .fromFlows(switch.flow, switch.flow)
-        .atop(link.connection(TransportError.Lost(to, "the link broke")))
+        .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .joinMat(transport.connect(to))(Keep.right)
       val (sent, (reached, answered)) = incoming.flow
         .watchTermination()(Keep.right)

@@ -27,7 +27,12 @@ class DelayLineSuite extends munit.FunSuite:
       val counts: LineCounters
   )
 
-  private def over[A](latency: LatencyProfile, faults: Faults = Faults.none, maxBytes: Int = 1_000_000)(
+  private def over[A](
+      latency: LatencyProfile,
+      faults: Faults = Faults.none,
+      maxBytes: Int = 1_000_000,
+      isDatagrams: Boolean = false
+  )(
       body: ActorSystem ?=> Line => Future[A]
   ): A =
     VirtualTime.run(1): system =>
@@ -40,11 +45,12 @@ class DelayLineSuite extends munit.FunSuite:
           LatencySampler(latency, 1, 2),
           faults.stalls(3),
           faults.breakOf(opened, 3),
-          LongAdder()
+          LongAdder(),
+          isInOrder = !isDatagrams
         )
       val counts =
         LineCounters(LongAdder(), LongAdder(), LongAdder(), LongAccumulator(math.max(_, _), 0), () => ())
-      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts))
+      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, isDatagrams))
       body(Line(line, () => sinceStart.toMillis, counts))
     .value
 
@@ -69,6 +75,29 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(came.map(_._1).mkString, (0 until 500).map(i => s"$i;").mkString)
     assert(came.sizeIs < 250, came.size)
     assert(came.map(_._2).sliding(2).forall(pair => pair(0) < pair(1)))
+
+  test("datagrams come out as they went in, each after its own delay, so later ones overtake"):
+    val sent                                = 500
+    def delays(came: Seq[(String, Double)]) = came.map((text, ms) => ms - text.stripSuffix(";").toInt)
+    val came = over(LatencyProfile.vpn, isDatagrams = true)(line => arrivals(every(1, sent), line))
+    assertEquals(came.map(_._1).toSet, (0 until sent).map(i => s"$i;").toSet)
+    assertEquals(came.size, sent)
+    assertNotEquals(came.map(_._1).toVector, (0 until sent).map(i => s"$i;").toVector)
+    assertEquals(came.map(_._2), came.map(_._2).sorted)
+    // None waits for one before it: the delays are those that the profile draws.
+    val inOrder = over(LatencyProfile.vpn)(line => arrivals(every(1, sent), line))
+      .flatMap((text, ms) => text.split(';').map(_ -> ms))
+    assert(delays(came).sum < 0.8 * delays(inOrder).sum, s"${delays(came).sum} ${delays(inOrder).sum}")
+
+  test("a stall holds datagrams, too, those that would have come before it began excepted"):
+    val stalls = Faults(stallEvery = Some(Span.ofSeconds(1)), stallLasts = Span.ofMillis(500))
+    val free   = over(LatencyProfile.vpn, isDatagrams = true)(line => arrivals(every(5, 800), line)).toMap
+    val came   = over(LatencyProfile.vpn, stalls, isDatagrams = true)(line => arrivals(every(5, 800), line))
+    val held   = came.filter((text, ms) => ms > free(text) + 1e-6)
+    assert(held.size > 50 && held.size < 790, s"${held.size}")
+    val during = stalls.stalls(3).take(50).toVector
+    for (text, ms) <- came do
+      assert(!during.exists(one => one.from.toMillis <= ms && ms < one.until.toMillis), s"$text at $ms")
 
   test("the same seed gives the same times, to the nanosecond"):
     def once = over(LatencyProfile.vpn)(line => arrivals(every(7, 300), line))

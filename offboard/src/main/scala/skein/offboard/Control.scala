@@ -21,13 +21,16 @@ import skein.units.Decimals.fixed
   *   the geofence: so far from the flight's origin in the plane, m; who leaves it holds its position and is flown no more
   * @param highestM
   *   and so far above it
+  * @param exchanges
+  *   a vehicle is ready after so many TIMESYNCs; until then, one leaves every [[Control.Tick]]
   */
 final case class OffboardSettings(
     renewEvery: Span = Span.ofMillis(100),
     sampleEvery: Span = Span.ofMillis(50),
     timeout: Span = Span.ofSeconds(1),
     farthestM: Double = 1000,
-    highestM: Double = 120
+    highestM: Double = 120,
+    exchanges: Int = 1
 )
 
 /** One vehicle's control as a value: what is asked of it, what comes from it and how time passes go in; messages and
@@ -72,7 +75,9 @@ final case class Control(
   import Control.*
 
   /** Whether it can be flown: it was heard, its clock is known and so is where its frame is. */
-  def isReady: Boolean = origin.isDefined && clock.isDefined && estimate.newest.isDefined
+  def isReady: Boolean = origin.isDefined && isAligned && estimate.newest.isDefined
+
+  private def isAligned = clock.exists(_.exchanges >= settings.exchanges)
 
   /** @return
     *   an answer of the next sample to `token`
@@ -114,6 +119,10 @@ final case class Control(
     known(token)(own =>
       guided(own, now).andThen(_.order(token, Command.Arm, now, Vector(1f, 0, 0, 0, 0, 0, 0)))
     )
+
+  /** Stops the motors at once, also of a vehicle that flies, whoever's modes it has. */
+  def kill(token: Long, now: Instant): Step =
+    order(token, Command.Arm, now, Vector(0f, CommonDialect.Force.toFloat, 0, 0, 0, 0, 0))
 
   /** Takes off, to the autopilot's own height where it has one. */
   def takeoff(token: Long, now: Instant): Step = known(token): own =>
@@ -213,7 +222,8 @@ final case class Control(
         known  <- estimate.newest
         out    <- Setpoints.of(action, known.state, originNed, system)
       yield out
-    val next = copy(lastSync = at, renewAt = now + settings.renewEvery)
+    val every: Span = if heardAt.isDefined && flown.isEmpty && !isAligned then Tick else settings.renewEvery
+    val next        = copy(lastSync = at, renewAt = now + every)
     Step(next, setpoint.toVector :+ Timesync(0, at.toNanos, system, 1))
 
   private def taken(message: Message, now: Instant): Step = message match

@@ -10,6 +10,7 @@ import scala.collection.concurrent.TrieMap
 import scala.concurrent.{Future, Promise}
 import skein.mavlink.*
 import skein.port.VehicleError
+import skein.signal.ClockAlignment
 import skein.units.*
 
 /** Vehicles that speak MAVLink over one connection. It speaks as a ground station: heartbeats, and a TIMESYNC behind
@@ -45,6 +46,9 @@ final class MavlinkLink private (
 
   /** What is known of a vehicle now. */
   def control(number: Int): Control = controls(number)
+
+  /** The flight's clock, which is the first vehicle's, against the controller's; none before that was heard. */
+  def clocks: Option[ClockAlignment] = controls(systems.head).clock.map(_.alignment)
 
   /** Asks something of a vehicle. */
   private[offboard] def ask(number: Int)(what: (
@@ -86,8 +90,10 @@ final class MavlinkLink private (
   private def greet(number: Int): Unit = synchronized:
     def every(id: Int, micros: Float) =
       CommandLong(number, 1, SetInterval, 0, id.toFloat, micros, 0, 0, 0, 0, 0)
-    val sampled = Samples.map(every(_, (settings.sampleEvery.toNanos / 1000).toFloat))
-    val muted   = Unneeded.map(every(_, -1))
+    val (needed, spare) = if controls(number).estimate.hasOdometry then (Samples.take(1), Samples.drop(1))
+    else (Samples, Vector.empty)
+    val sampled = needed.map(every(_, (settings.sampleEvery.toNanos / 1000).toFloat))
+    val muted   = (Unneeded ++ spare).map(every(_, -1))
     send(sampled ++ muted :+ CommandLong(number, 1, RequestMessage, 0, 49, 0, 0, 0, 0, 0, 0))
 
   /** Where the frames lie, and whose clock it is, once all are known. */
@@ -131,7 +137,7 @@ object MavlinkLink:
   private val SetInterval    = 511
   private val RequestMessage = 512
 
-  /** ODOMETRY, LOCAL_POSITION_NED, ATTITUDE_QUATERNION. */
+  /** ODOMETRY; where there is none, LOCAL_POSITION_NED and ATTITUDE_QUATERNION. */
   private val Samples = Vector(331, 32, 31)
 
   /** What comes often and is not looked at: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On a link that keeps the order,

@@ -2,8 +2,6 @@ package skein.offboard
 
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
-import skein.mavlink.CommonDialect
-import skein.mavlink.CommonDialect.Command
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
@@ -33,7 +31,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def arm(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.arm(token, now))
 
   /** Stops the motors at once, wherever it is. */
-  def kill(): Future[Either[VehicleError, Boolean]] = order(Command.Arm, 0, CommonDialect.Force.toFloat)
+  def kill(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.kill(token, now))
 
   /** To the autopilot's own height, or 2.5 m; answers when it begins. */
   def takeoff(): Future[Either[VehicleError, Boolean]] =
@@ -41,9 +39,6 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
 
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround
-
-  private def order(command: Int, numbers: Float*): Future[Either[VehicleError, Boolean]] =
-    done((control, token, now) => control.order(token, command, now, numbers.toVector.padTo(7, 0f)))
 
   private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =
     link

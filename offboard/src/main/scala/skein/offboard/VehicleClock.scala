@@ -8,13 +8,16 @@ import skein.units.*
   * @param latestLeg
   *   of the newest exchange: the vehicle's time of its answer minus the controller's time of the question. It contains the
   *   clocks' offset
+  * @param exchanges
+  *   so far
   */
-final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span):
+final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchanges: Int = 1):
 
   def answered(sentAt: Instant, answeredAt: Instant, receivedAt: Instant): VehicleClock =
     VehicleClock(
       alignment.updated(Stamped((), answeredAt, sentAt, receivedAt)),
-      answeredAt.since(sentAt)
+      answeredAt.since(sentAt),
+      exchanges + 1
     )
 
   /** What was sampled by the vehicle's clock and came unasked, as if it had been asked for as long before as the newest

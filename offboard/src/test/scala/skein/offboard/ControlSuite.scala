@@ -165,6 +165,33 @@ class ControlSuite extends munit.FunSuite:
       got.toString
     )
 
+  test("kill stops the motors in the air, whatever autopilot and mode it is"):
+    val loiter = known(4L << 16 | 3L << 24).heard(heartbeat(3, armed = true, autopilot = 0), at(50)).next
+    for control <- Seq(known(), loiter) do
+      val killed = control.kill(5, at(100))
+      assertEquals(
+        killed.messages,
+        Vector(CommandLong(1, 1, 400, 0, 0, 21196, 0, 0, 0, 0, 0))
+      )
+      val done = killed.next.heard(CommandAck(400, 0), at(130))
+      assertEquals(done.answers, Vector(5L -> Right(true)))
+      assert(!done.next.isArmed)
+
+  test("clocks are aligned by TIMESYNCs every 10 ms before it is ready, and by one in 100 ms afterwards"):
+    val begun             = known().copy(settings = OffboardSettings(exchanges = 5))
+    val (aligned, counts) =
+      (1 to 50).foldLeft((begun, Vector.empty[Int])): (before, tick) =>
+        val now  = at(20 + 10 * tick)
+        val step = before._1.passed(now)
+        val back = syncs(step).foldLeft(step.next): (control, sent) =>
+          assertEquals(control.isReady, control.clock.exists(_.exchanges >= 5))
+          control.heard(Timesync(theirs(20 + 10 * tick).toNanos, sent), now).next
+        (back, before._2 :+ syncs(step).size)
+    assert(aligned.isReady)
+    // One more had gone when the fifth was back.
+    assertEquals(counts.take(7).sum, 6)
+    assert((4 to 5).contains(counts.drop(7).sum), counts.toString)
+
   test("a sample answers all readings that wait, in the flight's frame, with the bounds that TIMESYNC gives"):
     val synced =
       known().copy(originNed = Vector3(10, 0, 0)).heard(Timesync(theirs(30).toNanos, at(15).toNanos), at(50))

@@ -6,11 +6,12 @@ import skein.mavlink.{CommonDialect, Message}
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** The vehicles of a simulation as MAVLink vehicles, with system numbers from 1 in their order: bytes of peers go in, bytes
+/** The vehicles of a simulation as MAVLink vehicles, with system numbers in their order: bytes of peers go in, bytes
   * for them come out. Whoever flies a vehicle by MAVLink has it from its arming until it is disarmed; before and after,
   * AirSim's API can fly it.
   */
-private[simulator] final class MavlinkVehicles(simulation: Simulation) extends PeerProtocol:
+private[simulator] final class MavlinkVehicles(simulation: Simulation, settings: MavlinkSettings)
+    extends PeerProtocol:
   import MavlinkVehicles.*
 
   private val world      = simulation.world
@@ -43,7 +44,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation) extends P
   def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])] =
     val now = sinceBoot
     for (_, peer) <- channels; (system, id) <- peer.takeDue(now) do
-      val one = autopilots(system - 1)
+      val one = autopilots(system - settings.firstSystem)
       Telemetry.of(id, one.autopilot, one.motion).foreach(peer.write(system, _))
     channels.iterator.map((id, peer) => (channel = id, datagrams = peer.take())).filter(
       _.datagrams.nonEmpty
@@ -64,7 +65,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation) extends P
 
   /** One vehicle's autopilot. */
   private final class OnBoard(val index: Int) extends Pilot:
-    val system: Int          = index + 1
+    val system: Int          = index + settings.firstSystem
     private val vehicle      = world.multirotor(index)
     private var decided      = Autopilot(system, vehicle.home)
     def autopilot: Autopilot = decided

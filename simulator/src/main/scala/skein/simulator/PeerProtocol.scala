@@ -7,7 +7,7 @@ import skein.units.Instant
   */
 private[simulator] trait PeerProtocol:
   /** @param systems
-    *   that the peer sees, from 1; none is all
+    *   that the peer sees; none is all
     * @param isDatagrams
     *   whether it speaks by datagrams, and not by a stream
     */

@@ -174,7 +174,7 @@ object SimulatorServer:
     private var nextToken                      = 0L
     private var wakeAt                         = Option.empty[Instant]
     private val protocol: Option[PeerProtocol] =
-      simulation.settings.mavlink.map(_ => MavlinkVehicles(simulation))
+      simulation.settings.mavlink.map(MavlinkVehicles(simulation, _))
         .orElse(simulation.settings.hil.map(HilVehicles(simulation, _)))
     private val outs = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 

@@ -7,7 +7,6 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.Future
 import skein.hil.SmallAutopilot
 import skein.link.{Address, Transport}
-import skein.mavlink.{FrameReader, HilSensor}
 
 /** A small autopilot at the other end of a connection. */
 private[simulator] object HilPeer:
@@ -27,15 +26,3 @@ private[simulator] object HilPeer:
       .prepend(Source.single(ByteString.fromArray(autopilot.greeting)))
       .watchTermination()(Keep.right)
     transport.connect(to).joinMat(answering)(Keep.right).run()
-
-  /** When each HIL_SENSOR came, by the clock, and the time it told. */
-  final class Arrivals:
-    private val reader                        = FrameReader()
-    var at: Vector[(nanos: Long, usec: Long)] = Vector.empty
-
-    def note(bytes: Array[Byte]): Unit =
-      val now = System.nanoTime()
-      for frame <- reader.read(bytes) do
-        frame.message match
-          case sensors: HilSensor => at = at.appended((nanos = now, usec = sensors.timeUsec))
-          case _                  => ()

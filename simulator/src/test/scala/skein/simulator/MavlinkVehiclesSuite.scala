@@ -7,14 +7,14 @@ import skein.units.*
 
 /** The simulator's vehicles by MAVLink, without sockets and without a clock. */
 class MavlinkVehiclesSuite extends munit.FunSuite:
-  private final class Flown(vehicles: Int = 1, isDatagrams: Boolean = false):
+  private final class Flown(vehicles: Int = 1, isDatagrams: Boolean = false, firstSystem: Int = 1):
     val simulation = Simulation(
       SimulatorSettings(WorldSettings(Vector.tabulate(vehicles)(index =>
         VehicleSettings(s"v$index", Vector3(0, 10 * index, 0))
       ))),
       Instant.Epoch
     )
-    private val mavlink = MavlinkVehicles(simulation)
+    private val mavlink = MavlinkVehicles(simulation, MavlinkSettings(firstSystem = firstSystem))
     private val reader  = FrameReader()
     private val writer  = FrameWriter(245, 190)
     var heard           = Vector.empty[Frame]
@@ -53,6 +53,26 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       flown.send(command(system, 22, 0, 0, 0, 0, 0, 0, Float.NaN))
     flown.run(Span.ofSeconds(8))
     flown
+
+  test("a second simulator's vehicles have ports and numbers of their own, as PX4's instances"):
+    assertEquals(
+      MavlinkSettings.asPx4(2, instance = 3).udp.map(port =>
+        (port.at.port, port.tells.map(_.port), port.systems)
+      ),
+      Vector(
+        (18573, Some(14550), Vector.empty),
+        (14583, Some(14543), Vector(4)),
+        (14584, Some(14544), Vector(5))
+      )
+    )
+    val flown = Flown(vehicles = 2, firstSystem = MavlinkSettings.asPx4(2, instance = 3).firstSystem)
+    flown.send(command(5, 400, 1))
+    flown.run(Span.ofSeconds(2))
+    val armed = flown.heard.collect { case Frame(system, _, _, Heartbeat(_, _, base, _, _, _), _) =>
+      system -> ((base & 128) != 0)
+    }
+    assertEquals(armed.map(_._1).toSet, Set(4, 5))
+    assertEquals(armed.groupMapReduce(_._1)(_._2)(_ || _), Map(4 -> false, 5 -> true))
 
   test("a datagram that was cut off holds back nothing of those behind it"):
     val flown = Flown(isDatagrams = true)

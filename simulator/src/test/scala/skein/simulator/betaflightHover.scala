@@ -3,7 +3,7 @@ package skein.simulator
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
-import skein.link.PreciseScheduler
+import skein.link.{ControlThreads, PreciseScheduler}
 
 /** A real firmware flies the simulator's vehicle: Betaflight's SITL in angle mode, with sticks that a controller of ours
   * moves. Prints where the vehicle was, and how far it was from its place: `betaflightHover [SECONDS [SPEED]]`.
@@ -16,6 +16,8 @@ import skein.link.PreciseScheduler
     val firmware = Betaflight.firmware()
       .fold(reason => sys.error(s"Betaflight's SITL cannot be built here: $reason"), identity)
     require(Betaflight.arePortsFree, "another program has Betaflight's ports")
+    // As `serve` does it, when what runs is compiled.
+    system.scheduler.scheduleOnce(10.seconds)(ControlThreads.lead(): Unit)(using system.dispatcher): Unit
     val flight = BetaflightFlight.fly(firmware, holdsS, speed)
     println(flight.track)
     println(flight)
