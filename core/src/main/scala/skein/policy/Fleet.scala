@@ -68,9 +68,8 @@ final case class Fleet(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
     val others = agents.indices.filter(_ != self).toVector
     val rivals = others.filter(agents(_).role != agents(self).role)
-    agents(self).policy match
-      case _: Policy => rivals
-      case _         => Vector(rivals, others, Vector(self)).find(_.nonEmpty).getOrElse(Vector(self))
+    if agents(self).policy.isAgainstOne then rivals
+    else Vector(rivals, others, Vector(self)).find(_.nonEmpty).getOrElse(Vector(self))
 
   require(
     agents.map(_.name).distinct.size == agents.size,
