@@ -63,8 +63,11 @@ class OwnLoopSimulation extends munit.FunSuite:
     assertEquals((replayed.isSame, replayed.flownAgain), (true, None))
 
   test("vehicles hover after a graph that does not tell them to"):
-    val idle = OwnLoop("idle", (team, stop) =>
-      team.ticks(team.now).via(stop.flow).toMat(Sink.ignore)(Keep.right))
+    val idle = OwnLoop(
+      "idle",
+      (team, stop) =>
+        team.ticks(team.now).via(stop.flow).toMat(Sink.ignore)(Keep.right)
+    )
     val landed = fly(idle)
     assertEquals((landed.outcome, landed.hovers), (Outcome.Completed, 2))
 
@@ -75,8 +78,11 @@ class OwnLoopSimulation extends munit.FunSuite:
     assert(landed.recorder.recording.events.exists(_.kind == skein.record.EventKind.Aborted))
 
   test("a graph that fails ends the flight as failed"):
-    val broken = OwnLoop("broken", (_, _) =>
-      Source.failed[Int](IllegalStateException("no such instrument")).toMat(Sink.ignore)(Keep.right))
+    val broken = OwnLoop(
+      "broken",
+      (_, _) =>
+        Source.failed[Int](IllegalStateException("no such instrument")).toMat(Sink.ignore)(Keep.right)
+    )
     val landed = fly(broken)
     assertEquals((landed.outcome, landed.hovers), (Outcome.Failed("no such instrument"), 2))
 
