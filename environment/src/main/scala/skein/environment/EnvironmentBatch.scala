@@ -118,8 +118,8 @@ object EnvironmentBatch:
       config <-
         if scenarios.isPapersGame(settings.scenario, settings.set) then settings.resolvedAgainst(opponent)
         else ScenarioSide.of(settings)
-      _      <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
-      made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
+      _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
+      made <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
 
   /** The same from names and texts, for callers of other languages.

@@ -96,7 +96,10 @@ final case class EnvironmentSettings(
     * @param otherwise
     *   the plant, where none is named
     */
-  private[environment] def flown(atM: Double, otherwise: String): Either[String, (LoopTiming, Delays, VehicleChoice)] =
+  private[environment] def flown(
+      atM: Double,
+      otherwise: String
+  ): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
       _       <- within("period_ms", periodMs, 1, 10_000)

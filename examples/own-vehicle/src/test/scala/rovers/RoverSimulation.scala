@@ -36,10 +36,11 @@ class RoverSimulation extends munit.FunSuite:
 
   test("recordings become a report"):
     val folder = Files.createTempDirectory("rovers")
-    val files  = for loop <- Seq[LoopKind | OwnLoop](LoopKind.Stream, turns) yield
-      val file = folder.resolve(s"${loop.label}.duckdb")
-      assert(Chase.virtual(loop, Span.ofSeconds(12), seed = 1).writeTo(file).isRight)
-      file
+    val files  =
+      for loop <- Seq[LoopKind | OwnLoop](LoopKind.Stream, turns) yield
+        val file = folder.resolve(s"${loop.label}.duckdb")
+        assert(Chase.virtual(loop, Span.ofSeconds(12), seed = 1).writeTo(file).isRight)
+        file
     val set    = Report.read(files).fold(errors => fail(errors.mkString), identity)
     val report = Report.write(set, folder).fold(fail(_), identity)
     val page   = Files.readString(report.page)

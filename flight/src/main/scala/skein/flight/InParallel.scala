@@ -17,8 +17,8 @@ private[skein] object InParallel:
     * ended.
     */
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
-    val pool                   = Executors.newFixedThreadPool(threads)
-    val ended                  = ExecutorCompletionService[B](pool)
+    val pool                  = Executors.newFixedThreadPool(threads)
+    val ended                 = ExecutorCompletionService[B](pool)
     def submit(each: A): Unit =
       val work: Callable[B] = () => one(each)
       val _                 = ended.submit(work)

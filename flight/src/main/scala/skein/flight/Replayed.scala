@@ -37,7 +37,7 @@ object Replayed:
   def of(file: Path)(using Scenarios): Either[String, Replayed] =
     for
       recording <- RecordingReader.read(file).left.map(_.message)
-      _     <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
+      _ <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
       replayed <- if recording.flight.loopKind.isDefined then ofOurs(file, recording) else ofOwn(recording)
     yield replayed
 

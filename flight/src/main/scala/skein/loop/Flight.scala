@@ -87,9 +87,9 @@ object Flight:
       failure.foreach(team.log.note(EventKind.Aborted, None, _))
       val hovering = loop match
         // It has told them already.
-        case LoopKind.Paused                   => Future.unit
+        case LoopKind.Paused                => Future.unit
         case _: LoopKind if failure.isEmpty => Future.unit
-        case _                                 => team.hoverAll()
+        case _                              => team.hoverAll()
       hovering.transformWith(_ => stopping.future)
     Flight(stopping, landed.map(recorded(recorder, _)))
 

@@ -14,11 +14,11 @@ private[torture] object KnowledgeChecks:
     Vector(
       misquoted(seen, told),
       seen.faultPlan.loop match
-        case LoopKind.Paused     => Vector.empty
-        case LoopKind.Futures    => notAtOnce(seen, told)
-        case LoopKind.Sequential => notAtOnce(seen, told) ++ outdated(seen, told)
+        case LoopKind.Paused                            => Vector.empty
+        case LoopKind.Futures                           => notAtOnce(seen, told)
+        case LoopKind.Sequential                        => notAtOnce(seen, told) ++ outdated(seen, told)
         case _ if seen.faultPlan.scenario.isAsPublished => backwards(seen)
-        case _                                                     => outdated(seen, told) ++ backwards(seen)
+        case _                                          => outdated(seen, told) ++ backwards(seen)
       ,
       agesWrong(seen)
     ).flatten
