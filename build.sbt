@@ -234,7 +234,7 @@ lazy val cli = project
     Compile / resourceGenerators += Def.task {
       val folder = (Compile / resourceManaged).value / "skein" / "project"
       val home   = (ThisBuild / baseDirectory).value
-      val copied = Seq("sbtw", "project/find-jdk", "project/build.properties").map { name =>
+      val copied = Seq("sbtw", "project/find-jdk", "project/quiet-vectors", "project/build.properties").map { name =>
         val to = folder / file(name).getName
         IO.copyFile(home / name, to)
         to
@@ -248,28 +248,16 @@ lazy val cli = project
     executableScriptName := "skein",
     Universal / javaOptions ++= Jvm.nativeAccess.map("-J" + _),
     // A class-data archive, made at the first run, halves the start-up time; beside an agent it must be allowed.
-    // It belongs to one set of modules. The JVM remarks on an incubator module in the first line of its standard
-    // error, before any option or code of ours can prevent it: that line is taken out, and the rest passes as it comes.
+    // Workers, of which many start at once, have one of their own. The vector module costs no measurable time at the start.
     bashScriptExtraDefines ++= Seq(
       s"""addJava "-javaagent:$$lib_dir/${organization.value}.${(vtimeAgent / Compile / packageBin).value.getName}"""",
       """addJava "-XX:+UnlockDiagnosticVMOptions"""",
       """addJava "-XX:+AllowArchivingWithJavaAgent"""",
       """addJava "-XX:+AutoCreateSharedArchive"""",
-      """case " $* " in""",
-      """  " search "* | " worker "* | " decide "* | " learn "* | " budget "* | " replay "* | *" plan "* | *" --config "* | *" --learn"[\ =]*)""",
-      """    addJava "--add-modules=jdk.incubator.vector"""",
-      """    case " $* " in " worker "*) archive=skein-vector-worker ;; *) archive=skein-vector ;; esac""",
-      """    addJava "-XX:SharedArchiveFile=${app_home}/../$archive.jsa"""",
-      """    exec 2> >(""",
-      """      trap '' INT""",
-      """      if IFS= read -r first && [ "$first" != "WARNING: Using incubator modules: jdk.incubator.vector" ]; then""",
-      """        printf '%s\n' "$first" >&2""",
-      """      fi""",
-      """      exec cat >&2""",
-      """    )""",
-      """    ;;""",
-      """  *) addJava "-XX:SharedArchiveFile=${app_home}/../skein.jsa" ;;""",
-      """esac""",
+      """case " $* " in " worker "*) archive=skein-worker ;; *) archive=skein ;; esac""",
+      """addJava "-XX:SharedArchiveFile=${app_home}/../$archive.jsa"""",
+      """addJava "--add-modules=jdk.incubator.vector"""",
+      IO.read((ThisBuild / baseDirectory).value / "project" / "quiet-vectors").trim,
       // The experiment's nine flights of a minute in virtual time have landed before optimising them pays.
       """case " $* " in""",
       """  *" plan "*|*" --config"*|*" --duration"*|*" --pairs"*|*" --scenario"*) ;;""",

@@ -6,12 +6,11 @@ import skein.forward.*
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, TeamEvaluator, TeamObjective, WeightedSum}
-import skein.scenario.{Measure, Scenario, Track, Tracks}
-import skein.search.Conditions
+import skein.scenario.{Measure, Scenario, Tracks}
+import skein.search.{Conditions, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 import skein.units.*
-import skein.vehicle.VehicleKind
 
 /** What is asked of a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(
@@ -37,7 +36,7 @@ final case class ScenarioQuestion(
     engagement match
       case Left(reason) if plantIsTold =>
         Left(
-          s"--plant: expected none, since this scenario flies in virtual time by the simulator's quadrotor: $reason"
+          s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
         )
       case Left(reason) => conditions.checked.map(FlownSubject.virtual(this, _, reason))
       case Right(plane) =>
@@ -47,17 +46,12 @@ final case class ScenarioQuestion(
           else FlownSubject.forward(this, plane, flown)
 
   private def engagement: Either[String, Engagement] =
-    try
-      val plane = Engagement.of(scenario.fleet, conditions.durationS)
-      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars")
-      else
-        Either.cond(
-          plane.agents.map(_.altitudeDownM).distinct.size == 1,
-          plane,
-          "not all fly at one altitude"
-        )
-    catch
-      case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
+    WholeFlights.plane(scenario, conditions.durationS).flatMap: plane =>
+      Either.cond(
+        plane.agents.map(_.altitudeDownM).distinct.size == 1,
+        plane,
+        "not all fly at one altitude"
+      )
 
 object ScenarioQuestion:
 
@@ -156,29 +150,14 @@ object FlownSubject:
 
   /** By forward simulation, world by world. */
   def forward(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved): FlownSubject =
-    val agents                                                 = question.scenario.agents
     def tracks(timing: LoopTiming, link: Delays, episode: Int) =
-      val samples = agents.map(agent =>
-        Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
-      )
-      val observer = new LoopObserver:
-        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
-          samples(vehicle) += ((
-            Instant.ofNanos(0) + Span.ofSeconds(timeS),
-            Vector3(x, y, agents(vehicle).startPositionNed.z)
-          )): Unit
-      Rollout(plane, timing, link, flown.vehicle.response)
-        .fly(WorldRandom.key(question.seed, 0, episode), observer = observer): Unit
-      Tracks
-        .of(agents.zip(samples).map((agent, places) =>
-          Track.ofPositions(agent.name, agent.role.name, places.result())
-        ))
-        .toRight("its vehicles were not all seen")
+      val key = WorldRandom.key(question.seed, 0, episode)
+      WholeFlights.forward(question.scenario, plane, timing, link, flown.vehicle.response, key)
     val plain = question.terms.map(_._2).filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     FlownSubject(
       question,
       flown.vehicle.description,
-      s"scalar: ${plain.mkString(", ")} is of whole flights, not of a quantity by itself",
+      s"scalar: ${WholeFlights.ofWholeFlights(plain)}",
       each = 4,
       (link, episode) =>
         link.fold(tracks(flown.paused.timing, DelayTable.none, episode))(roundTrip =>
@@ -190,7 +169,7 @@ object FlownSubject:
   def virtual(question: ScenarioQuestion, loop: LoopKind, reason: String): FlownSubject =
     FlownSubject(
       question,
-      "the simulator's quadrotor",
+      WholeFlights.SimulatorsQuadrotor,
       s"flights in virtual time: $reason",
       each = 2,
       (link, episode) =>

@@ -97,7 +97,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
         map.markLines.foreach(line => shown.say(s"  $line"))
       shown.say(s"written: ${files.mkString(", ")}")
 
-  private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutDuel)
+  private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutGame)
 
   private def toleranceOf(options: BudgetOptions): Either[String, Tolerance] =
     (options.tolerance, options.within) match

@@ -38,8 +38,6 @@ private[cli] object EpisodeRunner:
     *
     * @param program
     *   the class whose `main` starts the commands
-    * @param blockEpisodes
-    *   of a block, unless told otherwise
     */
   def using(
       options: Option[ClusterOptions.Checked],
@@ -48,11 +46,12 @@ private[cli] object EpisodeRunner:
       question: SearchFile.Question,
       folder: Path,
       threads: Int,
-      blockEpisodes: Int,
       shown: Shown
   )(body: EpisodeRunner => Either[String, Unit]): Either[String, Unit] = options match
-    case None        => body(here(ready, threads))
+    case None =>
+      try body(here(ready, threads))
+      catch case failed: BlocksFailed => Left(failed.getMessage)
     case Some(asked) =>
       val posed = Questions.search(VerifiedQuestion.bytes(question, ready))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
-        body(elsewhere(run, asked.block.getOrElse(blockEpisodes)))
+        body(elsewhere(run, asked.block.getOrElse(ready.blockEpisodes)))

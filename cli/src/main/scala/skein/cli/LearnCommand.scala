@@ -251,20 +251,20 @@ object LearnCommand:
     import options.forward
     val algorithm = options.algorithm.getOrElse("sac")
     val onPolicy  = algorithm == "ppo"
-    val scenario  = options.scenario.orElse(scenarios.firstWithoutDuel).getOrElse(PaperDuel.Name)
+    val scenario  = options.scenario.orElse(scenarios.firstWithoutGame).getOrElse(PaperDuel.Name)
     for
       named <- Arguments.settings(options.set)
       set    = named.toMap
-      isDuel = scenario == PaperDuel.Name && set.isEmpty
+      isGame = scenarios.isPapersGame(scenario, set)
       role       <- PolicyFile.role(options.side.getOrElse("pursuer")).left.map("--side: " + _)
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       lesson     <- Span.parse(options.lesson.getOrElse("20s")).left.map("--lesson: " + _)
       plain      <- forward.conditions(period)
-      conditions <- if isDuel then Right(plain) else ofTeam(scenario, set, forward, plain)
+      conditions <- if isGame then Right(plain) else ofTeam(scenario, set, forward, plain)
       opponent   <- forward.opponentOf(role)
       shape      <- NeuralShape.parse(options.network.getOrElse("32x32")).left.map("--network: " + _)
-      start      <- range(options.start.getOrElse(if isDuel then "3..30" else "0..5"))
-      objective  <- forward.objective.orElse(Option.when(isDuel)("last10s")).toRight(
+      start      <- range(options.start.getOrElse(if isGame then "3..30" else "0..5"))
+      objective  <- forward.objective.orElse(Option.when(isGame)("last10s")).toRight(
         "--objective: expected with a scenario: a sum of its measures, for example off-ring"
       )
     yield LearnQuestion(

@@ -71,6 +71,7 @@ object NewCommand
       "build.sbt"          -> "build.sbt",
       "build.properties"   -> "project/build.properties",
       "find-jdk"           -> "project/find-jdk",
+      "quiet-vectors"      -> "project/quiet-vectors",
       "sbtw"               -> "sbtw",
       "skein"              -> "skein",
       "gitignore"          -> ".gitignore",

@@ -22,9 +22,11 @@ final case class SearchOptions(
     link: Option[String],
     @arg(doc = "between decisions for one vehicle (default: 100ms)")
     period: Option[String],
-    @arg(doc = "to try in all (default: 1000)")
+    @arg(doc = "to try in all (default: 1000; of flights in virtual time 40)")
     candidates: Option[Int],
-    @arg(doc = "that each candidate flies; when racing, in the first round (default: 20)")
+    @arg(doc =
+      "that each candidate flies; when racing, in the first round (default: 20; of flights in virtual time 2)"
+    )
     episodes: Option[Int],
     @arg(doc = "of a generation of cma-es and cross-entropy (default: 40, or more for many parameters)")
     population: Option[Int],
@@ -74,10 +76,9 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       ready <- question match
         case duel: SearchQuestion => duel.setup
         case team: TeamQuestion   => team.setup
-      block = Effort.blockEpisodes(ready.byLanes, ready.conditions.vehicle)
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>
-          EpisodeRunner.using(cluster, program, ready, question, folder, threads, block, shown): runner =>
+          EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>
             SearchJob(ready, question, folder, threads, runner, shown, task)
               .run(state.getOrElse(ready.search.start))
     yield ()
@@ -94,7 +95,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
   private def begin(options: SearchOptions): Either[String, Begun] =
     val folder = Path.of(options.out.getOrElse(OutFolder.dated("searches")))
     for
-      question <- options.scenario.orElse(scenarios.firstWithoutDuel).fold(duel(options))(team(options, _))
+      question <- options.scenario.orElse(scenarios.firstWithoutGame).fold(duel(options))(team(options, _))
       _        <- Expect.that(!Files.exists(folder.resolve(SearchFile.Name))):
         s"--out: $folder holds a search already; --resume $folder goes on with it"
       _ <- OutFolder.made("--out", folder.toString)
@@ -119,7 +120,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         objective,
         options.method.getOrElse("cma-es"),
         // Teams fly low, where the model of three parameters does not hold.
-        conditions.copy(plant = forward.plant.getOrElse("drag")),
+        conditions.copy(plant = forward.plant.getOrElse(TeamQuestion.Plant)),
         options.link.getOrElse("vpn"),
         candidates,
         options.episodes.getOrElse(20),
@@ -127,8 +128,20 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         forward.seed.getOrElse(1),
         options.fresh.getOrElse(Effort.TeamsFresh)
       )
-      _ <- question.setup
-    yield question
+      ready <- question.setup
+      small = inFlights(question, options)
+      _ <- if ready.isVirtual then small.setup else Right(ready)
+    yield if ready.isVirtual then small else question
+
+  /** What was not told, for an engine that flies some candidates a second. */
+  private def inFlights(question: TeamQuestion, options: SearchOptions): TeamQuestion =
+    val candidates = options.candidates.getOrElse(40)
+    question.copy(
+      candidates = candidates,
+      episodes = options.episodes.getOrElse(2),
+      population = options.population.getOrElse(10.min(candidates.max(4))),
+      fresh = options.fresh.getOrElse(Effort.OfFlights.freshEpisodes)
+    )
 
   private def duel(options: SearchOptions): Either[String, SearchQuestion] =
     import options.forward

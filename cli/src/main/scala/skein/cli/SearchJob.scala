@@ -40,7 +40,7 @@ private[cli] final class SearchJob(
         val seconds = (System.nanoTime() - startedAt) * 1e-9
         val flown   = state.flown - from.flown
         say(
-          f"$flown%,d episodes of ${ready.conditions.duel.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
+          f"$flown%,d episodes of ${ready.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
@@ -54,9 +54,7 @@ private[cli] final class SearchJob(
     val more = ready.space.dimension - shownAxes.size
     val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
     s"""${ready.text}: ${ready.subject(axes)}
-       |loop ${ready.under}, every ${(ready.conditions.timing.periodS * 1000).significant(
-        4
-      )} ms; ${ready.conditions.vehicle.description}
+       |loop ${ready.under}, every ${ready.periodMs.significant(4)} ms; ${ready.vehicles}
        |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engine(
         threads
       )}""".stripMargin
@@ -87,10 +85,11 @@ private[cli] final class SearchJob(
       best,
       runner(Judge.Candidates),
       SearchResult.FreshFrom until SearchResult.FreshFrom + effort.landscapeEpisodes,
+      onCurve = effort.onCurve,
       onMap = effort.onMap,
       onRow = onShow.landscape
     )
-    val title = s"${ready.title}, model ${ready.conditions.vehicle.name}"
+    val title = s"${ready.title}, model ${ready.model}"
     OutFolder.write(
       folder,
       OutFolder.picture("landscape", LandscapeFigure(land, title, ready.measure), title) :+

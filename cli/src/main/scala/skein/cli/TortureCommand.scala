@@ -64,7 +64,7 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)
       scene <- options.scene.fold(Right(None))(NamedScene.read(_).map(Some(_)).left.map("--scene: " + _))
-      task     = options.scenario.orElse(scenarios.firstWithoutDuel.map(_ => scenarios.kinds.head.name))
+      task     = options.scenario.orElse(scenarios.firstWithoutGame.map(_ => scenarios.kinds.head.name))
       question = TortureQuestion.of(duration, task, scene)
       ready <- question.ready
       count = Count(options, duration, shown)

@@ -4,14 +4,14 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 import skein.figures.{Figure, GraphFigure}
-import skein.loop.{LoopGraph, LoopInstance, LoopKind}
+import skein.loop.{LoopGraph, LoopInstance, LoopKind, OwnLoop}
 import skein.measure.FlightSet
 import skein.policy.Fleet
 
 /** The graphs of the loops that flew, each as it runs for the vehicles of its flight. */
 object LoopPictures:
 
-  type Loop = (kind: LoopKind, fleet: Fleet)
+  type Loop = (kind: LoopKind | OwnLoop, fleet: Fleet)
 
   /** Beyond it nobody could read the picture. */
   private val MostVehicles = 8

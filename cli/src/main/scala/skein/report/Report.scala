@@ -2,8 +2,8 @@ package skein.report
 
 import java.io.IOException
 import java.nio.file.{Files, Path}
-import scala.jdk.CollectionConverters.*
 import skein.figures.Figure
+import skein.flight.InParallel
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.{Png, Svg}
 import skein.record.{RecordError, Recording, RecordingReader}
@@ -55,4 +55,4 @@ object Report:
 
   /** What `f` makes of each, in their order. */
   private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =
-    items.asJava.parallelStream.map(f(_)).toList.asScala.toVector
+    InParallel.map(items, Runtime.getRuntime.availableProcessors)(f)

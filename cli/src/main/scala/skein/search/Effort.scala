@@ -3,7 +3,13 @@ package skein.search
 import skein.settings.VehicleChoice
 
 /** How much is flown beside the search itself: less where an episode costs more. */
-final case class Effort(freshEpisodes: Int, landscapeEpisodes: Int, onMap: Int, cellEpisodes: Int):
+final case class Effort(
+    freshEpisodes: Int,
+    landscapeEpisodes: Int,
+    onMap: Int,
+    cellEpisodes: Int,
+    onCurve: Int = Landscape.OnCurve
+):
   /** With no more episodes for a point of the landscape than the winner is measured on. */
   def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
@@ -37,6 +43,9 @@ object Effort:
 
   /** Fresh episodes of a team: each needs a timetable of its own, which is made by the scalar engine. */
   val TeamsFresh = 256
+
+  /** Of flights in virtual time, some a second. */
+  val OfFlights: Effort = Effort(16, 1, 5, 1, onCurve = 9)
 
   def ofTeam(byLanes: Boolean): Effort =
     if byLanes then Effort(TeamsFresh, 16, 21, 30) else Effort(TeamsFresh, 2, 7, 4)

@@ -7,7 +7,12 @@ import skein.policy.SearchSpace
 trait ReadySearch:
   def search: Search
   def space: SearchSpace
-  def conditions: Conditions.Resolved
+  def durationS: Double
+  def periodMs: Double
+
+  /** What flies, for people, and in a word. */
+  def vehicles: String
+  def model: String
 
   /** The objective as users write it, with its direction, and without. */
   def text: String
@@ -48,6 +53,9 @@ trait ReadySearch:
   def byLanes: Boolean
 
   def effort: Effort
+
+  /** Episodes of a block of work for others: about half a second of one core's. */
+  def blockEpisodes: Int
 
   /** Fresh episodes on which the winner is measured, where the user chose. */
   def fresh: Option[Int]

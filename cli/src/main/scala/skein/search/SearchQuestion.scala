@@ -125,6 +125,11 @@ final case class SearchSetup(
   def text: String                             = objective.text
   def formula: String                          = objective.formula
   def unit: String                             = objective.unit
+  def durationS: Double                        = conditions.duel.durationS
+  def periodMs: Double                         = question.conditions.periodMs
+  def vehicles: String                         = conditions.vehicle.description
+  def model: String                            = conditions.vehicle.name
+  def blockEpisodes: Int                       = Effort.blockEpisodes(byLanes, conditions.vehicle)
   def fresh: Option[Int]                       = question.fresh
   def label(candidate: Vector[Double]): String = policy(candidate).label
   def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"

@@ -13,10 +13,10 @@ import skein.optimise.{
 }
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Nearest, Scenario, ScenarioKind, Scenarios}
-import skein.settings.{ConfigKeys, ScenarioSettings}
+import skein.settings.{ConfigKeys, ScenarioSettings, TextFile}
+import skein.signal.LatencyProfile
 import skein.units.Decimals.significant
 import skein.units.Expect
-import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
 
 /** A setting that is searched between two bounds, by its key. */
@@ -84,26 +84,51 @@ final case class TeamQuestion(
         Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
-      _ <- Expect.that(corners.forall(corner => altitudesM(corner) == altitudesM(plain))):
-        "--vary: expected settings at which all fly as high, since a model of a vehicle holds at its altitude"
-      _ <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
-      _ <- Expect.that(plain.agents.forall(_.kind == VehicleKind.Multirotor)):
-        s"--scenario: expected one of multirotors, came ${plain.name}, which has cars: fly and budget fly it"
-      flown  <- conditions.copy(altitudeM = altitudesM(plain).head).resolved
-      by     <- TeamObjective.parse(objective, plain).left.map("--objective: " + _)
-      delays <- Conditions.delays(link).left.map("--link: " + _)
+      _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
+      by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
+      engine <- engine(by, plain +: corners)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
-    yield TeamSetup(
-      this,
-      kind,
-      space,
-      by,
-      flown,
-      delays,
-      method
-    )
+      ready = TeamSetup(this, kind, space, by, engine, method)
+      _ <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
+        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} flights in virtual time, came some ${ready.search.expected}"
+    yield ready
+
+  /** By lanes, where forward simulation knows the policies and the measures; world by world, where it knows the policies;
+    * else in flights in virtual time.
+    *
+    * @param all
+    *   the scenario as it is, first, and with the bounds of what is searched
+    */
+  private def engine(by: TeamObjective, all: Vector[Scenario]): Either[String, TeamEngine] =
+    val refused = all.map(WholeFlights.plane(_, conditions.durationS)).collectFirst { case Left(why) => why }
+    val moved   = Option.when(all.exists(altitudesM(_) != altitudesM(all.head))):
+      "what is searched changes how high they fly, and a model of a vehicle holds at its altitude"
+    refused.orElse(moved) match
+      case Some(reason) if conditions.plant != Plant =>
+        Left(
+          s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
+        )
+      case Some(reason) =>
+        for
+          loop    <- conditions.checked
+          profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
+        yield TeamEngine.Whole(
+          WholeFlights.virtual(conditions, loop, profile, seed, reason),
+          isVirtual = true
+        )
+      case None =>
+        for
+          flown  <- conditions.copy(altitudeM = altitudesM(all.head).head).resolved
+          delays <- Conditions.delays(link).left.map("--link: " + _)
+        yield
+          val plain = by.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
+          if plain.isEmpty then TeamEngine.Reduced(flown, delays)
+          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain), isVirtual = false)
 
 object TeamQuestion:
+  /** What flies where nothing is told: teams fly low, where the model of three parameters does not hold. */
+  val Plant = "drag"
+
   private def altitudesM(scenario: Scenario) = scenario.agents.map(-_.startPositionNed.z)
 
   private val MostFresh = 1_000_000
@@ -127,6 +152,14 @@ object TeamQuestion:
           s"--vary: the scenario ${kind.name} has no setting '${varied.key}'; the nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
+/** What flies a team's candidates. */
+enum TeamEngine:
+  /** By measures of quantities. */
+  case Reduced(conditions: Conditions.Resolved, delays: Delays)
+
+  /** By measures of whole flights. */
+  case Whole(flights: WholeFlights, isVirtual: Boolean)
+
 /** A search over a scenario's settings, ready to run.
   *
   * @param objective
@@ -137,14 +170,20 @@ final case class TeamSetup(
     kind: ScenarioKind[?],
     space: SearchSpace,
     objective: TeamObjective,
-    conditions: Conditions.Resolved,
-    delays: Delays,
+    flownBy: TeamEngine,
     by: SearchMethod
 ) extends ReadySearch:
-  val search: Search = Search(space, by, objective.direction, question.seed)
+  /** Whether candidates fly some a second. */
+  def isVirtual: Boolean = flownBy match
+    case TeamEngine.Whole(_, isVirtual) => isVirtual
+    case _: TeamEngine.Reduced          => false
 
-  private val durationS = conditions.duel.durationS
-  private val periodS   = conditions.timing.periodS
+  val search: Search =
+    if isVirtual then Search(space, by, objective.direction, question.seed, TeamSetup.LeastPlayOff)
+    else Search(space, by, objective.direction, question.seed)
+
+  val durationS: Double = question.conditions.durationS
+  val periodMs: Double  = question.conditions.periodMs
 
   def name: String                             = kind.name
   def method: String                           = question.method
@@ -166,10 +205,15 @@ final case class TeamSetup(
   private def told(candidate: Vector[Double], between: String)(number: Double => String) =
     space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
 
-  private def batch(threads: Int) = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
+  private def batch(of: Conditions.Resolved, threads: Int) =
+    TeamBatch(of.timing, of.vehicle.response, threads)
 
   def judges(threads: Int): Judge => ValueEvaluator =
-    val same = TeamEvaluator(batch(threads), candidate, delays, objective.terms.map(_._1), question.seed)
+    val same = flownBy match
+      case TeamEngine.Reduced(conditions, delays) =>
+        val weights = objective.terms.map(_._1)
+        TeamEvaluator(batch(conditions, threads), candidate, delays, weights, question.seed)
+      case TeamEngine.Whole(flights, _) => WholeFlightEvaluator(flights, scenario, objective, threads)
     _ => same
 
   def measured(
@@ -186,18 +230,36 @@ final case class TeamSetup(
       .ofKeys(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  def engine(threads: Int): String = batch(threads).engine(candidate(space.defaults))
+  def engine(threads: Int): String = flownBy match
+    case TeamEngine.Reduced(conditions, _) => batch(conditions, threads).engine(candidate(space.defaults))
+    case TeamEngine.Whole(flights, _)      => flights.engine(scenario(space.defaults), objective, threads)
 
-  def byLanes: Boolean = batch(1).fliesByLanes(candidate(space.defaults))
+  def byLanes: Boolean = flownBy match
+    case TeamEngine.Reduced(conditions, _) => batch(conditions, 1).fliesByLanes(candidate(space.defaults))
+    case _: TeamEngine.Whole               => false
 
-  def effort: Effort = Effort.ofTeam(byLanes)
+  def effort: Effort = flownBy match
+    case _: TeamEngine.Reduced        => Effort.ofTeam(byLanes)
+    case TeamEngine.Whole(flights, _) => flights.effort
+
+  def vehicles: String = flownBy match
+    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.description
+    case TeamEngine.Whole(flights, _)      => flights.vehicles
+
+  def model: String = flownBy match
+    case TeamEngine.Reduced(conditions, _) => conditions.vehicle.name
+    case TeamEngine.Whole(flights, _)      => flights.model
+
+  def blockEpisodes: Int = flownBy match
+    case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(byLanes, conditions.vehicle)
+    case TeamEngine.Whole(flights, _)      => flights.blockEpisodes
 
   private def candidate(values: Vector[Double]): TeamCandidate =
     val own      = scenario(values)
     val measures = TeamObjective.measures(own).values.map(measure => measure.name -> measure).toMap
     TeamCandidate(
       Engagement.of(own.fleet, durationS),
-      TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodS)
+      TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodMs * 1e-3)
     )
 
   def formula: String = objective.formula
@@ -215,7 +277,7 @@ final case class TeamSetup(
          |# ${interval(found.fresh)}: mean over ${found.fresh.count} fresh episodes, 95 %; ${interval(
           found.baseline
         )} with ${baseline.label}
-         |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; ${conditions.vehicle.description}
+         |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; $vehicles
          |skein.fly {
          |  scenario = ${kind.name}
          |  ${kind.name} {
@@ -223,3 +285,7 @@ final case class TeamSetup(
          |  }
          |}
          |""".stripMargin
+
+object TeamSetup:
+  /** Of leaders in flights of some a second. */
+  private val LeastPlayOff = 2

@@ -58,15 +58,12 @@ final case class LearnQuestion(
 ) derives ReadWriter:
   import LearnQuestion.*
 
-  /** Whether it is the paper's. */
-  def isDuel: Boolean = scenario == PaperDuel.Name && set.isEmpty
-
   /** @return or what was expected, what came, and in which option */
-  def setup(using Scenarios): Either[String, LearnSetup] =
+  def setup(using scenarios: Scenarios): Either[String, LearnSetup] =
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
       role      <- PolicyFile.role(role).left.map("--side: " + _)
-      game      <- if isDuel then duel(role) else team(role)
+      game      <- if scenarios.isPapersGame(scenario, set) then duel(role) else team(role)
       _ <- conditions.eye.map(_ => "--eye: expected with search or budget; learners know no eyes").toLeft(())
       flown  <- conditions.resolved
       delays <- Conditions.delays(link).left.map("--link: " + _)
@@ -127,6 +124,10 @@ final case class LearnSetup(
     delays: Delays
 ):
   val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden))
+
+  private def isOfTeam = game match
+    case _: LearnGame.OfTeam => true
+    case _: LearnGame.OfDuel => false
 
   /** What every result is held against: the paper's policy of the role, or what the scenario's own come to. */
   val baseline: Baseline = game match
@@ -190,12 +191,12 @@ final case class LearnSetup(
       evaderRateRadPerS = question.turnRateRadPerS,
       scenario = question.scenario,
       set = question.set,
-      objective = if question.isDuel then "" else game.text
+      objective = if isOfTeam then game.text else ""
     )
     SideTask.of(settings, game.opponent, question.environments, question.seed)
 
   def title: String =
-    val where = if question.isDuel then "" else s" of ${question.scenario}"
+    val where = if isOfTeam then s" of ${question.scenario}" else ""
     s"${question.algorithm}, ${question.role}$where, ${question.conditions.loop} over ${question.link}"
 
   /** For an axis of a picture. */

@@ -9,6 +9,7 @@ import scala.concurrent.ExecutionContext.Implicits.global
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
+import skein.airsim.WorldSettings
 import skein.docs.Documentation
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
@@ -29,15 +30,21 @@ class DocumentedSearchesLiveSuite extends DocumentedCommands(DocumentedCommands.
 
 class DocumentedCommandsLiveSuite extends DocumentedCommands(DocumentedCommands.Kind.Other), Lengthy
 
-/** Runs every command of a kind that README and guides show, as it is written there, for a shorter time. Real sockets on
-  * loopback.
+/** Runs every command of a kind that README, guides, results and examples show, as it is written there, for a shorter time;
+  * [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
   */
 abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.FunSuite:
   private given system: ActorSystem = ActorSystem("documented-commands")
   private lazy val folder           = Files.createTempDirectory("documented")
-  private lazy val server           = Edge.await(
-    SimulatorServer.start(SimulatorSettings(address = Address("127.0.0.1", 0)), TcpTransport(), Clock.system)
-  )
+
+  /** A simulator with the vehicles of the guide, which are those of the experiment. */
+  private lazy val server =
+    val page  = Files.readString(Documentation.root.resolve("docs/guides/airsim.md"))
+    val text  = "(?s)```json\n(.*?)```".r.findFirstMatchIn(page).get.group(1)
+    val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
+    Edge.await(
+      SimulatorServer.start(SimulatorSettings(world, Address("127.0.0.1", 0)), TcpTransport(), Clock.system)
+    )
 
   /** A short flight to look at, and a policy that a short search found; each made once. */
   private lazy val recording: Path = made("fly", "--clock", "virtual", "--loop", "stream", "--link", "vpn")(
@@ -92,7 +99,7 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
     val more = words.head match
       case "fly" if words.contains("virtual")       => Seq("--duration", "2s")
       case "fly"                                    => Seq("--duration", live, "--twins", "0")
-      case "spread"                                 => Seq("--seeds", "2", "--duration", "2s")
+      case "spread"                                 => Seq("--duration", "2s")
       case "search" if words.contains("--scenario") => team
       case "search"                                 => forward
       case "learn"                                  => learn
@@ -102,11 +109,17 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       case "latency" => Seq("--period", "5ms")
       case "torture" => Seq("--seeds", "2", "--duration", "12s")
       case _         => Seq.empty
-    words ++ more ++
+    few(words) ++ more ++
       Option.when(Set("fly", "search", "learn", "budget", "latency", "new", "torture")(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
+
+  /** As many as are flown, where a command says so. */
+  private def few(words: Seq[String]): Seq[String] = words.indexOf("--seeds") match
+    case -1 if words.head == "spread"           => words ++ Seq("--seeds", "2")
+    case at if at > 0 && words.head == "spread" => words.updated(at + 1, "2")
+    case _                                      => words
 
   private def made(words: String*)(more: String*): Path =
     val out            = Files.createTempDirectory(folder, "made")
@@ -175,10 +188,15 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
   private val readme: Vector[String] = shown(Documentation.root.resolve("README.md"))
 
   private val documented: Vector[String] =
-    val guides = files(Documentation.root.resolve("docs/guides")).filter(_.toString.endsWith(".md"))
-    (readme ++ guides.flatMap(shown)).distinct.map(DocumentedCommands.inVirtualTime(_, readme))
+    val pages      = Seq("docs/guides", "examples").flatMap(under => files(Documentation.root.resolve(under)))
+    val shownThere = (pages :+ Documentation.root.resolve("docs/results.md"))
+      .filter(page => page.toString.endsWith(".md") && !page.toString.contains("/target/"))
+      .flatMap(shown)
+    (readme ++ shownThere).distinct
+      .filterNot(DocumentedCommands.leftOut)
+      .map(DocumentedCommands.inVirtualTime(_, readme))
 
-  test("README and guides show commands"):
+  test("README, guides, results and examples show commands"):
     assert(documented.sizeIs > 10, documented.mkString("\n"))
 
   for
@@ -213,7 +231,6 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
       // The usual port may be taken here.
       val words          = asked ++ (if asked.contains("--view") then Seq("--view-port", "0") else Nil)
       val (status, told) = words.head match
-        case "--help"                                                                => run(words)
         case _ if words.exists(_.startsWith("mujoco:")) && MujocoLibrary.find.isLeft =>
           // MuJoCo is installed by whoever wants it: that is told in a line.
           val (status, told) = run(words)
@@ -235,11 +252,6 @@ abstract class DocumentedCommands(kind: DocumentedCommands.Kind) extends munit.F
           // The ports of the guide may be taken here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
-        case _ if words.contains(server.address.toString) && words.head == "fly" =>
-          // The vehicles of the experiment are not on this simulator: that is told in a line.
-          val (status, told) =
-            run(shortened(words, Files.createTempDirectory(folder, "out").resolve("flown")))
-          (if told.contains("the simulator has no vehicle") then 0 else status, told)
         case _ if words.contains("recogniser=detector") =>
           // Its runtime is added by whoever wants it: that is told in a line.
           val (status, told) = run(words)
@@ -275,10 +287,20 @@ object DocumentedCommands:
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 
+  /** Not run: what stands for many commands, and `identify` where it names no recording. Examples show `./sbtw …` and
+    * `python …` besides. The tests of those projects run the same programs (`./sbtw NAME/test`), `PythonPackageLiveSuite`
+    * runs `learn.py`; the other Python programs want frameworks that are not installed here.
+    */
+  private def leftOut(command: String): Boolean =
+    val standsForMany = Seq("--algorithm …", "--scenario NAME", "--loop …").exists(command.contains)
+    standsForMany || command == "identify"
+
   /** Commands that suites of their own run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(
     "search --family lead-pursuit --workers 2" -> classOf[ClusterCommandsLiveSuite],
-    "torture --workers 2"                      -> classOf[ElsewhereLiveSuite]
+    "torture --workers 2"                      -> classOf[ElsewhereLiveSuite],
+    "fly --clock virtual"                      -> classOf[StartedLauncherLiveSuite],
+    "--help"                                   -> classOf[StartedLauncherLiveSuite]
   )
 
   def kindOf(command: String): Kind =

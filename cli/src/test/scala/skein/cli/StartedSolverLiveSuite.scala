@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.io.File
 import java.nio.file.{Files, Path}
 import java.util.concurrent.TimeUnit
 import skein.testing.{Lengthy, TemporaryFolders}
@@ -9,21 +8,11 @@ import skein.testing.{Lengthy, TemporaryFolders}
   * of their command lines, no test within a process sees.
   */
 class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
-  private val launcher = Iterator
-    .iterate(File("").getAbsoluteFile)(_.getParentFile)
-    .find(File(_, "sbtw").exists)
-    .get
-    .toPath
-    .resolve("cli/target/universal/stage/bin/skein")
-
   private lazy val scratch = temporaryFolder()
 
   private def started(name: String, words: String*): (Process, Path) =
-    val log     = scratch.resolve(s"$name.log")
-    val builder =
-      ProcessBuilder(launcher.toString +: words*).redirectErrorStream(true).redirectOutput(log.toFile)
-    builder.environment.put("JAVA_HOME", sys.props("java.home")): Unit
-    (builder.start(), log)
+    val log = scratch.resolve(s"$name.log")
+    (Launchers.start(Launchers.staged, log, words), log)
 
   /** Asks again and again, since the other process tells by its log alone when it has come so far. */
   private def addressIn(log: Path, of: Process): String =
@@ -34,7 +23,7 @@ class StartedSolverLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     found.getOrElse(fail(s"no address in what the solver said: ${Files.readString(log)}"))
 
   test("a flight's manoeuvres are planned by a solver of another process, with the JDK's vectors"):
-    assume(Files.exists(launcher), "./sbtw cli/stage makes the launcher")
+    assume(Files.exists(Launchers.staged), "./sbtw cli/stage makes the launcher")
     val (solver, solverLog) = started("decide", "decide", "--at", "tcp://127.0.0.1:0")
     try
       val (flight, flightLog) = started(

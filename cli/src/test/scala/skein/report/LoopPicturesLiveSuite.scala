@@ -2,7 +2,7 @@ package skein.report
 
 import java.nio.file.{Files, Path}
 import skein.docs.Documentation
-import skein.loop.{GraphLayout, LoopKind}
+import skein.loop.{GraphLayout, LoopKind, OwnLoop}
 import skein.plot.Svg
 import skein.scenario.PaperDuel
 
@@ -32,7 +32,7 @@ object LoopPicturesLiveSuite:
     Documentation.root.resolve(s"docs/pictures/${figure.name}.svg") -> Svg.file(figure.drawing, figure.title)
   )
 
-  def graphs: Vector[(LoopKind, skein.loop.LoopGraph)] =
+  def graphs: Vector[(LoopKind | OwnLoop, skein.loop.LoopGraph)] =
     LoopPictures.graphs(kinds.map((_, fleet))).map((loop, graph) => (loop.kind, graph))
 
 @main def drawLoops(): Unit =

@@ -1,7 +1,7 @@
 package skein.search
 
 import com.typesafe.config.ConfigFactory
-import skein.optimise.{Evaluator, Search, SearchState}
+import skein.optimise.{Evaluator, Search, SearchState, TeamObjective}
 import skein.scenario.*
 import skein.settings.ScenarioSettings
 import skein.testing.Optimised
@@ -55,6 +55,46 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
 
+  test("a measure of whole flights is searched world by world, and the engine says so"):
+    val ready  = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
+    val engine = ready.engine(1)
+    assert(
+      engine.startsWith("scalar, about") && engine.contains("surrounded-after is of whole flights"),
+      engine
+    )
+    assert(!ready.isVirtual && !ready.byLanes)
+    val judges = ready.judges(2)(Judge.Candidates)
+    val one    = judges.tallies(Vector(Vector(8.0, 8.0), Vector(4.0, 8.0)), 0 until 2)
+    assertEquals(
+      one,
+      ready.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0), Vector(4.0, 8.0)), 0 until 2)
+    )
+    assertEquals(judges.valuesUnless(() => true)(Vector(Vector(8.0, 8.0)), 0 until 2), None)
+
+  test("off-ring by whole flights of the scalar engine is what lanes come to"):
+    val reduced = setup()
+    val whole   = reduced.flownBy match
+      case TeamEngine.Reduced(conditions, delays) =>
+        TeamEngine.Whole(
+          WholeFlights.scalar(conditions, delays, question.seed, Seq("off-ring")),
+          isVirtual = false
+        )
+      case other => fail(other.toString)
+    def mean(of: TeamSetup) =
+      of.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 2).head.mean
+    // The window's first and last instants differ by up to half a period, in which a vehicle flies 0.4 m.
+    assertEqualsDouble(mean(reduced.copy(flownBy = whole)), mean(reduced), 0.1)
+
+  test("settings that change how high all fly are flown in virtual time; so many flights are refused"):
+    val high  = question.copy(vary = Vector(Varied("altitude-m", 10, 20)), objective = "off-ring")
+    val ready = setup(high)
+    assert(ready.isVirtual)
+    val refused = high.copy(candidates = 200_000, episodes = 1).setup.swap.getOrElse("it was taken")
+    assert(refused.startsWith("--candidates, --episodes: expected at most 100000 flights"), refused)
+    val plant =
+      high.copy(conditions = high.conditions.copy(plant = "reduced")).setup.swap.getOrElse("it was taken")
+    assert(plant.startsWith("--plant: expected none"), plant)
+
   test("a search over settings is written down, read back and gone on with to the same end"):
     val ready     = setup(question.copy(method = "cma-es"))
     val evaluator = ready.judges(2)(Judge.Candidates)
@@ -83,8 +123,9 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       "--vary: ring-m: expected more than 0, came -1.0"
     )
     assertEquals(
-      mistake(question.copy(objective = "surrounded-after")),
-      "--objective: objective 'surrounded-after', at character 1: expected one of off-ring, gap, came 'surrounded-after': surrounded-after is told of recorded flights alone"
+      mistake(question.copy(objective = "surrounded")),
+      "--objective: objective 'surrounded', at character 1: expected one of " +
+        s"${Surround().measures.map(TeamObjective.keyOf).mkString(", ")}, came 'surrounded'"
     )
     assertEquals(
       Varied.parse("ring-m=12..4"),
@@ -99,10 +140,13 @@ object TeamSearchSimulation:
 
   /** Where all were in the last 10 s of an episode, flown by the scalar engine. */
   private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Positions] =
-    val engagement = Engagement.of(scenario.fleet, setup.conditions.duel.durationS)
+    val (conditions, delays) = setup.flownBy match
+      case TeamEngine.Reduced(conditions, delays) => (conditions, delays)
+      case other: TeamEngine.Whole                => throw AssertionError(other.toString)
+    val engagement = Engagement.of(scenario.fleet, setup.durationS)
     val count      = engagement.agents.size
     val seen       = Vector.newBuilder[(Double, Double, Double)]
-    Rollout(engagement, setup.conditions.timing, setup.delays, setup.conditions.vehicle.response).fly(
+    Rollout(engagement, conditions.timing, delays, conditions.vehicle.response).fly(
       WorldRandom.key(setup.question.seed, 0, episode),
       observer = new LoopObserver:
         override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = seen += ((timeS, x, y))

@@ -16,6 +16,15 @@ trait AgentPolicy:
     */
   def sensors: Set[String] = Set.empty
 
+  /** Whether it plays against one opponent and regards nobody else; other policies regard all vehicles. */
+  def isAgainstOne: Boolean = false
+
+  /** Whether it steers in the plane, at the altitude of its vehicle's start. */
+  def isPlanar: Boolean = false
+
+  /** Whether plans may decide in its place for a multirotor of this role. */
+  def isPlannedFor(role: Role): Boolean = false
+
   /** The memory before the first decision. */
   def start: Memory
 
@@ -24,6 +33,8 @@ trait AgentPolicy:
 
 /** A policy that steers in the plane, at the altitude of its vehicle's start: a convenience on top of [[AgentPolicy]]. */
 trait PlanarPolicy extends AgentPolicy:
+
+  final override def isPlanar: Boolean = true
 
   /** Where to fly, and what to remember. */
   def planar(seen: Observation, memory: Memory): (Planar, Memory)

@@ -3,25 +3,6 @@ package skein.policy
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** A vehicle's part in the scenario, for example `Role("Scout")`. */
-final case class Role(name: String):
-  override def toString: String = name
-
-object Role:
-  val Pursuer: Role   = Role("Pursuer")
-  val Evader: Role    = Role("Evader")
-  val Leader: Role    = Role("Leader")
-  val Follower: Role  = Role("Follower")
-  val Traveller: Role = Role("Traveller")
-
-  /** Against whom a role of the duel flies. */
-  def opponentOf(role: Role): Role = if role == Pursuer then Evader else Pursuer
-
-  private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
-
-  /** By its name; one of ours in letters of any case. */
-  def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))
-
 /** One vehicle and its policy.
   *
   * @param name
@@ -68,9 +49,8 @@ final case class Fleet(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
     val others = agents.indices.filter(_ != self).toVector
     val rivals = others.filter(agents(_).role != agents(self).role)
-    agents(self).policy match
-      case _: Policy => rivals
-      case _         => Vector(rivals, others, Vector(self)).find(_.nonEmpty).getOrElse(Vector(self))
+    if agents(self).policy.isAgainstOne then rivals
+    else Vector(rivals, others, Vector(self)).find(_.nonEmpty).getOrElse(Vector(self))
 
   require(
     agents.map(_.name).distinct.size == agents.size,

@@ -46,6 +46,11 @@ trait Policy extends PlanarPolicy:
     */
   def guessed(draw: Int => Double): Policy = this
 
+  final override def isAgainstOne: Boolean = true
+
+  /** What a plan knows of its goal is to be near. */
+  final override def isPlannedFor(role: Role): Boolean = role == Role.Pursuer
+
   type Memory = Any
 
   /** Nothing, but for an [[ObservingPolicy]]. */

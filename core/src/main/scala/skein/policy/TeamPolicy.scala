@@ -24,6 +24,8 @@ trait GoalPolicy extends TeamPolicy:
   /** Where it wants to be a time ahead, north and east, m, if it were alone. */
   def wanted(seen: TeamObservation, aheadS: Double): (Double, Double)
 
+  final override def isPlannedFor(role: Role): Boolean = true
+
   /** The fastest that is commanded, m/s. */
   def mostMps: Double
 

@@ -51,6 +51,9 @@ final case class PaperDuel(
       PaperDuel.distance.leastAt("at")
     ).map(measure => Measure(measure.name, measure.unit)(tracks => measure.of(tracks.first(2))))
 
+  override def isPapersGame: Boolean  = true
+  override def isAsPublished: Boolean = asPublished
+
   override def note: String = "Horizontal distance between pursuer and evader."
 
   /** Without a word before it: recordings of duels are older than those of other scenarios. */
@@ -59,11 +62,6 @@ final case class PaperDuel(
   override def crowded(vehicles: Int): PaperDuel = copy(pairs = pairs.max(vehicles / 2))
 
 object PaperDuel:
-  /** Whether loops run as the paper's published code does, which confounds its result. */
-  def isAsPublished(scenario: Scenario): Boolean = scenario match
-    case duel: PaperDuel => duel.asPublished
-    case _               => false
-
   val Name = "duel"
 
   /** The paper's, m. */

@@ -1,7 +1,7 @@
 package skein.scenario
 
 import java.util.Locale
-import skein.policy.{Agent, Fleet, PlanarPolicy, Seen}
+import skein.policy.{Agent, Fleet, Seen}
 import skein.units.*
 
 /** A task for a fleet: who flies, what may not happen, what is measured, and when it ends. A case class; its fields are
@@ -36,6 +36,14 @@ trait Scenario extends Product:
   /** Whether the flight ends before its duration; asked at every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 
+  /** Whether it is the paper's game, beside whose flights the paper's figures stand, and whose policies are searched and
+    * taught against each other.
+    */
+  def isPapersGame: Boolean = false
+
+  /** Whether loops run as the paper's published code does, which confounds its result. */
+  def isAsPublished: Boolean = false
+
   /** For the report: how to read the measures, in whole sentences. */
   def note: String = ""
 
@@ -64,7 +72,7 @@ trait Scenario extends Product:
   final def fleet: Fleet = Fleet(agents)
 
   /** Whether all steer in the plane, each at an altitude of its own. */
-  final def isPlanar: Boolean = agents.forall(_.policy.isInstanceOf[PlanarPolicy])
+  final def isPlanar: Boolean = agents.forall(_.policy.isPlanar)
 
 object Scenario:
   /** `OverTheRidge` as `over-the-ridge`. */

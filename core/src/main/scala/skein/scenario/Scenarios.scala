@@ -21,8 +21,12 @@ final case class Scenarios(kinds: Vector[ScenarioKind[?]], families: Vector[Poli
   /** @return or what was expected and came */
   def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
 
-  /** The default scenario of a program without the duel. */
-  def firstWithoutDuel: Option[String] = Option.when(!names.contains(PaperDuel.Name))(names.head)
+  /** The default scenario of a program without the paper's game, of whose two sides commands ask otherwise. */
+  def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)
+
+  /** Whether a name, with these settings, is that of the paper's game as it is; ours is known to every program. */
+  def isPapersGame(name: String, set: Map[String, String]): Boolean =
+    set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
   /** @return or what was expected, what came, and what is nearest */
   def kind(name: String): Either[String, ScenarioKind[?]] =

@@ -66,8 +66,8 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Scenario.worded("OverTheRidge"), "over-the-ridge")
     assert(Seq(PaperDuel(), Surround(), Formation(), Crossing()).forall(_.isPlanar))
     assertEquals(Surround().duration, Span.ofSeconds(60))
-    assertEquals(Scenarios(ScenarioKind(Surround())).firstWithoutDuel, Some("surround"))
-    assertEquals(Scenarios.ours.firstWithoutDuel, None)
+    assertEquals(Scenarios(ScenarioKind(Surround())).firstWithoutGame, Some("surround"))
+    assertEquals(Scenarios.ours.firstWithoutGame, None)
     assertEquals(
       Scenarios(ScenarioKind(Surround())).kind("ring").left.toOption,
       Some("expected surround, came 'ring'")

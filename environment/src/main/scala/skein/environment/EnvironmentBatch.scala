@@ -92,6 +92,7 @@ final class EnvironmentBatch private (
       if ended >= 0 then
         throw IllegalStateException(s"environment $ended has ended; reset it before the next step()")
       i += 1
+    // A step lasts microseconds: the common pool hands out its parts without a thread being started or woken by us.
     if groups.length < EnvironmentBatch.Together then groups.foreach(_.step())
     else IntStream.range(0, groups.length).parallel().forEach(groups(_).step())
 
@@ -112,11 +113,13 @@ object EnvironmentBatch:
       autoreset: Autoreset,
       block: ByteBuffer,
       opponent: Option[PolicyFile] = None
-  )(using Scenarios): Either[String, EnvironmentBatch] =
+  )(using scenarios: Scenarios): Either[String, EnvironmentBatch] =
     for
-      config <- if settings.isDuel then settings.resolvedAgainst(opponent) else ScenarioSide.of(settings)
-      _      <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
-      made   <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
+      config <-
+        if scenarios.isPapersGame(settings.scenario, settings.set) then settings.resolvedAgainst(opponent)
+        else ScenarioSide.of(settings)
+      _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
+      made <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
 
   /** The same from names and texts, for callers of other languages.

@@ -59,9 +59,6 @@ final case class EnvironmentSettings(
 ):
   import EnvironmentSettings.*
 
-  /** Whether it is the paper's, which flies by lanes. */
-  def isDuel: Boolean = scenario == PaperDuel.Name && set.isEmpty
-
   /** The most that who learns turns: rad/s until the next decision, and rad at once. */
   def mostTurn(role: Role): (Double, Double) =
     if role == Role.Pursuer then (turnRateRadPerS, 0)
@@ -78,7 +75,7 @@ final case class EnvironmentSettings(
       roles <- roles
       _     <- Expect.that(objective.isEmpty):
         s"objective: expected with another scenario than the duel, whose distance is rewarded, came '$objective'"
-      flown <- flown(altitudeM)
+      flown <- flown(altitudeM, "reduced")
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
       model   <- LaneDynamics.under(timing, vehicle.response, paper).left.map("plant: " + _)
@@ -94,8 +91,15 @@ final case class EnvironmentSettings(
     s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
   )
 
-  /** The loop's timing, the link, and what flies at an altitude. */
-  private[environment] def flown(atM: Double): Either[String, (LoopTiming, Delays, VehicleChoice)] =
+  /** The loop's timing, the link, and what flies at an altitude.
+    *
+    * @param otherwise
+    *   the plant, where none is named
+    */
+  private[environment] def flown(
+      atM: Double,
+      otherwise: String
+  ): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
       _       <- within("period_ms", periodMs, 1, 10_000)
@@ -107,7 +111,7 @@ final case class EnvironmentSettings(
       _       <- within("moves_in_flight", movesInFlight, 1, 16)
       _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
       _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
-      vehicle <- VehicleChoice.parse(plantOf, atM).left.map("plant: " + _)
+      vehicle <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
       delays  <- delaysOf(link).left.map("link: " + _)
       loopSettings = LoopSettings
         .every(Span.ofMillis(periodMs))
@@ -118,9 +122,6 @@ final case class EnvironmentSettings(
           s"loop: expected paused, sequential, futures, stream or predictive, came '${kind.label}', which plans"
         )
     yield (timing, delays, vehicle)
-
-  // Teams fly low, where the model of three parameters does not hold.
-  private def plantOf = if plant.nonEmpty then plant else if isDuel then "reduced" else "drag"
 
   private def delaysOf(link: String): Either[String, Delays] =
     LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)

@@ -113,7 +113,8 @@ private[environment] object ScenarioSide:
       ).map: measure =>
         s"objective: expected means over time, which can be rewarded as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
-      flown <- settings.flown(-agents(members.head).startPositionNed.z)
+      // Teams fly low, where the model of three parameters does not hold.
+      flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag")
       (timing, delays, vehicle) = flown
       side = ScenarioSide(settings, scenario, role, members, objective, timing, delays, vehicle.response)
       _ <- Try(Rollout(

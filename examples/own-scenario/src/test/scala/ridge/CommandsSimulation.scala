@@ -62,10 +62,20 @@ class CommandsSimulation extends munit.FunSuite:
     assertEquals(swept._1, 0, swept._2)
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)
 
+  folder.test("search chooses its settings by flights in virtual time, and says so"): out =>
+    val searched = run(
+      ("search --objective lowest-view --vary cruise-mps=3..6 --method random --candidates 4 --episodes 1 --fresh 2 " +
+        "--duration 12s --out").split(' ') :+ out.toString*
+    )
+    assertEquals(searched._1, 0, searched._2)
+    assert(clue(searched._2).contains("engine: flights in virtual time, about "))
+    assert(searched._2.contains("a second: "), searched._2)
+    assert(clue(Files.readString(out.resolve("scenario.conf"))).contains("cruise-mps = "))
+
   test("what cannot be had is refused in a line that says why"):
-    val searched = run("search --objective lowest-view --vary cruise-mps=3..6 --candidates 4".split(' ')*)
+    val searched = run("search --objective lowest --vary cruise-mps=3..6 --candidates 4".split(' ')*)
     assertEquals(searched._1, 1)
-    assert(clue(searched._2).contains("is told of recorded flights alone"))
+    assert(clue(searched._2).contains("expected one of lowest-view, "))
     val (status, said) = run("fly", "--set", "crest=3", "--set", "side-m=wide")
     assertEquals(status, 1)
     assert(clue(

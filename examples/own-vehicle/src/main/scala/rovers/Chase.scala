@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import skein.flight.PortFlight
 import skein.link.{MemoryNetwork, NetworkPlan, TcpTransport, Transport}
-import skein.loop.{LoopKind, LoopSettings}
+import skein.loop.{LoopKind, LoopSettings, OwnLoop}
 import skein.policy.*
 import skein.record.{ClockKind, MemoryRecorder, Recorder}
 import skein.scenario.*
@@ -52,10 +52,10 @@ object Chase:
   /** What a report of their recordings is told. */
   given scenarios: Scenarios = Scenarios(ScenarioKind(Rovers()))
 
-  def flight(kind: LoopKind, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
+  def flight(loop: LoopKind | OwnLoop, duration: Span, clockKind: ClockKind, clock: Clock): PortFlight =
     PortFlight(
-      s"${kind.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
-      kind,
+      s"${loop.label}-rovers${if clockKind == ClockKind.Virtual then "-virtual" else ""}",
+      loop,
       Rovers(),
       duration,
       clockKind,
@@ -77,20 +77,20 @@ object Chase:
     yield landed
 
   /** Over TCP on loopback, in real time. */
-  def live(kind: LoopKind, duration: Span)(recorder: PortFlight => Future[Recorder])(using
+  def live(loop: LoopKind | OwnLoop, duration: Span)(recorder: PortFlight => Future[Recorder])(using
       system: ActorSystem
   ) =
     import system.dispatcher
-    val planned = flight(kind, duration, ClockKind.Real, Clock.system)
+    val planned = flight(loop, duration, ClockKind.Real, Clock.system)
     recorder(planned).flatMap(drive(planned, TcpTransport(), _))
 
   /** The same in virtual time, in a moment. Equal seeds give equal recordings. */
-  def virtual(kind: LoopKind, duration: Span, seed: Long): MemoryRecorder = VirtualTime
+  def virtual(loop: LoopKind | OwnLoop, duration: Span, seed: Long): MemoryRecorder = VirtualTime
     .run(seed): system =>
       given ActorSystem = system
       import system.dispatcher
       val clock    = Clock.ofNanos(VirtualTime.clock(system))
-      val planned  = flight(kind, duration, ClockKind.Virtual, clock)
+      val planned  = flight(loop, duration, ClockKind.Virtual, clock)
       val recorder = MemoryRecorder(planned.heading)
       drive(planned, MemoryNetwork(NetworkPlan(), seed, clock).host("localhost"), recorder).map(_ => recorder)
     .value

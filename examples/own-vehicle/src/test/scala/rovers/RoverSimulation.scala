@@ -4,7 +4,7 @@ import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.{Address, MemoryNetwork, NetworkPlan}
-import skein.loop.{LoopKind, Replay}
+import skein.loop.{LoopKind, OwnLoop, Replay}
 import skein.measure.FlightSummary
 import skein.policy.Action
 import skein.port.VehicleError
@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 
 class RoverSimulation extends munit.FunSuite:
   import Chase.scenarios
-  private val loops = Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream)
+  private val loops = Seq[LoopKind | OwnLoop](LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, turns)
 
   private def distances(recording: Recording): Seq[(Double, Double)] =
     FlightSummary.of(recording).result.get.curves.head._2.points
@@ -36,11 +36,15 @@ class RoverSimulation extends munit.FunSuite:
 
   test("recordings become a report"):
     val folder = Files.createTempDirectory("rovers")
-    val file   = folder.resolve("virtual.duckdb")
-    assert(Chase.virtual(LoopKind.Stream, Span.ofSeconds(12), seed = 1).writeTo(file).isRight)
-    val set    = Report.read(Seq(file)).fold(errors => fail(errors.mkString), identity)
+    val files  =
+      for loop <- Seq[LoopKind | OwnLoop](LoopKind.Stream, turns) yield
+        val file = folder.resolve(s"${loop.label}.duckdb")
+        assert(Chase.virtual(loop, Span.ofSeconds(12), seed = 1).writeTo(file).isRight)
+        file
+    val set    = Report.read(files).fold(errors => fail(errors.mkString), identity)
     val report = Report.write(set, folder).fold(fail(_), identity)
-    assert(Files.readString(report.page).contains("stream-rovers-virtual"))
+    val page   = Files.readString(report.page)
+    for id <- Seq("stream-rovers-virtual", "turns-rovers-virtual") do assert(page.contains(id), id)
 
   private def inVirtualTime[A](body: ActorSystem ?=> (MemoryNetwork, Clock) => Future[A]): A =
     VirtualTime

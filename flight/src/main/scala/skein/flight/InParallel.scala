@@ -1,8 +1,10 @@
 package skein.flight
 
-import java.util.concurrent.Executors
+import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
 
-/** Work on threads of its own, which end with it. Blocks. */
+/** Work on threads of its own, which end with it. Blocks. What is shared out in pieces of microseconds is shared out
+  * otherwise; it says why there.
+  */
 private[skein] object InParallel:
 
   /** What each comes to, in their order; at most so many threads at once. */
@@ -10,3 +12,27 @@ private[skein] object InParallel:
     val pool = Executors.newFixedThreadPool(threads.min(all.size).max(1))
     try all.toVector.map(each => pool.submit(() => one(each))).map(_.get())
     finally pool.shutdown()
+
+  /** Tells what each comes to, as it comes, on the calling thread. `all` may be without end: the next is taken when one has
+    * ended.
+    */
+  def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
+    val pool                  = Executors.newFixedThreadPool(threads)
+    val ended                 = ExecutorCompletionService[B](pool)
+    def submit(each: A): Unit =
+      val work: Callable[B] = () => one(each)
+      val _                 = ended.submit(work)
+    try
+      var underWay = 0
+      while all.hasNext && underWay < threads do
+        submit(all.next())
+        underWay += 1
+      while underWay > 0 do
+        val came = ended.take().get()
+        underWay -= 1
+        if all.hasNext then
+          submit(all.next())
+          underWay += 1
+        use(came)
+    finally
+      val _ = pool.shutdownNow()

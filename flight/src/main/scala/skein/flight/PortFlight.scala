@@ -14,6 +14,8 @@ import skein.units.*
   *
   * @param id
   *   its name in tables and figures
+  * @param loop
+  *   one of ours, or a user's own graph
   * @param scenario
   *   who flies, by which policies, and what is measured
   * @param link
@@ -25,7 +27,7 @@ import skein.units.*
   */
 final case class PortFlight(
     id: String,
-    loop: LoopKind,
+    loop: LoopKind | OwnLoop,
     scenario: Scenario,
     duration: Span,
     clockKind: ClockKind,

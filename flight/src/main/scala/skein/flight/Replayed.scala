@@ -2,6 +2,7 @@ package skein.flight
 
 import java.nio.file.Path
 import skein.loop.Replay
+import skein.measure.RecordedScenario
 import skein.record.*
 import skein.scenario.Scenarios
 import skein.settings.RecordedPlan
@@ -14,7 +15,7 @@ import skein.units.Expect
   * @param decidedAgain
   *   the first difference when the recorded readings and moves are decided upon again
   * @param flownAgain
-  *   for a flight in virtual time: what came of flying it again, physics, network and all
+  *   for a flight in virtual time, of a loop of ours and with the built-in simulator: what came of flying it again, physics, network and all
   */
 final case class Replayed(
     id: String,
@@ -36,13 +37,26 @@ object Replayed:
   def of(file: Path)(using Scenarios): Either[String, Replayed] =
     for
       recording <- RecordingReader.read(file).left.map(_.message)
-      _     <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
+      _ <- Expect.that(recording.heading.vehicles.nonEmpty)("it has no vehicles, so nothing was decided")
+      replayed <- if recording.flight.loopKind.isDefined then ofOurs(file, recording) else ofOwn(recording)
+    yield replayed
+
+  private def ofOurs(file: Path, recording: Recording)(using Scenarios): Either[String, Replayed] =
+    for
       flown <- RecordedPlan.of(recording)
       decided = Replay(flown.fleet, recording, flown.settings.planningByModel).firstDifference
-      again <- Option.when(recording.flight.isVirtual)(flyAgain(file, recording, flown)) match
+      flight  = recording.flight
+      again <- Option.when(flight.isVirtual && flight.isBuiltIn)(flyAgain(file, recording, flown)) match
         case None         => Right(None)
         case Some(result) => result.map(Some(_))
-    yield Replayed(recording.flight.id, recording.decisions.size, decided, again)
+    yield Replayed(flight.id, recording.decisions.size, decided, again)
+
+  /** Its graph is not on record, so it is decided again and not flown again. */
+  private def ofOwn(recording: Recording)(using Scenarios): Either[String, Replayed] =
+    for scenario <- RecordedScenario.of(recording)
+    yield
+      val decided = Replay(scenario.fleet, recording).firstDifference
+      Replayed(recording.flight.id, recording.decisions.size, decided, None)
 
   /** Formats up to 5 did not record where plans lead. */
   private def withoutCourse(record: Record): Record = record match

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{AgentPolicy, Fleet, Observation, PlanarPolicy, Policy, Seen, Sensed, TeamObservation}
+import skein.policy.{AgentPolicy, Fleet, Observation, PlanarPolicy, Seen, Sensed, TeamObservation}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -53,9 +53,7 @@ final class Decider(fleet: Fleet, self: Int, policy: AgentPolicy):
     val (next, decision) = decide(memory.copy(held = policy.start), view, now)
     (next.copy(held = memory.held), decision)
 
-  def regardsTeam: Boolean = policy match
-    case _: Policy => false
-    case _         => true
+  def regardsTeam: Boolean = !policy.isAgainstOne
 
   /** What the vehicle's policy decides upon. */
   def observation(memory: Memory, view: TeamView, now: Instant): Observation =

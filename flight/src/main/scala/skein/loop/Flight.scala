@@ -1,11 +1,10 @@
 package skein.loop
 
 import org.apache.pekko.Done
-import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
+import org.apache.pekko.actor.{Actor, ActorSystem, Props}
+import org.apache.pekko.stream.{KillSwitches, Materializer, SharedKillSwitch}
 import org.apache.pekko.stream.scaladsl.RunnableGraph
 import scala.concurrent.{Future, Promise}
-import scala.util.{Failure, Success}
 import skein.port.SteppedTime
 import skein.record.{EventKind, Recorder}
 import skein.units.*
@@ -48,13 +47,15 @@ object Flight:
 
   /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the flight.
     *
+    * @param loop
+    *   one of ours, or a user's own
     * @param time
     *   what lets the simulator's time pass; only `paused` needs it
     * @param onTime
     *   how it has ended when its time is over
     */
   def start(
-      kind: LoopKind,
+      loop: LoopKind | OwnLoop,
       team: Team,
       time: Option[SteppedTime],
       duration: Span,
@@ -65,30 +66,31 @@ object Flight:
       system: ActorSystem
   ): Flight =
     import system.dispatcher
-    require(kind != LoopKind.Paused || time.isDefined, "paused needs a simulator whose time passes in steps")
+    val isPaused = loop == LoopKind.Paused
+    require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
     val switch   = KillSwitches.shared("flight")
     val stopping = Promise[Outcome]()
-    val graph    = loop(kind, team, time, duration, clock, switch, () => stopping.isCompleted)
-    val running  = graph.run()
+    val running  = loop match
+      case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
+      case kind: LoopKind =>
+        graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()
 
     recorder.failure.foreach(error => stopping.trySuccess(Outcome.Failed(error.message)))
-    val timer = Option.when(kind != LoopKind.Paused):
+    val timer = Option.when(!isPaused):
       system.scheduler.scheduleOnce(duration.toDuration)(stopping.trySuccess(onTime()): Unit)
     stopping.future.foreach(_ => switch.shutdown())
 
     val landed = running.transformWith: ended =>
       timer.foreach(_.cancel())
-      ended match
-        case Success(_) =>
-          stopping.trySuccess(onTime())
-          stopping.future
-        case Failure(error) =>
-          val reason = Option(error.getMessage).getOrElse(error.toString)
-          stopping.trySuccess(Outcome.Failed(reason))
-          team.log.note(EventKind.Aborted, None, reason)
-          // `paused` has told them already.
-          val hovering = if kind == LoopKind.Paused then Future.unit else team.hoverAll()
-          hovering.transformWith(_ => stopping.future)
+      val failure = ended.failed.toOption.map(error => Option(error.getMessage).getOrElse(error.toString))
+      stopping.trySuccess(failure.fold(onTime())(Outcome.Failed(_)))
+      failure.foreach(team.log.note(EventKind.Aborted, None, _))
+      val hovering = loop match
+        // It has told them already.
+        case LoopKind.Paused                => Future.unit
+        case _: LoopKind if failure.isEmpty => Future.unit
+        case _                              => team.hoverAll()
+      hovering.transformWith(_ => stopping.future)
     Flight(stopping, landed.map(recorded(recorder, _)))
 
   /** The last answers come after the flight's time is over; where they could not be kept, it has failed all the same. */
@@ -97,7 +99,26 @@ object Flight:
       case Some(error) if !outcome.isInstanceOf[Outcome.Failed] => Outcome.Failed(error.message)
       case _                                                    => outcome
 
-  private def loop(
+  /** Nothing says that a user's graph minds the switch: one that does not is broken off. */
+  private def runOwn(own: OwnLoop, team: Team, switch: SharedKillSwitch, stopping: Future[Outcome])(using
+      system: ActorSystem
+  ): Future[Done] =
+    import system.dispatcher
+    val graph   = own.graph(team, switch)
+    val started = Promise[Materializer]()
+    val streams = system.actorOf(Props(Streams(started)))
+    val running = started.future.flatMap(graph.run()(using _))
+    stopping.foreach: _ =>
+      val breakingOff = system.scheduler.scheduleOnce(OwnLoop.Grace.toDuration)(system.stop(streams))
+      running.onComplete(_ => breakingOff.cancel())
+    running.andThen(_ => system.stop(streams))
+
+  /** Its streams end with it. */
+  private final class Streams(started: Promise[Materializer]) extends Actor:
+    started.success(Materializer(context))
+    def receive: Receive = Actor.emptyBehavior
+
+  private def graph(
       kind: LoopKind,
       team: Team,
       time: Option[SteppedTime],

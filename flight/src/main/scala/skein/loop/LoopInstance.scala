@@ -14,15 +14,15 @@ import skein.units.*
 object LoopInstance:
 
   /** Absent for `paused`, which is no graph but a sequence of steps. */
-  def graph(kind: LoopKind, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
+  def graph(loop: LoopKind | OwnLoop, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
       system: ActorSystem
   ): Future[Option[LoopGraph]] =
     import system.dispatcher
-    if kind == LoopKind.Paused then Future.successful(None)
+    if loop == LoopKind.Paused then Future.successful(None)
     else
       val ports   = fleet.agents.map(agent => Silent(agent.policy.sensors))
       val team    = Team(fleet, ports, Clock.system, Forgetting, settings)
-      val flight  = Flight.start(kind, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
+      val flight  = Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting)
       val running = RunningGraph(team.meters)
       // A graph that has just been started tells nothing yet.
       UntilCertain(running.shape(), MostAsked, AskEvery)(_.isDefined).andThen(_ => flight.stop())

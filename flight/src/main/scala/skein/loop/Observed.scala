@@ -27,7 +27,7 @@ private object Observed:
       val view   = builder.add(team.viewWithForecast)
 
       for vehicle <- team.vehicles do
-        StreamLoop.sense(team, vehicle, start, stop).map(LoopEvent.Read(_)) ~> events.in(vehicle)
+        team.sense(vehicle, start).via(stop.flow).map(LoopEvent.Read(_)) ~> events.in(vehicle)
       team.due(start).via(stop.flow) ~> events.in(due)
       for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(due + 1 + sensor)
       events ~> view

@@ -14,7 +14,7 @@ object OpponentModel:
   /** Who is taken to fly straight on, and why, in a line each for the user. */
   def missing(fleet: Fleet): Vector[String] =
     val duellists =
-      fleet.agents.filter(agent => Planning.plans(agent) && agent.policy.isInstanceOf[Policy])
+      fleet.agents.filter(agent => Planning.plans(agent) && agent.policy.isAgainstOne)
     for
       other  <- fleet.agents if duellists.exists(_.role != other.role)
       reason <- of(other).left.toOption

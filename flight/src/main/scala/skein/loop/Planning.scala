@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Agent, Fleet, GoalPolicy, Policy, Role}
+import skein.policy.{Agent, Fleet}
 import skein.record.Course
 import skein.signal.Kinematics
 import skein.units.*
@@ -135,11 +135,8 @@ final case class PlanReport(
 object Planning:
 
   /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn on the spot. */
-  private[loop] def plans(agent: Agent): Boolean = agent.policy match
-    case _ if agent.kind != VehicleKind.Multirotor => false
-    case _: Policy                                 => agent.role == Role.Pursuer
-    case _: GoalPolicy                             => true
-    case _                                         => false
+  private[loop] def plans(agent: Agent): Boolean =
+    agent.kind == VehicleKind.Multirotor && agent.policy.isPlannedFor(agent.role)
 
   /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the time to find
     * every small gain follows the simple model, and guesses of other vehicles, where they are wrong, too; the policy

@@ -49,7 +49,7 @@ final class Replay(fleet: Fleet, recording: Recording, planning: PlanSettings = 
     recording.planned.map(planned => (planned.vehicle, planned.decision) -> planned).toMap
 
   private val joint = Option
-    .when(recording.flight.loopKind.contains(LoopKind.Plan))(())
+    .when(recording.flight.loopKind.contains(LoopKind.Plan) || recording.planned.nonEmpty)(())
     .flatMap(_ => JointPlanning.of(fleet, planning, recording.flight.seed))
   private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 

@@ -5,8 +5,12 @@ import org.apache.pekko.stream.{ClosedShape, SharedKillSwitch}
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 
-/** What `sequential` and `futures` share: each snapshot that they read is decided upon at once. */
-private object SnapshotGraph:
+/** What `sequential` and `futures` share, and a user's loop may: each snapshot that comes is decided upon at once.
+  *
+  * @param snapshots
+  *   end with the switch
+  */
+object SnapshotGraph:
 
   def apply(
       team: Team,

@@ -44,7 +44,7 @@ final class Team(
   private val steering = TeamSteering(fleet, ports, clock, settings, hold, sensing, parts, log)
 
   export parts.{meters, named}
-  export sensing.{isNewer, read, readAll, senseAll, sensed, ticks}
+  export sensing.{isNewer, joinLatest, read, readAll, sense, senseAll, sensed, ticks}
   export viewing.{cast, due, events, view, viewWithForecast}
   export deciding.{decide, decideAt, decideWithin, plan, planning, predict, start, underDecision}
   export steering.{

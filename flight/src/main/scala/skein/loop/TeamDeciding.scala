@@ -7,7 +7,7 @@ import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.{ExecutionContext, Future}
 import skein.flow.*
 import skein.loop.planning.{PlanStage, PlanWorkers}
-import skein.policy.{AgentPolicy, Fleet, Policy}
+import skein.policy.{AgentPolicy, Fleet}
 import skein.units.*
 
 /** Carries a team's requests forward to when its commands act, decides or plans upon them, and records the decisions.
@@ -268,6 +268,5 @@ private final class TeamDeciding(
     deciders(vehicle).decide(memory, view, now)
 
   /** Whose predictions are held against readings by a decider: where each of a team predicts all, its own. */
-  private def verified(decider: Int): Int => Boolean = fleet.agents(decider).policy match
-    case _: Policy => _ => true
-    case _         => _ == decider
+  private def verified(decider: Int): Int => Boolean =
+    if fleet.agents(decider).policy.isAgainstOne then _ => true else _ == decider

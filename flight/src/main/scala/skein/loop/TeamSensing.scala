@@ -2,9 +2,9 @@ package skein.loop
 
 import java.util.concurrent.atomic.{AtomicLongArray, AtomicReference}
 import org.apache.pekko.NotUsed
-import org.apache.pekko.stream.scaladsl.Source
+import org.apache.pekko.stream.scaladsl.{Flow, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import skein.flow.{Metronome, Sense}
+import skein.flow.{JoinLatest, Metronome, Sense}
 import skein.policy.Fleet
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.EventKind
@@ -52,6 +52,41 @@ private final class TeamSensing(
   /** Whether one answer tells of a later moment than another, by all that the team's vehicles have told. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
+
+  /** Asks one vehicle where it is, once a period from a start on; emits answers in order, never an older one after a newer.
+    * All vehicles are asked in phase, as far as the settings do not spread them; a phase of chance between them would make
+    * the data of one older than that of the other.
+    */
+  def sense(vehicle: Int, start: Instant): Source[Reading, NotUsed] =
+    val offset = settings.spread * vehicle.toLong / ports.size.toLong
+    Sense
+      .at[VehicleError, Reading, NotUsed](
+        ticks(start + offset),
+        settings.window,
+        settings.early,
+        isNewer = (answered, held) => isNewer(answered.state, held.state)
+      )(() => read(vehicle))(
+        onSkip = _.foreach(reading =>
+          log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} overtaken")
+        ),
+        onMissed =
+          ticks => log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
+      )
+      .addAttributes(parts.named("sense", vehicle))
+
+  /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for all to decide upon. */
+  def joinLatest: Flow[(Int, Reading), LoopEvent, NotUsed] =
+    val everyone = ports.indices.toSet
+    Flow
+      .fromGraph(
+        JoinLatest[Int, Reading](everyone, settings.patience)(
+          isNewer = (arrived, held) => isNewer(arrived.state, held.state),
+          onStale = (vehicle, reading) =>
+            log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
+        )
+      )
+      .map(newest => LoopEvent.Seen(newest.values.toVector, everyone))
+      .addAttributes(parts.named("join latest"))
 
   private val sensors = ports.indices.toVector.flatMap: vehicle =>
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>

@@ -1,6 +1,6 @@
 package skein.measure
 
-import skein.policy.{Policy, Role}
+import skein.policy.Role
 import skein.record.*
 import skein.scenario.{Result, Scenario, Scenarios, Track, Tracks}
 import skein.units.*
@@ -95,7 +95,7 @@ final case class FlightSummary(
     */
   def published: Option[Published.Flight] =
     if !scenario.exists(
-        Published.isOf
+        _.isPapersGame
       ) || policy.isDefined || solver.isDefined || cutShort.isDefined || paused.isDefined
     then
       None
@@ -150,7 +150,7 @@ object FlightSummary:
         age      <- decision.trueAge
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
 
-  private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isInstanceOf[Policy])
+  private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isAgainstOne)
 
   /** By what is on record of its end, and else by how long its vehicles were seen. */
   private def cutShort(recording: Recording, tracks: Vector[Track]): Option[String] = recording.ending match

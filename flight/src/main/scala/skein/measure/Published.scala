@@ -2,7 +2,6 @@ package skein.measure
 
 import skein.policy.Role
 import skein.record.LoopKind
-import skein.scenario.{PaperDuel, Scenario}
 
 /** The paper's results, from its text and its published result files (RoboticsDesignLab/StreamingSimPaper). */
 object Published:
@@ -29,9 +28,6 @@ object Published:
       closest: Double,
       closestAtS: Option[Double]
   )
-
-  /** Whether the paper's figures stand beside flights of a scenario: they are of its game. */
-  def isOf(scenario: Scenario): Boolean = scenario.name == PaperDuel.Name
 
   /** The paper's flight of this loop over this link. Its `paused` flew over the direct link but waits for every
     * answer, so it stands beside ours over any link.

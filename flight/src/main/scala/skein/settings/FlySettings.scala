@@ -121,7 +121,7 @@ final case class FlySettings(
         movesInFlight = movesInFlight,
         deadline = deadline.map(Deadline(_, fallback))
       )
-    if PaperDuel.isAsPublished(scenario) then timely.asPublished else timely
+    if scenario.isAsPublished then timely.asPublished else timely
 
   /** By which an agent's readings are carried forward. */
   private def modelOf(agent: Agent): VehicleModel[?] = agent.kind match

@@ -2,7 +2,6 @@ package skein.torture
 
 import skein.loop.{LoopKind, Outcome}
 import skein.record.{DecisionRow, Recording}
-import skein.scenario.PaperDuel
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -132,7 +131,7 @@ object Checks:
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =
-      if PaperDuel.isAsPublished(seen.faultPlan.scenario) then RowsPerSecond + 20 * seen.vehicles.size
+      if seen.faultPlan.scenario.isAsPublished then RowsPerSecond + 20 * seen.vehicles.size
       else RowsPerSecond
     val allowed = seen.vehicles.size * flown * each
     Vector(

@@ -2,7 +2,6 @@ package skein.torture
 
 import skein.loop.LoopKind
 import skein.record.{DecisionRow, ReadingRow}
-import skein.scenario.PaperDuel
 import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -15,11 +14,11 @@ private[torture] object KnowledgeChecks:
     Vector(
       misquoted(seen, told),
       seen.faultPlan.loop match
-        case LoopKind.Paused     => Vector.empty
-        case LoopKind.Futures    => notAtOnce(seen, told)
-        case LoopKind.Sequential => notAtOnce(seen, told) ++ outdated(seen, told)
-        case _ if PaperDuel.isAsPublished(seen.faultPlan.scenario) => backwards(seen)
-        case _                                                     => outdated(seen, told) ++ backwards(seen)
+        case LoopKind.Paused                            => Vector.empty
+        case LoopKind.Futures                           => notAtOnce(seen, told)
+        case LoopKind.Sequential                        => notAtOnce(seen, told) ++ outdated(seen, told)
+        case _ if seen.faultPlan.scenario.isAsPublished => backwards(seen)
+        case _                                          => outdated(seen, told) ++ backwards(seen)
       ,
       agesWrong(seen)
     ).flatten

@@ -1,6 +1,6 @@
 package skein.torture
 
-import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
+import skein.flight.InParallel
 import skein.scenario.Scenario
 import skein.settings.NamedScene
 import skein.units.*
@@ -48,22 +48,4 @@ object Torture:
       scenario: Option[Scenario] = None,
       scene: Option[NamedScene] = None
   )(onVerdict: Verdict => Unit): Unit =
-    val pool                     = Executors.newFixedThreadPool(threads)
-    val ended                    = ExecutorCompletionService[Verdict](pool)
-    def submit(seed: Long): Unit =
-      val flight: Callable[Verdict] = () => of(seed, duration, scenario, scene)
-      val _                         = ended.submit(flight)
-    try
-      var underWay = 0
-      while seeds.hasNext && underWay < threads do
-        submit(seeds.next())
-        underWay += 1
-      while underWay > 0 do
-        val verdict = ended.take().get()
-        underWay -= 1
-        if seeds.hasNext then
-          submit(seeds.next())
-          underWay += 1
-        onVerdict(verdict)
-    finally
-      val _ = pool.shutdownNow()
+    InParallel.asTheyCome(seeds, threads)(of(_, duration, scenario, scene))(onVerdict)

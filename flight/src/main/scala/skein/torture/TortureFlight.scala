@@ -12,7 +12,6 @@ import skein.link.*
 import skein.loop.*
 import skein.record.*
 import skein.rpc.RpcClient
-import skein.scenario.PaperDuel
 import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
@@ -107,7 +106,7 @@ object TortureFlight:
         _            = if !isPaused then eyes.foreach(_.run())
         stepper      = WatchedTime(AirSimTime(client))
         loopSettings =
-          if PaperDuel.isAsPublished(faultPlan.scenario) then LoopSettings().asPublished else LoopSettings()
+          if faultPlan.scenario.isAsPublished then LoopSettings().asPublished else LoopSettings()
         team   = Team(scenario, ports, clock, recorder, loopSettings)
         flight =
           Flight.start(faultPlan.loop, team, Some(stepper), faultPlan.duration, clock, recorder)

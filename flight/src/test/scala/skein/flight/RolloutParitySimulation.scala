@@ -52,7 +52,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       LoopTimings
         .of(
           loop,
-          if PaperDuel.isAsPublished(scenario) then every.asPublished else every,
+          if scenario.isAsPublished then every.asPublished else every,
           AirSimFleet.askTimeout
         )
         .getOrElse(fail(s"${loop.label} has no timing"))

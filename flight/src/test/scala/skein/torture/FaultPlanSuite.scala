@@ -88,7 +88,7 @@ class FaultPlanSuite extends munit.FunSuite:
     do often(what, 0.3)(faultPlan => of(faultPlan.messageFaults) > 0)
     often("a file", 0.1)(_.isFiled)
     often("as published", 0.2, others.filter(_.loop == LoopKind.Stream))(each =>
-      PaperDuel.isAsPublished(each.scenario)
+      each.scenario.isAsPublished
     )
 
   test("mischief is bounded, so that flights still have something to show"):
@@ -109,7 +109,7 @@ class FaultPlanSuite extends munit.FunSuite:
         case _                                      => 10
       assert(pairs(faultPlan) >= 1 && pairs(faultPlan) <= most, faultPlan.toString)
       assert(
-        !PaperDuel.isAsPublished(faultPlan.scenario) || faultPlan.loop == LoopKind.Stream,
+        !faultPlan.scenario.isAsPublished || faultPlan.loop == LoopKind.Stream,
         faultPlan.toString
       )
     val streams = faultPlans.filter(_.loop == LoopKind.Stream)

@@ -11,7 +11,9 @@ private[lanes] object LaneSupport:
   ):
     "the module jdk.incubator.vector is missing; start Java with --add-modules jdk.incubator.vector"
 
-/** Hands batches of worlds out to workers, each on a thread of its own. */
+/** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch to batch, and is
+  * asked between them whether to go on.
+  */
 private[lanes] object LaneThreads:
 
   /** @param isCancelled

@@ -53,8 +53,16 @@ enum Course:
   *
   * @param seed
   *   of the candidates
+  * @param leastPlayOff
+  *   episodes on which the leaders meet at the end, at least
   */
-final class Search(space: SearchSpace, method: SearchMethod, direction: Direction, seed: Long):
+final class Search(
+    space: SearchSpace,
+    method: SearchMethod,
+    direction: Direction,
+    seed: Long,
+    leastPlayOff: Int = Search.LeastPlayOff
+):
   import Search.*
 
   require(
@@ -67,7 +75,7 @@ final class Search(space: SearchSpace, method: SearchMethod, direction: Directio
     case _                                       => None
 
   private val playOffEpisodes =
-    (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(LeastPlayOff).min(MostPlayOff).toInt
+    (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(leastPlayOff).min(MostPlayOff).toInt
 
   /** Episodes of the whole search, if it does not end early. */
   val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
@@ -218,7 +226,7 @@ object Search:
   val PlayOffFrom: Int = 1 << 24
 
   // A tenth of the search's episodes, within these bounds.
-  private val LeastPlayOff = 64L
+  private val LeastPlayOff = 64
   private val MostPlayOff  = 1024L
   private val PlayOffRound = 64
   private val MostListed   = 16384

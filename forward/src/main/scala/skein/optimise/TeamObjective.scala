@@ -5,10 +5,10 @@ import skein.lanes.Judged
 import skein.policy.Role
 import skein.scenario.{Measure, Scenario, Window}
 
-/** What flights of a scenario are judged by, where forward simulation judges: a sum of its measures.
+/** What flights of a scenario are judged by: a sum of its measures.
   *
   * @param terms
-  *   weights and measures of a quantity
+  *   weights and measures; of a quantity, where forward simulation judges by them
   */
 final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Direction):
 
@@ -28,7 +28,7 @@ object TeamObjective:
   /** `off ring` as `off-ring`. */
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
-  /** Reads `off-ring + 0.1*gap`, with a direction before it or not.
+  /** Reads `off-ring + 0.1*gap`, with a direction before it or not: measures of a quantity, as [[judged]] wants them.
     *
     * @param otherwise
     *   the direction where none stands there
@@ -39,9 +39,23 @@ object TeamObjective:
       text: String,
       scenario: Scenario,
       otherwise: Direction = Direction.Minimise
+  ): Either[String, TeamObjective] = read(text, measures(scenario), otherwise)(measureOf(scenario, _, _))
+
+  /** Reads the same of any measures of the scenario, small where no direction stands there. */
+  def ofAll(text: String, scenario: Scenario): Either[String, TeamObjective] =
+    val known = scenario.measures.map(measure => keyOf(measure) -> measure).to(ListMap)
+    if known.isEmpty then Left(s"expected a scenario with measures; ${scenario.name} has none")
+    else
+      read(text, known, Direction.Minimise): (name, arguments) =>
+        known.get(name).filter(_ => arguments.isEmpty).toRight(
+          s"expected one of ${known.keys.mkString(", ")}, came '$name${arguments.fold("")(a => s"($a)")}'"
+        )
+
+  private def read(text: String, known: ListMap[String, Measure], otherwise: Direction)(
+      measureOf: (String, Option[String]) => Either[String, Measure]
   ): Either[String, TeamObjective] =
     WeightedSum
-      .parse(text, measures(scenario).keys.mkString(", "), hyphened = true)(measureOf(scenario, _, _))
+      .parse(text, known.keys.mkString(", "), hyphened = true)(measureOf)
       .map(sum => TeamObjective(sum.terms, sum.stated.getOrElse(otherwise)))
 
   /** What measures of a quantity judge an episode by. */

@@ -4,7 +4,7 @@ import java.util.concurrent.ForkJoinPool
 import java.util.stream.IntStream
 
 /** Threads among which a batch's rows are shared out, in parts of a fixed number of rows: so sums over parts have the same
-  * bits on any number of threads.
+  * bits on any number of threads. A batch takes less time than threads take to start, so they wait for the next one here.
   */
 final class Workers(threads: Int) extends AutoCloseable:
   private val pool = Option.when(threads > 1)(ForkJoinPool(threads))

@@ -8,7 +8,7 @@ import skein.policy.PlanarObservation
 import skein.testing.TemporaryFolders
 import skein.units.Span
 
-class OutsidePolicySuite extends munit.FunSuite, TemporaryFolders:
+class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
 
   /** What is decided, or why nothing, of as many questions as there are answers. */

@@ -19,7 +19,7 @@ import skein.vehicle.ConstantVelocity
 import skein.vtime.VirtualTime
 
 /** Environments in another process, here on a thread of this one. */
-class EnvironmentSimulatorSuite extends munit.FunSuite:
+class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
   private val names = Vector("Evader", "Pursuer1", "Pursuer2")
 
   /** Points that follow half of their commanded velocity; the reward is minus the distance from the origin. It ends after

@@ -8,7 +8,7 @@ import skein.cluster.Endpoint
 import skein.testing.Unhurried
 
 /** Over loopback. */
-class MetricsServerSuite extends munit.FunSuite, Unhurried:
+class MetricsServerLiveSuite extends munit.FunSuite, Unhurried:
   private val anyPort = Endpoint("127.0.0.1", 0)
 
   test("tells how it goes each time anew, to whoever asks for it and is no page of another site"):

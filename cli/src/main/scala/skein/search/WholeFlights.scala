@@ -1,0 +1,185 @@
+package skein.search
+
+import skein.flight.{InParallel, VirtualFlights}
+import skein.forward.*
+import skein.loop.LoopKind
+import skein.optimise.{TeamObjective, ValueEvaluator}
+import skein.scenario.{Scenario, Track, Tracks}
+import skein.signal.LatencyProfile
+import skein.simd.WorldRandom
+import skein.units.*
+import skein.vehicle.VehicleKind
+
+/** Episodes of a scenario that are flown whole, one by one, whatever its policies and measures are.
+  *
+  * @param vehicles
+  *   what flies, for people
+  * @param model
+  *   the same in a word
+  * @param by
+  *   the engine
+  * @param why
+  *   nothing faster flies them
+  * @param fly
+  *   an episode by its number; on the calling thread
+  */
+final class WholeFlights private (
+    val vehicles: String,
+    val model: String,
+    by: String,
+    why: String,
+    val effort: Effort,
+    val blockEpisodes: Int,
+    fly: (Scenario, Int) => Either[String, Tracks]
+):
+  /** What an episode comes to.
+    *
+    * @return
+    *   or why it could not be flown to its end
+    */
+  def value(scenario: Scenario, objective: TeamObjective, episode: Int): Either[String, Double] =
+    val measures = scenario.measures.map(measure => measure.name -> measure).toMap
+    fly(scenario, episode).map: tracks =>
+      objective.terms.map((weight, measure) =>
+        measures(measure.name).of(tracks).fold(objective.direction.sign * WholeFlights.Never)(weight * _)
+      ).sum
+
+  /** A line that says what flies, how fast about, and why nothing faster does. Flies twice to know. */
+  def engine(scenario: Scenario, objective: TeamObjective, threads: Int): String =
+    def flown = value(scenario, objective, 0)
+    val _     = flown
+    val from  = System.nanoTime()
+    val again = flown
+    val rate  = threads / ((System.nanoTime() - from) * 1e-9)
+    again.fold(reason => s"$by: $why; $reason", _ => f"$by, about ${rate.max(1)}%,.0f a second: $why")
+
+object WholeFlights:
+  /** What an episode counts for that never comes to a measure, in the measure's unit: worse than all that do. */
+  val Never = 1e6
+
+  /** Flights in virtual time that a search may take: a day of them, at one a second. */
+  val MostVirtual = 100_000
+
+  /** A scenario as forward simulation flies it.
+    *
+    * @return
+    *   or why it cannot
+    */
+  def plane(scenario: Scenario, durationS: Double): Either[String, Engagement] =
+    try
+      val plane = Engagement.of(scenario.fleet, durationS)
+      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars") else Right(plane)
+    catch
+      case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
+
+  /** One episode by forward simulation.
+    *
+    * @param key
+    *   of its random numbers
+    * @return
+    *   or that its vehicles were not all seen
+    */
+  def forward(
+      scenario: Scenario,
+      plane: Engagement,
+      timing: LoopTiming,
+      link: Delays,
+      response: VelocityResponse,
+      key: Int
+  ): Either[String, Tracks] =
+    val agents  = scenario.agents
+    val samples = agents.map(agent =>
+      Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
+    )
+    val observer = new LoopObserver:
+      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+        samples(vehicle) += ((
+          Instant.ofNanos(0) + Span.ofSeconds(timeS),
+          Vector3(x, y, agents(vehicle).startPositionNed.z)
+        )): Unit
+    Rollout(plane, timing, link, response).fly(key, observer = observer): Unit
+    Tracks
+      .of(agents.zip(samples).map((agent, places) =>
+        Track.ofPositions(agent.name, agent.role.name, places.result())
+      ))
+      .toRight("its vehicles were not all seen")
+
+  /** By forward simulation, world by world.
+    *
+    * @param plain
+    *   measures that are not of a quantity
+    */
+  def scalar(flown: Conditions.Resolved, link: Delays, seed: Long, plain: Seq[String]): WholeFlights =
+    WholeFlights(
+      flown.vehicle.description,
+      flown.vehicle.name,
+      "scalar",
+      ofWholeFlights(plain),
+      Effort.ofTeam(byLanes = false),
+      blockEpisodes = 64,
+      (scenario, episode) =>
+        val key = WorldRandom.key(seed, 0, episode)
+        plane(scenario, flown.duel.durationS).flatMap(
+          forward(scenario, _, flown.timing, link, flown.vehicle.response, key)
+        )
+    )
+
+  /** Why measures are taken of whole flights. */
+  def ofWholeFlights(plain: Seq[String]): String =
+    s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself"
+
+  /** By flights in virtual time: simulator, link, client and loop as they are. */
+  def virtual(
+      conditions: Conditions,
+      loop: LoopKind,
+      link: LatencyProfile,
+      seed: Long,
+      reason: String
+  ): WholeFlights = WholeFlights(
+    SimulatorsQuadrotor,
+    "simulator",
+    "flights in virtual time",
+    reason,
+    Effort.OfFlights,
+    blockEpisodes = 4,
+    (scenario, episode) =>
+      VirtualFlights
+        .result(
+          scenario,
+          loop,
+          link,
+          seed + episode,
+          Span.ofMillis(conditions.periodMs),
+          Span.ofSeconds(conditions.durationS)
+        )
+        .map(_.tracks)
+  )
+
+  /** What flies in virtual time, for people. */
+  val SimulatorsQuadrotor = "the simulator's quadrotor"
+
+/** Judges candidates by whole flights.
+  *
+  * @param scenario
+  *   of a candidate
+  */
+final class WholeFlightEvaluator(
+    flights: WholeFlights,
+    scenario: Vector[Double] => Scenario,
+    objective: TeamObjective,
+    threads: Int
+) extends ValueEvaluator:
+
+  /** @throws BlocksFailed
+    *   if a flight could not be flown to its end
+    */
+  def valuesUnless(isCancelled: () => Boolean)(
+      candidates: Vector[Vector[Double]],
+      episodes: Range
+  ): Option[Vector[Array[Double]]] =
+    val worlds = candidates.map(scenario).flatMap(flown => episodes.map((flown, _)))
+    val came   = InParallel.map(worlds, threads): (flown, episode) =>
+      Option.unless(isCancelled())(flights.value(flown, objective, episode))
+    Option.when(came.forall(_.nonEmpty)):
+      val values = came.flatten.map(_.fold(reason => throw BlocksFailed(reason), identity))
+      values.grouped(episodes.size).map(_.toArray).toVector

@@ -1,0 +1,43 @@
+package skein.cli
+
+import java.io.File
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.file.Path
+import scala.concurrent.ExecutionContext.Implicits.global
+import scala.concurrent.duration.*
+import scala.concurrent.{Await, Future, blocking}
+
+/** The programs' launchers, as they are started. */
+object Launchers:
+  private val checkout: Path =
+    Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
+
+  /** As `./sbtw cli/stage` makes it; it need not be there. */
+  val staged: Path = checkout.resolve("cli/target/universal/stage/bin/skein")
+
+  private def prepared(launcher: Path, words: Seq[String], javaHome: String): ProcessBuilder =
+    val builder = ProcessBuilder(launcher.toString +: words*).redirectErrorStream(true)
+    builder.environment.put("JAVA_HOME", javaHome): Unit
+    builder
+
+  /** Starts a launcher; what it says is written to `log`. */
+  def start(launcher: Path, log: Path, words: Seq[String]): Process =
+    prepared(launcher, words, sys.props("java.home")).redirectOutput(log.toFile).start()
+
+  /** Runs it to its end, within minutes.
+    *
+    * @return
+    *   its exit status, and what it said
+    */
+  def run(
+      launcher: Path,
+      words: Seq[String],
+      javaHome: String = sys.props("java.home")
+  ): (status: Int, said: String) =
+    val process = prepared(launcher, words, javaHome).start()
+    // What filters its standard error may end after it.
+    val said = Future(blocking(String(process.getInputStream.readAllBytes(), UTF_8)))
+    try
+      val all = Await.result(said, 3.minutes)
+      (process.waitFor(), all)
+    finally process.destroyForcibly(): Unit

@@ -1,0 +1,25 @@
+package skein.cli
+
+import java.nio.file.Files
+import skein.testing.{Lengthy, TemporaryFolders}
+
+/** Commands of the README as a user starts them: the launcher's script, as `cli/stage` makes it, in a process of its own. */
+class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
+  private lazy val scratch = temporaryFolder()
+
+  private def said(words: String*): String =
+    assume(Files.exists(Launchers.staged), "./sbtw cli/stage makes the launcher")
+    val (status, said) = Launchers.run(Launchers.staged, words)
+    assertEquals(status, 0, said)
+    assert(!said.contains("WARNING"), said)
+    said
+
+  test("./skein --help"):
+    val help = said("--help")
+    for command <- Main.commands do assert(help.contains(command.name), command.name)
+
+  test("./skein fly --clock virtual"):
+    val flown =
+      said("fly", "--clock", "virtual", "--duration", "12s", "--out", scratch.resolve("flown").toString)
+    assert(flown.contains("predictive"), flown)
+    assert(Files.exists(scratch.resolve("flown/report.html")), flown)

@@ -1,0 +1,20 @@
+package skein.policy
+
+/** A vehicle's part in the scenario, for example `Role("Scout")`. */
+final case class Role(name: String):
+  override def toString: String = name
+
+object Role:
+  val Pursuer: Role   = Role("Pursuer")
+  val Evader: Role    = Role("Evader")
+  val Leader: Role    = Role("Leader")
+  val Follower: Role  = Role("Follower")
+  val Traveller: Role = Role("Traveller")
+
+  /** Against whom a role of the duel flies. */
+  def opponentOf(role: Role): Role = if role == Pursuer then Evader else Pursuer
+
+  private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
+
+  /** By its name; one of ours in letters of any case. */
+  def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))

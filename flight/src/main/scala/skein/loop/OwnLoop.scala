@@ -1,0 +1,40 @@
+package skein.loop
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.SharedKillSwitch
+import org.apache.pekko.stream.scaladsl.RunnableGraph
+import scala.concurrent.Future
+import skein.record.LoopKind
+import skein.units.Span
+
+/** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in virtual time and
+  * replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.
+  *
+  * @param name
+  *   in recordings, tables and pictures; none of ours
+  * @param graph
+  *   ends its sources when the switch is shut down, and completes its future when every command has ended; after
+  *   [[OwnLoop.Grace]] it is broken off. Whatever it does, the vehicles are told to hover afterwards
+  */
+final class OwnLoop(
+    val name: String,
+    val graph: ActorSystem ?=> (Team, SharedKillSwitch) => RunnableGraph[Future[Done]]
+):
+  require(
+    name.matches("[a-z][a-z0-9-]{0,39}"),
+    s"a loop's name: expected up to 40 small letters, digits and dashes, came '$name'"
+  )
+  require(LoopKind.parse(name).isLeft, s"a loop's name: expected none of Skein's own, came '$name'")
+
+object OwnLoop:
+  /** How long a graph may take to end after its switch was shut down; then it is broken off. More than a vehicle takes to
+    * answer a command or to miss its time.
+    */
+  val Grace: Span = Span.ofSeconds(30)
+
+  extension (loop: LoopKind | OwnLoop)
+    /** What recordings call it. */
+    def label: String = loop match
+      case kind: LoopKind => kind.label
+      case own: OwnLoop   => own.name
