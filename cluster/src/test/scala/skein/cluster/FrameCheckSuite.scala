@@ -7,7 +7,8 @@ class FrameCheckSuite extends munit.FunSuite:
   private val most = 1000
 
   private def connection(lengths: Int*): Array[Byte] =
-    val bytes = ByteBuffer.allocate(5 + lengths.map(length => 4 + length.max(0).min(most)).sum).order(LITTLE_ENDIAN)
+    val bytes =
+      ByteBuffer.allocate(5 + lengths.map(length => 4 + length.max(0).min(most)).sum).order(LITTLE_ENDIAN)
     bytes.put("AKKA".getBytes("US-ASCII")).put(1.toByte): Unit
     for length <- lengths do bytes.putInt(length).put(Array.fill(length.max(0).min(most))(-1.toByte)): Unit
     bytes.array
@@ -23,7 +24,9 @@ class FrameCheckSuite extends munit.FunSuite:
   test("frames as long as they may be pass, whatever is in them and however the connection cuts them"):
     assertEquals(refused(connection(0, 1, 7, most, 0, 300)), None)
 
-  test("a length that no frame has is found, also behind others: below zero, above what is allowed, close to 2³¹"):
+  test(
+    "a length that no frame has is found, also behind others: below zero, above what is allowed, close to 2³¹"
+  ):
     for length <- Seq(-1, Int.MinValue, most + 1, Int.MaxValue, Int.MaxValue - 8) do
       assertEquals(refused(connection(length)), Some(length))
       assertEquals(refused(connection(3, most, length)), Some(length))

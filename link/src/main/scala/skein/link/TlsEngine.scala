@@ -18,7 +18,9 @@ private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
 
   private def isRecord(source: ByteBuffer): Boolean =
     def u8(index: Int) = source.get(source.position() + index) & 0xff
-    (source.remaining < 1 || Types.contains(u8(0))) && (source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most)
+    (source.remaining < 1 || Types.contains(
+      u8(0)
+    )) && (source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most)
 
   export own.{
     wrap,
@@ -46,7 +48,7 @@ private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
     getEnableSessionCreation
   }
 
-private object TlsEngine:
+private[skein] object TlsEngine:
   /** From `change_cipher_spec` to `application_data`: RFC 8446, 5.1. */
   private val Types = 20 to 23
 
