@@ -37,7 +37,7 @@ class ConvoyLiveSuite extends munit.FunSuite, Lengthy, Waiting:
       assertEquals(Await.result(assembly.landed, 1.minute).outcome, Outcome.Completed)
       val recording = recorder.recording
       val result    = Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get)
-      val told = result.measured.map(one => s"${one.measure.name} ${one.value.getOrElse("none")}")
+      val told      = result.measured.map(one => s"${one.measure.name} ${one.value.getOrElse("none")}")
       println(s"${loop.label}: ${told.mkString(", ")}")
       // Virtual flights come to 2; a busy machine adds to that.
       assert(result.value("off places").exists(_ < 4), result.measured)

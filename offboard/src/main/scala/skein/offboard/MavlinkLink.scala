@@ -90,10 +90,8 @@ final class MavlinkLink private (
   private def greet(number: Int): Unit = synchronized:
     def every(id: Int, micros: Float) =
       CommandLong(number, 1, SetInterval, 0, id.toFloat, micros, 0, 0, 0, 0, 0)
-    val (needed, spare) = if controls(number).estimate.hasOdometry then (Samples.take(1), Samples.drop(1))
-    else (Samples, Vector.empty)
-    val sampled = needed.map(every(_, (settings.sampleEvery.toNanos / 1000).toFloat))
-    val muted   = (Unneeded ++ spare).map(every(_, -1))
+    val sampled = Samples.map(every(_, (settings.sampleEvery.toNanos / 1000).toFloat))
+    val muted   = Unneeded.map(every(_, -1))
     send(sampled ++ muted :+ CommandLong(number, 1, RequestMessage, 0, 49, 0, 0, 0, 0, 0, 0))
 
   /** Where the frames lie, and whose clock it is, once all are known. */
@@ -137,7 +135,7 @@ object MavlinkLink:
   private val SetInterval    = 511
   private val RequestMessage = 512
 
-  /** ODOMETRY; where there is none, LOCAL_POSITION_NED and ATTITUDE_QUATERNION. */
+  /** ODOMETRY, LOCAL_POSITION_NED, ATTITUDE_QUATERNION. */
   private val Samples = Vector(331, 32, 31)
 
   /** What comes often and is not looked at: GPS_RAW_INT, ATTITUDE, GLOBAL_POSITION_INT. On a link that keeps the order,
