@@ -15,14 +15,14 @@ object Launchers:
   /** As `./sbtw cli/stage` makes it; it need not be there. */
   val staged: Path = checkout.resolve("cli/target/universal/stage/bin/skein")
 
-  private def prepared(launcher: Path, words: Seq[String], javaHome: String): ProcessBuilder =
-    val builder = ProcessBuilder(launcher.toString +: words*).redirectErrorStream(true)
+  private def prepared(command: Seq[String], javaHome: String): ProcessBuilder =
+    val builder = ProcessBuilder(command*).redirectErrorStream(true)
     builder.environment.put("JAVA_HOME", javaHome): Unit
     builder
 
   /** Starts a launcher; what it says is written to `log`. */
   def start(launcher: Path, log: Path, words: Seq[String]): Process =
-    prepared(launcher, words, sys.props("java.home")).redirectOutput(log.toFile).start()
+    prepared(launcher.toString +: words, sys.props("java.home")).redirectOutput(log.toFile).start()
 
   /** Runs it to its end, within minutes.
     *
@@ -34,9 +34,10 @@ object Launchers:
       words: Seq[String],
       javaHome: String = sys.props("java.home")
   ): (status: Int, said: String) =
-    val process = prepared(launcher, words, javaHome).start()
-    // What filters its standard error may end after it.
-    val said = Future(blocking(String(process.getInputStream.readAllBytes(), UTF_8)))
+    // What filters its standard error may end after it; the pipe is read to its end.
+    val piped   = Seq("bash", "-c", "set -o pipefail; \"$@\" 2>&1 | cat", "run", launcher.toString)
+    val process = prepared(piped ++ words, javaHome).start()
+    val said    = Future(blocking(String(process.getInputStream.readAllBytes(), UTF_8)))
     try
       val all = Await.result(said, 3.minutes)
       (process.waitFor(), all)
