@@ -8,7 +8,7 @@ import skein.units.Expect
 
 /** Whether other processes compute. */
 final case class ClusterOptions(
-    @arg(doc = "computes by so many processes of this machine, which share its cores")
+    @arg(doc = "computes with this many processes of this machine, which share its cores")
     workers: Option[Int],
     @arg(doc =
       "where workers of other machines join (./skein worker --join); the command waits for them"

@@ -12,10 +12,10 @@ import skein.units.Expect
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
-    @arg(doc = "paused, sequential, futures, stream, predictive or plan; may be given several times")
+    @arg(doc = "paused, sequential, futures, stream, predictive or plan; can be repeated")
     loop: Seq[String],
     @arg(doc =
-      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; may be given several times"
+      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; can be repeated"
     )
     link: Seq[String],
     @arg(doc = "of each flight, for example 60s")
@@ -24,18 +24,18 @@ final case class FlightOptions(
     period: Option[String],
     @arg(doc = "of every random choice")
     seed: Option[Long],
-    @arg(doc = "whose task is flown; the command scenarios lists them with their settings")
+    @arg(doc = "the scenario to fly; the command scenarios lists them with their settings")
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example ring-m=10; may be given several times")
+    @arg(doc = "a setting of the scenario, for example ring-m=10; can be repeated")
     set: Seq[String],
     @arg(doc =
-      "what stands in the built-in simulator's world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
+      "scene of the built-in simulator: empty, forest, pursuit, street, or a file; without it, the scenario's"
     )
     scene: Option[String],
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "a policy file of the commands search and learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; may be given several times"
+      "a policy file of the commands search and learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; can be repeated"
     )
     policy: Seq[String],
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
@@ -64,14 +64,17 @@ final case class FlightOptions(
           "delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
-    @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
+    @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =
-      "where the deadline is missed: hold, repeat (the last decision), hover, or a policy such as pure-pursuit; with --solver, hover unless told otherwise"
+      "what happens when the deadline is missed: hold, repeat (the last decision), hover, or a policy such as " +
+        "pure-pursuit; with --solver, hover by default"
     )
     fallback: Option[String],
     @arg(doc =
-      "flies each loop but paused with its decisions made elsewhere, too: tcp://HOST:PORT of ./skein decide, kafka://HOST:PORT/PREFIX of one behind a broker, or link:PROFILE in virtual time, the profile being of the way there and back; a decision's deadline is then the period unless told otherwise"
+      "flies each loop but paused also with decisions made elsewhere: tcp://HOST:PORT of ./skein decide, " +
+        "kafka://HOST:PORT/PREFIX of one behind a broker, or in virtual time link:PROFILE, a profile of round trips; " +
+        "the deadline of a decision is then the period by default"
     )
     solver: Option[String],
     @arg(doc =
@@ -79,7 +82,8 @@ final case class FlightOptions(
     )
     mavlink: Flag,
     @arg(doc =
-      "records what cameras and lidars see: seen, for those that policies look through, or CAMERA@HZ, for example front_center@10, for images of that camera of every vehicle; may be given several times"
+      "records images and scans: seen, those that policies use, or CAMERA@HZ, images of that camera of every vehicle, " +
+        "for example front_center@10; can be repeated"
     )
     images: Seq[String],
     @arg(doc = "a HOCON file with settings of skein.fly")

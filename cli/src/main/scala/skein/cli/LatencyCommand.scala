@@ -33,6 +33,7 @@ final case class LatencyOptions(
     json: Flag
 )
 
+/** `./skein latency`: measures round trips to a simulator. */
 object LatencyCommand
     extends OptionsCommand[LatencyOptions](
       "latency",

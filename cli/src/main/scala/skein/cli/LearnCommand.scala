@@ -23,7 +23,7 @@ final case class LearnOptions(
       "in which is learned: the duel, or any with pursuers and evaders, one of whom learns what all of the side fly (default: duel)"
     )
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
     @arg(doc = "pursuer or evader: who learns (default: pursuer)")
     side: Option[String],
@@ -76,7 +76,7 @@ final case class LearnOptions(
 final class LearnCommand(program: String)(using Scenarios)
     extends OptionsCommand[LearnOptions](
       "learn",
-      "teaches a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
+      "trains a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
       ParserForClass[LearnOptions]
     ):
 

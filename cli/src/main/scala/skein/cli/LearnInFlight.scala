@@ -14,7 +14,7 @@ import skein.units.Expect
 /** Whether a policy learns while it flies. */
 final case class LearnInFlight(
     @arg(doc =
-      "a folder of the command learn, by sac or ddpg: its policy flies in the place of the scenario's and learns on beside the flight"
+      "a folder of the command learn, by sac or ddpg: its policy replaces the scenario's and goes on learning during the flight"
     )
     learn: Option[String],
     @arg(

@@ -36,6 +36,7 @@ final case class LinkOptions(
     seed: Long = 1
 )
 
+/** `./skein link`: an emulated network between any client and any server. */
 object LinkCommand
     extends OptionsCommand[LinkOptions](
       "link",

@@ -33,12 +33,12 @@ final case class SearchOptions(
     )
     fresh: Option[Int],
     @arg(doc =
-      "searches settings of this scenario, a team's, in the place of a duel's policy; the command scenarios lists them"
+      "searches settings of this scenario, a team's, instead of a duel's policy; the command scenarios lists them"
     )
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
-    @arg(doc = "a setting of the scenario to search; may be given several times")
+    @arg(doc = "a setting of the scenario to search; can be repeated")
     vary: Seq[String],
     forward: ForwardOptions,
     cluster: ClusterOptions,
@@ -57,7 +57,7 @@ final case class SearchOptions(
 final class SearchCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[SearchOptions](
       "search",
-      "looks for the best of many policies by forward simulation under a loop's real timing",
+      "finds the best of many policies by forward simulation under a loop's real timing",
       ParserForClass[SearchOptions]
     ):
 

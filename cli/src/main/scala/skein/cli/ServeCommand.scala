@@ -44,6 +44,7 @@ final case class ServeOptions(
     view: ViewOptions
 )
 
+/** `./skein serve`: runs the built-in simulator until Ctrl-C. */
 object ServeCommand
     extends OptionsCommand[ServeOptions](
       "serve",

@@ -25,17 +25,18 @@ final case class WorkerOptions(
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
-      "SHA-256 of a program that is run in the place of this one if the coordinator ships it (--ship, which prints it); several with commas between"
+      "SHA-256 of a program that is run instead of this one if the coordinator ships it (--ship, which prints it); several with commas between"
     )
     acceptJars: Option[String],
     @arg(doc = "ends when its standard input does: with the process that started it")
     attached: Flag
 )
 
+/** `./skein worker`: computes for a command on this machine or another. */
 final class WorkerCommand(using Scenarios)
     extends OptionsCommand[WorkerOptions](
       "worker",
-      "computes for a command on this machine or another, until that has all that it asked",
+      "computes for a command of this machine or another, until the command has all answers",
       ParserForClass[WorkerOptions]
     ):
 

@@ -23,6 +23,42 @@ class DocumentationSuite extends munit.FunSuite:
       assert(Files.exists(path), s"$name is missing: ${Documentation.hint}")
       assertNoDiff(Files.readString(path), written(), s"$name is not up to date: ${Documentation.hint}")
 
+  test("code that a page shows of a source file stands there"):
+    val shown =
+      for
+        page  <- pages
+        found <- quoted.findAllMatchIn(Files.readString(page))
+      yield (root.relativize(page), found.group(1) == "file", found.group(2), found.group(3))
+    assert(shown.sizeIs >= 2, shown)
+    for (page, isWhole, file, code) <- shown do
+      val source = Files.readString(root.resolve(file))
+      if isWhole then assertNoDiff(code, source, s"$page shows another $file")
+      else assertEquals(strayed(code, source), None, s"$page shows lines that $file does not have there")
+
+  test("a line that was changed or moved is found"):
+    val source = "def a =\n  b\n  c\n  d\n"
+    assertEquals(strayed("b\n…\nd", source), None)
+    assertEquals(strayed("b\nd", source), Some("b\nd"))
+    assertEquals(strayed("d\n…\nb", source), Some("b"))
+
+  private val quoted: Regex = """(?s)<!-- (file|lines of) (\S+) -->\n+```scala\n(.*?)\n```""".r
+
+  /** The first passage of `code` that does not stand in `source` behind the one before it. Passages are parted by lines of
+    * `…`; indentation does not count.
+    */
+  private def strayed(code: String, source: String): Option[String] =
+    def lines(text: String) = text.linesIterator.map(_.trim).toVector
+    lines(code)
+      .foldLeft(Vector(Vector.empty[String])): (passages, line) =>
+        if line == "…" then passages :+ Vector.empty else passages.init :+ (passages.last :+ line)
+      .filter(_.nonEmpty)
+      .foldLeft[Either[Vector[String], Int]](Right(0)): (at, passage) =>
+        at.flatMap: from =>
+          lines(source).indexOfSlice(passage, from) match
+            case -1    => Left(passage)
+            case found => Right(found + passage.size)
+      .swap.toOption.map(_.mkString("\n"))
+
   private def pages: Vector[Path] =
     val found = Files.walk(root)
     try
