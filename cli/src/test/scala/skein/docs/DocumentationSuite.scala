@@ -3,6 +3,7 @@ package skein.docs
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.matching.Regex
+import skein.cli.OurScenarios
 
 /** Holds what is written to what is there: links lead somewhere, and pages that tell what code says tell it truly. */
 class DocumentationSuite extends munit.FunSuite:
@@ -40,6 +41,21 @@ class DocumentationSuite extends munit.FunSuite:
     assertEquals(strayed("b\n…\nd", source), None)
     assertEquals(strayed("b\nd", source), Some("b\nd"))
     assertEquals(strayed("d\n…\nb", source), Some("b"))
+
+  test("the README and the configuration name every scenario"):
+    val names = OurScenarios.all.kinds.map(_.name)
+    for page <- Seq("README.md", "flight/src/main/resources/reference.conf") do
+      val text = Files.readString(root.resolve(page))
+      assertEquals(names.filterNot(text.contains), Vector.empty, page)
+
+  test("every example has a README with a picture, and stands in their list"):
+    val list    = Files.readString(root.resolve("examples/README.md"))
+    val folders = Files.list(root.resolve("examples")).iterator.asScala.filter(Files.isDirectory(_)).toVector
+    assert(folders.sizeIs > 5, folders)
+    for folder <- folders.sorted do
+      val name = folder.getFileName.toString
+      assert(list.contains(s"[$name]($name/README.md)"), name)
+      assert(Files.readString(folder.resolve("README.md")).contains("!["), s"$name/README.md has no picture")
 
   private val quoted: Regex = """(?s)<!-- (file|lines of) (\S+) -->\n+```scala\n(.*?)\n```""".r
 
