@@ -23,7 +23,7 @@ final case class BudgetOptions(
     @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
     forward: ForwardOptions,
-    @arg(doc = "between decisions for one vehicle; several give a map each (default: 100ms)")
+    @arg(doc = "time between decisions for one vehicle; each of several gets a map (default: 100ms)")
     period: Seq[String],
     @arg(name = "most-mean", doc = "mean latency at which the map ends (default: 200ms)")
     mostMean: Option[String],
@@ -33,15 +33,17 @@ final case class BudgetOptions(
     means: Option[Int],
     @arg(doc = "cells along the jitter (default: 20; of a scenario 5)")
     jitters: Option[Int],
-    @arg(doc = "of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)")
+    @arg(doc =
+      "episodes of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)"
+    )
     episodes: Option[Int],
-    @arg(doc = "share of the truth that counts as holding, in per cent (default: 5)")
+    @arg(doc = "tolerance, in per cent of the truth (default: 5)")
     tolerance: Option[Double],
     @arg(doc =
       "instead of --tolerance, the tolerance in the objective's unit"
     )
     within: Option[Double],
-    @arg(name = "at-jitter", doc = "jitter of which the sentence speaks (default: 20ms)")
+    @arg(name = "at-jitter", doc = "jitter for which the sentence is printed (default: 20ms)")
     atJitter: Option[String],
     @arg(name = "one-way", doc = "all latencies are of one direction, instead of round trips")
     oneWay: Flag,

@@ -18,11 +18,11 @@ final case class FlightOptions(
       "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; can be repeated"
     )
     link: Seq[String],
-    @arg(doc = "of each flight, for example 60s")
+    @arg(doc = "length of each flight, for example 60s")
     duration: Option[String],
-    @arg(doc = "between decisions for one vehicle, for example 100ms")
+    @arg(doc = "time between decisions for one vehicle, for example 100ms")
     period: Option[String],
-    @arg(doc = "of every random choice")
+    @arg(doc = "seed of every random choice")
     seed: Option[Long],
     @arg(doc = "the scenario to fly; the command scenarios lists them with their settings")
     scenario: Option[String],
@@ -35,7 +35,9 @@ final case class FlightOptions(
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "a policy file of the commands search and learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; can be repeated"
+      "flies the scenario with this policy too, beside its own policies: a policy file of the commands search and " +
+        "learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy behind a socket; can be " +
+        "repeated"
     )
     policy: Seq[String],
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
@@ -44,24 +46,28 @@ final case class FlightOptions(
     asPaper: Flag,
     @arg(
       name = "as-published",
-      doc = "the duel's setting as-published: reproduce the published code where it confounds its result"
+      doc =
+        "the duel's setting as-published: reproduces the published code, whose turn rate depends on the loop"
     )
     asPublished: Flag,
-    @arg(doc = "the scenario's setting altitude-m: at which all fly, above where they start, in metres")
+    @arg(doc =
+      "the scenario's setting altitude-m: the altitude of all vehicles above their starts, in metres"
+    )
     altitude: Option[Double],
     @arg(doc =
-      "what flies in the built-in simulator: airsim, its quadrotors, or mujoco:FILE, a model of MuJoCo's"
+      "model that flies in the built-in simulator: airsim, or mujoco:FILE"
     )
     plant: Option[String],
     @arg(doc =
-      "what `predictive` predicts by: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
+      "model that predicts, in `predictive`: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file " +
+        "of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],
     @arg(
       name = "moves-in-flight",
       doc =
-        "of one vehicle; more let a link of a long round trip carry more commands, but several that a stall " +
-          "delivers at once can freeze AirSim"
+        "unanswered moves of one vehicle; over a long round trip, more moves carry more commands, but several that a " +
+          "stall delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
@@ -78,7 +84,7 @@ final case class FlightOptions(
     )
     solver: Option[String],
     @arg(doc =
-      "speaks MAVLink to the vehicles, as to PX4, system 1 being the scenario's first; every loop but paused"
+      "speaks MAVLink to the vehicles, as to PX4; the scenario's first vehicle is system 1; not for paused"
     )
     mavlink: Flag,
     @arg(doc =

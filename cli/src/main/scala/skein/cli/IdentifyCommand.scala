@@ -17,7 +17,9 @@ final case class IdentifyOptions(
     files: Leftover[String],
     @arg(doc = "a vehicle to fit to; can be repeated; without it, all")
     vehicle: Seq[String],
-    @arg(doc = "what the file says to fly by: lag, turn, drag or drag-and-turn; all are fitted")
+    @arg(doc =
+      "structure of the model that the file selects: lag, turn, drag or drag-and-turn; all are fitted"
+    )
     structure: String = Structure.Drag.label,
     @arg(doc = "how far each reading is predicted for the fit")
     horizon: String = "2s",

@@ -13,7 +13,7 @@ final case class TortureOptions(
     seeds: Int = 100,
     @arg(doc = "the first seed")
     first: Long = 1,
-    @arg(doc = "of each flight, for example 60s")
+    @arg(doc = "length of each flight, for example 60s")
     duration: String = "60s",
     @arg(doc = "flights at once; without it, as many as there are cores")
     threads: Option[Int],

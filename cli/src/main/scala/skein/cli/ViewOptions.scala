@@ -12,7 +12,7 @@ final case class ViewOptions(
     view: Flag,
     @arg(
       name = "view-port",
-      doc = "where --view listens, on this machine alone; 0 for any that is free (default: 8765)"
+      doc = "port of --view, on this machine alone; 0 for any free port (default: 8765)"
     )
     viewPort: Option[Int],
     @arg(
