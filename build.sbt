@@ -51,7 +51,7 @@ lazy val root =
     .in(file("."))
     .aggregate(recognition)
     .aggregate(core, forward, vtimeAgent, vtime, link, flow, airsim, simulator, record, flight, environment, learn, cli, bench, benchJmh)
-    .aggregate(mcap, mavlink, view, python, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
+    .aggregate(mcap, mavlink, view, python, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .aggregate(scene, blocks, cluster, autopilot, hil, offboard, kafka, mujoco, docs)
     .settings(publish / skip := true, publishCheck := Publishing.check.value)
 
@@ -122,7 +122,7 @@ lazy val airsim = project
   .dependsOn(link % "compile->compile;test->test", vtime % Test)
   .settings(underAgent, libraryDependencies ++= upickle +: munit ++: Seq(streamTestkit, msgpackOracle))
 
-/** A world to see: scenes, cameras' pictures, lidars' rays. No Pekko, no I/O, no clock. */
+/** A world to see: scenes, cameras' images, lidars' rays. No Pekko, no I/O, no clock. */
 lazy val scene = project
   .settings(artifact("scene", "Scenes: drawn by software, scanned by rays"))
   .dependsOn(core)
@@ -329,6 +329,12 @@ lazy val mutation = project
     libraryDependencies ++= munit.map(_.withConfigurations(None)) :+
       "org.scala-lang" %% "scala3-compiler" % scalaVersion.value
   )
+
+/** What the README shows: a whole program in a file. */
+lazy val chase = project
+  .in(file("examples/chase"))
+  .dependsOn(cli)
+  .settings(publish / skip := true, underAgent, libraryDependencies ++= munit)
 
 /** A policy of one's own, flown against the paper's evader. */
 lazy val ownPolicy = project

@@ -1,6 +1,6 @@
 import sbt.*
 
-/** What pages show as Scala becomes sources, so that whatever a page tells compiles.
+/** What pages show as Scala becomes sources, so that whatever a page shows compiles.
   *
   * Each block is an object of its own, which sees what earlier blocks of its page define and import. What a block takes for granted
   * stands in a comment before it, which readers of the page do not see:
@@ -12,17 +12,20 @@ import sbt.*
   * -->
   * }}}
   *
-  * The block comes in the place of the dots, as far to the right.
+  * The block replaces the dots, at their indentation. What a page quotes from a source file, below `<!-- file PATH -->` or
+  * `<!-- lines of PATH -->`, is left out: it is compiled where it stands, and `DocumentationSuite` compares the two.
   */
 object Snippets {
   private val Block = """(?s)(?:<!-- scala\n(.*?)\n-->\n+)?```scala\n(.*?)\n```""".r
+
+  private val Quoted = """(?s)<!-- (?:file|lines of) \S+ -->\n+```scala\n.*?\n```""".r
 
   /** One source for each of `pages` that shows Scala. */
   def sources(root: File, pages: Seq[File], to: File): Seq[File] = {
     val written =
       for {
         page <- pages
-        text   = IO.read(page)
+        text   = Quoted.replaceAllIn(IO.read(page), found => "\n" * found.matched.count(_ == '\n'))
         blocks = Block.findAllMatchIn(text).toVector if blocks.nonEmpty
       } yield {
         val path    = root.toPath.relativize(page.toPath).toString
@@ -30,7 +33,7 @@ object Snippets {
         val objects = blocks.zipWithIndex.map { case (block, number) =>
           val line    = text.substring(0, block.start(2)).count(_ == '\n') + 1
           val earlier = blocks.take(number).zipWithIndex.flatMap { case (before, one) =>
-            s"import Block$one.*" +: before.group(2).linesIterator.filter(_.startsWith("import ")).toSeq
+            s"import Block$one.{given, *}" +: before.group(2).linesIterator.filter(_.startsWith("import ")).toSeq
           }
           val body    = earlier ++ placed(Option(block.group(1)), block.group(2).linesIterator.toSeq)
           s"// $path, line $line\nobject Block$number:\n${body.map("  " + _).mkString("\n")}\n"

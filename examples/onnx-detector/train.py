@@ -1,14 +1,17 @@
 """Teaches a small network of convolutions to find a drone in images, and writes it as ONNX.
 
-python train.py IMAGES OUT.onnx: IMAGES is a folder of images.npy (count, height, width, 3; blue, green, red) and
-truth.npy (count, 5; what is known: 1 a drone, 0 none, -1 neither; its box: middle, width and height, pixels).
+python train.py IMAGES OUT.onnx, from the repository's root. IMAGES is a folder with images.npy (count, height, width, 3;
+blue, green, red) and truth.npy (count, 5; label: 1 a drone, 0 none, -1 unclear; its box: middle, width and height, pixels).
+Where they are missing, Skein draws 12,000 images first.
 
 The model takes images of any size (1, 3, height, width; red, green, blue, 0 to 1) and gives boxes as YOLOv8 does
 (1, 5, boxes; middle, width and height in pixels, and a score).
 """
 
 import argparse
+import subprocess
 import time
+from pathlib import Path
 
 import jax
 import jax.numpy as jnp
@@ -182,6 +185,10 @@ if __name__ == "__main__":
     asked.add_argument("--rate", type=float, default=3e-3)
     asked.add_argument("--seed", type=int, default=1)
     told = asked.parse_args()
+    if not Path(told.images, "images.npy").exists():
+        folder = Path(told.images).resolve()
+        draw = f"recognition/Test/runMain skein.recognition.drawDetectorImages {folder} 12000 1"
+        subprocess.run(["./sbtw", draw], check=True)
     images = np.load(f"{told.images}/images.npy", mmap_mode="r")
     truth = np.load(f"{told.images}/truth.npy")
     save(exported(train(images, truth, told.epochs, told.batch, told.rate, told.seed)), told.out)

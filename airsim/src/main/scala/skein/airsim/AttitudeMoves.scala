@@ -23,6 +23,7 @@ trait AttitudeMoves:
   /** An altitude goal, world NED, in the vehicle's own frame. */
   protected def ownDown(down: Metres): Double
 
+  /** Holds attitude and altitude. `down` is NED, in the world's frame, m. */
   def moveByRollPitchYawZ(
       roll: Radians,
       pitch: Radians,
@@ -32,6 +33,7 @@ trait AttitudeMoves:
   ): Future[Either[RpcError, Boolean]] =
     attitude("moveByRollPitchYawZ", roll.value, pitch.value, yaw.value, ownDown(down), duration)
 
+  /** Holds an attitude at a throttle from 0 to 1. */
   def moveByRollPitchYawThrottle(
       roll: Radians,
       pitch: Radians,
@@ -41,6 +43,7 @@ trait AttitudeMoves:
   ): Future[Either[RpcError, Boolean]] =
     attitude("moveByRollPitchYawThrottle", roll.value, pitch.value, yaw.value, throttle, duration)
 
+  /** Holds roll, pitch and altitude, and turns. `down` is NED, in the world's frame, m. */
   def moveByRollPitchYawRateZ(
       roll: Radians,
       pitch: Radians,
@@ -50,6 +53,7 @@ trait AttitudeMoves:
   ): Future[Either[RpcError, Boolean]] =
     attitude("moveByRollPitchYawrateZ", roll.value, pitch.value, yawRateRadPerS, ownDown(down), duration)
 
+  /** Holds roll and pitch at a throttle from 0 to 1, and turns. */
   def moveByRollPitchYawRateThrottle(
       roll: Radians,
       pitch: Radians,
@@ -59,6 +63,7 @@ trait AttitudeMoves:
   ): Future[Either[RpcError, Boolean]] =
     attitude("moveByRollPitchYawrateThrottle", roll.value, pitch.value, yawRateRadPerS, throttle, duration)
 
+  /** Turns about the body's axes and holds an altitude. `down` is NED, in the world's frame, m. */
   def moveByAngleRatesZ(
       rollRateRadPerS: Double,
       pitchRateRadPerS: Double,
@@ -68,6 +73,7 @@ trait AttitudeMoves:
   ): Future[Either[RpcError, Boolean]] =
     attitude("moveByAngleRatesZ", rollRateRadPerS, pitchRateRadPerS, yawRateRadPerS, ownDown(down), duration)
 
+  /** Turns about the body's axes at a throttle from 0 to 1. */
   def moveByAngleRatesThrottle(
       rollRateRadPerS: Double,
       pitchRateRadPerS: Double,

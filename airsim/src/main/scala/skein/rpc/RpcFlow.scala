@@ -9,6 +9,7 @@ import upickle.default.Reader
 /** What a flow asks for one element. */
 final case class RpcCall(method: String, params: Seq[Msg], options: CallOptions = CallOptions())
 
+/** Calls of an RPC client as stages of a stream. */
 object RpcFlow:
 
   /** Asks the peer once for each element and emits the answers in the order of the elements: the paper's ask. An

@@ -42,6 +42,7 @@ object RpcLoopback:
       bench.images("8 MiB replies, 4 outstanding", 4, span, warmUp)
     bench.stop()
 
+/** Measures a client and a server of MessagePack-RPC over loopback. */
 final class RpcLoopback(using system: ActorSystem):
   private given ExecutionContext = ExecutionContext.parasitic
 

@@ -243,6 +243,7 @@ final case class WorkerRecord(
     busyNanos: Long = 0
 )
 
+/** What a worker's answer to a block counts for. */
 enum Answer:
   /** The first answer to this block. */
   case First(block: Block)

@@ -17,13 +17,13 @@ final case class BudgetOptions(
     @arg(doc = "a policy file, or the name of a family (default: paper-pursuer)")
     policy: Option[String],
     @arg(doc =
-      "judges this scenario by --objective, a sum of its measures (default: its first), in the place of a duel's policy"
+      "judges this scenario, by --objective, a sum of its measures (default: its first), instead of a duel's policy"
     )
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
     forward: ForwardOptions,
-    @arg(doc = "between decisions for one vehicle; several give a map each (default: 100ms)")
+    @arg(doc = "time between decisions for one vehicle; each of several gets a map (default: 100ms)")
     period: Seq[String],
     @arg(name = "most-mean", doc = "mean latency at which the map ends (default: 200ms)")
     mostMean: Option[String],
@@ -33,15 +33,17 @@ final case class BudgetOptions(
     means: Option[Int],
     @arg(doc = "cells along the jitter (default: 20; of a scenario 5)")
     jitters: Option[Int],
-    @arg(doc = "of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)")
+    @arg(doc =
+      "episodes of each cell (default: 1000 with a reduced model by SIMD, fewer where an episode costs more)"
+    )
     episodes: Option[Int],
-    @arg(doc = "share of the truth that counts as holding, in per cent (default: 5)")
+    @arg(doc = "tolerance, in per cent of the truth (default: 5)")
     tolerance: Option[Double],
     @arg(doc =
-      "in the place of --tolerance, how far off the truth counts as holding, in the objective's unit"
+      "instead of --tolerance, the tolerance in the objective's unit"
     )
     within: Option[Double],
-    @arg(name = "at-jitter", doc = "jitter of which the sentence speaks (default: 20ms)")
+    @arg(name = "at-jitter", doc = "jitter for which the sentence is printed (default: 20ms)")
     atJitter: Option[String],
     @arg(name = "one-way", doc = "all latencies are of one direction, instead of round trips")
     oneWay: Flag,
@@ -49,7 +51,7 @@ final case class BudgetOptions(
     out: String = "budget",
     cluster: ClusterOptions,
     view: ViewOptions,
-    @arg(doc = "the map as JSON on standard output, as in map.json; all else goes to the error output")
+    @arg(doc = "the map as JSON on standard output, as in map.json; everything else goes to standard error")
     json: Flag
 )
 
@@ -59,7 +61,7 @@ final case class BudgetOptions(
 final class BudgetCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[BudgetOptions](
       "budget",
-      "tells how much latency and jitter a policy or a scenario bears, and draws the map",
+      "says how much latency and jitter a policy or a scenario tolerates, and draws a map",
       ParserForClass[BudgetOptions]
     ):
   private val MostCells    = 10_000

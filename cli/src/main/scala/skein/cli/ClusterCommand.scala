@@ -7,7 +7,7 @@ import skein.cluster.Certificates
 /** Options of `./skein cluster`. */
 final case class ClusterCommandOptions(
     @arg(doc =
-      "of a machine, as its certificate shows it: a name, an address, or *.DOMAIN for all of a domain; may be given several times (default: localhost)"
+      "of a machine, as its certificate shows it: a name, an address, or *.DOMAIN for all of a domain; can be repeated (default: localhost)"
     )
     host: Seq[String],
     @arg(doc =
@@ -16,6 +16,7 @@ final case class ClusterCommandOptions(
     words: Leftover[String]
 )
 
+/** `./skein cluster certificates`: makes the certificates by which machines know one another. */
 object ClusterCommand
     extends OptionsCommand[ClusterCommandOptions](
       "cluster",

@@ -8,22 +8,25 @@ import skein.units.Expect
 
 /** Whether other processes compute. */
 final case class ClusterOptions(
-    @arg(doc = "computes by so many processes of this machine, which share its cores")
+    @arg(doc = "computes with this many processes of this machine, which share its cores")
     workers: Option[Int],
     @arg(doc =
       "where workers of other machines join (./skein worker --join); the command waits for them"
     )
     cluster: Option[String],
-    @arg(doc = "episodes, or flights, of the blocks that workers compute, about (default: half a second's)")
+    @arg(doc =
+      "approximate number of episodes or flights in a block of work (default: those of half a second)"
+    )
     block: Option[Int],
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
-      "gives this program, with your own classes, to workers of another that accept it (./skein worker --accept-jars)"
+      "offers this program, with your own classes, to workers that accept it (./skein worker --accept-jars)"
     )
     ship: Flag,
     @arg(doc =
-      "port, or HOST:PORT, at which Prometheus reads how it goes, of this machine alone unless HOST says otherwise; 0 for any that is free"
+      "port, or HOST:PORT, where Prometheus reads the progress; without HOST, on this machine's loopback alone; 0 for " +
+        "any free port"
     )
     metrics: Option[String]
 ):

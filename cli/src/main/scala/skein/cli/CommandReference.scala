@@ -12,7 +12,7 @@ object CommandReference:
   private val introduction =
     """# Commands
       |
-      |`./skein COMMAND --help` tells the same. `source <(./skein completion bash)` completes commands, options and known values; for zsh likewise.
+      |`./skein COMMAND --help` shows the same. `source <(./skein completion bash)` completes commands, options and known values; `zsh` works too.
       |
       |Exit status: 0 done, 1 failed, 2 wrong arguments. Progress and errors go to standard error, results to standard output.
       |""".stripMargin

@@ -35,6 +35,7 @@ final case class DecideOptions(
     secured: SolverSecurity
 )
 
+/** `./skein decide`: the solver, which decides for flights of other processes. */
 final class DecideCommand(using scenarios: Scenarios)
     extends OptionsCommand[DecideOptions](
       "decide",

@@ -11,10 +11,11 @@ final case class DigestOptions(
     files: Leftover[String]
 )
 
+/** `./skein digest`: the SHA-256 of what recordings contain. */
 object DigestCommand
     extends OptionsCommand[DigestOptions](
       "digest",
-      "shows the SHA-256 of what recordings contain, by which equal flights are known",
+      "shows the SHA-256 of what recordings contain; equal flights have equal ones",
       ParserForClass[DigestOptions]
     ):
 

@@ -15,6 +15,7 @@ final case class ExportOptions(
     mcap: Option[String]
 )
 
+/** `./skein export`: a recording as Parquet or MCAP. */
 object ExportCommand
     extends OptionsCommand[ExportOptions](
       "export",

@@ -12,30 +12,32 @@ import skein.units.Expect
 
 /** What to fly; what is not given stands in the configuration `skein.fly`. */
 final case class FlightOptions(
-    @arg(doc = "paused, sequential, futures, stream, predictive or plan; may be given several times")
+    @arg(doc = "paused, sequential, futures, stream, predictive or plan; can be repeated")
     loop: Seq[String],
     @arg(doc =
-      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; may be given several times"
+      "a latency profile: none, direct, vpn, vpn-mixed, constant:200ms, …; can be repeated"
     )
     link: Seq[String],
-    @arg(doc = "of each flight, for example 60s")
+    @arg(doc = "length of each flight, for example 60s")
     duration: Option[String],
-    @arg(doc = "between decisions for one vehicle, for example 100ms")
+    @arg(doc = "time between decisions for one vehicle, for example 100ms")
     period: Option[String],
-    @arg(doc = "of every random choice")
+    @arg(doc = "seed of every random choice")
     seed: Option[Long],
-    @arg(doc = "whose task is flown; the command scenarios lists them with their settings")
+    @arg(doc = "the scenario to fly; the command scenarios lists them with their settings")
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example ring-m=10; may be given several times")
+    @arg(doc = "a setting of the scenario, for example ring-m=10; can be repeated")
     set: Seq[String],
     @arg(doc =
-      "what stands in the built-in simulator's world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
+      "scene of the built-in simulator: empty, forest, pursuit, street, or a file; without it, the scenario's"
     )
     scene: Option[String],
     @arg(doc = "the scenario's setting vehicles")
     vehicles: Option[Int],
     @arg(doc =
-      "a policy file of the commands search and learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy that answers at a socket: flies the scenario with it too, beside its own policies; may be given several times"
+      "flies the scenario with this policy too, beside its own policies: a policy file of the commands search and " +
+        "learn, an ONNX file (evader:FILE.onnx for an evader's), or unix:ROLE:PATH for a policy behind a socket; can be " +
+        "repeated"
     )
     policy: Seq[String],
     @arg(doc = "the duel's setting pairs: duels side by side, two vehicles each")
@@ -44,42 +46,50 @@ final case class FlightOptions(
     asPaper: Flag,
     @arg(
       name = "as-published",
-      doc = "the duel's setting as-published: reproduce the published code where it confounds its result"
+      doc =
+        "the duel's setting as-published: reproduces the published code, whose turn rate depends on the loop"
     )
     asPublished: Flag,
-    @arg(doc = "the scenario's setting altitude-m: at which all fly, above where they start, in metres")
+    @arg(doc =
+      "the scenario's setting altitude-m: the altitude of all vehicles above their starts, in metres"
+    )
     altitude: Option[Double],
     @arg(doc =
-      "what flies in the built-in simulator: airsim, its quadrotors, or mujoco:FILE, a model of MuJoCo's"
+      "model that flies in the built-in simulator: airsim, or mujoco:FILE"
     )
     plant: Option[String],
     @arg(doc =
-      "what `predictive` predicts by: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
+      "model that predicts, in `predictive`: reduced, drag, quadrotor, constant-velocity, constant-turn, a model file " +
+        "of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],
     @arg(
       name = "moves-in-flight",
       doc =
-        "of one vehicle; more let a link of a long round trip carry more commands, but several that a stall " +
-          "delivers at once can freeze AirSim"
+        "unanswered moves of one vehicle; over a long round trip, more moves carry more commands, but several that a " +
+          "stall delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
-    @arg(doc = "by when a policy must have decided, for example 20ms; without it, policies are waited for")
+    @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =
-      "where the deadline is missed: hold, repeat (the last decision), hover, or a policy such as pure-pursuit; with --solver, hover unless told otherwise"
+      "what happens when the deadline is missed: hold, repeat (the last decision), hover, or a policy such as " +
+        "pure-pursuit; with --solver, hover by default"
     )
     fallback: Option[String],
     @arg(doc =
-      "flies each loop but paused with its decisions made elsewhere, too: tcp://HOST:PORT of ./skein decide, kafka://HOST:PORT/PREFIX of one behind a broker, or link:PROFILE in virtual time, the profile being of the way there and back; a decision's deadline is then the period unless told otherwise"
+      "flies each loop but paused also with decisions made elsewhere: tcp://HOST:PORT of ./skein decide, " +
+        "kafka://HOST:PORT/PREFIX of one behind a broker, or in virtual time link:PROFILE, a profile of round trips; " +
+        "the deadline of a decision is then the period by default"
     )
     solver: Option[String],
     @arg(doc =
-      "speaks MAVLink to the vehicles, as to PX4, system 1 being the scenario's first; every loop but paused"
+      "speaks MAVLink to the vehicles, as to PX4; the scenario's first vehicle is system 1; not for paused"
     )
     mavlink: Flag,
     @arg(doc =
-      "records what cameras and lidars see: seen, for those that policies look through, or CAMERA@HZ, for example front_center@10, for images of that camera of every vehicle; may be given several times"
+      "records images and scans: seen, those that policies use, or CAMERA@HZ, images of that camera of every vehicle, " +
+        "for example front_center@10; can be repeated"
     )
     images: Seq[String],
     @arg(doc = "a HOCON file with settings of skein.fly")

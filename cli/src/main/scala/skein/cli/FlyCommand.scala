@@ -40,10 +40,11 @@ final case class FlyOptions(
     json: Flag
 )
 
+/** `./skein fly`: flies loops over links, live or in virtual time, and reports on them. */
 final class FlyCommand(using Scenarios)
     extends OptionsCommand[FlyOptions](
       "fly",
-      "flies a scenario, the paper's duel unless told otherwise, and writes a report",
+      "flies a scenario, by default the paper's duel, and writes a report",
       ParserForClass[FlyOptions]
     ):
 

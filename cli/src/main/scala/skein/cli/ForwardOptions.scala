@@ -10,31 +10,32 @@ import skein.units.{Expect, Span}
 /** How forward simulation flies, for the commands that do nothing else. */
 final case class ForwardOptions(
     @arg(doc =
-      "what is judged: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
-        "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' or 'maximise' may stand before it (default: last10s)"
+      "the objective: last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M), or a " +
+        "weighted sum such as '0.7*last10s + 0.3*effort'; 'minimise' or 'maximise' may precede it (default: last10s)"
     )
     objective: Option[String],
     @arg(doc = "paused, sequential, futures, stream or predictive (default: stream)")
     loop: Option[String],
     @arg(doc =
-      "what flies: reduced, drag, quadrotor, ideal, car, mujoco:FILE for a model of MuJoCo's, a FILE of ./skein identify, or reduced:FILE for its model of three parameters (default: reduced)"
+      "model that flies: reduced, drag, quadrotor, ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
+        "reduced:FILE for its model of three parameters (default: reduced)"
     )
     plant: Option[String],
     @arg(doc =
-      "at which all fly, in metres (default: 20); a model holds at the altitude of the flights it was fitted to"
+      "altitude of all vehicles, in metres (default: 20); a fitted model holds at the altitude of its flights"
     )
     altitude: Option[Double],
     @arg(doc =
-      "a sensor's FILE of ./skein identify: the pursuer knows of the evader by such a camera alone (default: it is told)"
+      "a sensor's FILE of ./skein identify: the pursuer knows the evader by this camera alone (default: true positions)"
     )
     eye: Option[String],
-    @arg(doc = "a policy file or the name of a family: whom the policy plays against (default: the paper's)")
+    @arg(doc = "the opponent's policy: a policy file or the name of a family (default: the paper's)")
     opponent: Option[String],
-    @arg(doc = "of an episode (default: 60s)")
+    @arg(doc = "length of an episode (default: 60s)")
     duration: Option[String],
-    @arg(doc = "of every random choice (default: 1)")
+    @arg(doc = "seed of every random choice (default: 1)")
     seed: Option[Long],
-    @arg(doc = "that fly at once; does not change the result (default: one per core)")
+    @arg(doc = "number of threads; does not change the result (default: one per core)")
     threads: Option[Int]
 ):
   /** @param otherwise

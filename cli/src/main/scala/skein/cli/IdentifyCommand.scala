@@ -15,9 +15,11 @@ import skein.units.{Expect, Span}
 final case class IdentifyOptions(
     @arg(doc = "recordings, for example flights/*.duckdb")
     files: Leftover[String],
-    @arg(doc = "a vehicle to fit to; may be given several times; without it, all")
+    @arg(doc = "a vehicle to fit to; can be repeated; without it, all")
     vehicle: Seq[String],
-    @arg(doc = "what the file says to fly by: lag, turn, drag or drag-and-turn; all are fitted")
+    @arg(doc =
+      "structure of the model that the file selects: lag, turn, drag or drag-and-turn; all are fitted"
+    )
     structure: String = Structure.Drag.label,
     @arg(doc = "how far each reading is predicted for the fit")
     horizon: String = "2s",
@@ -29,10 +31,11 @@ final case class IdentifyOptions(
     json: Flag
 )
 
+/** `./skein identify`: fits models of vehicles and of a sensor to recordings. */
 final class IdentifyCommand(using Scenarios)
     extends OptionsCommand[IdentifyOptions](
       "identify",
-      "fits a reduced model of the vehicles to recordings, and one of what saw, for forward simulation and prediction",
+      "fits a reduced model of the vehicles to recordings, and one of their recognition, for forward simulation and prediction",
       ParserForClass[IdentifyOptions]
     ):
 

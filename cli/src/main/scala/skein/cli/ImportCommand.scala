@@ -13,10 +13,11 @@ final case class ImportOptions(
     recording: String
 )
 
+/** `./skein import`: an exported MCAP file as a recording again. */
 object ImportCommand
     extends OptionsCommand[ImportOptions](
       "import",
-      "makes a recording of an exported MCAP file again, with the same digest",
+      "makes a recording from an exported MCAP file, with the same digest",
       ParserForClass[ImportOptions]
     ):
 

@@ -25,7 +25,7 @@ final case class LatencyOptions(
     samples: Int = 200,
     @arg(doc = "from one ping to the next, whether or not it was answered")
     period: String = "100ms",
-    @arg(doc = "of every random choice")
+    @arg(doc = "seed of every random choice")
     seed: Long = 1,
     @arg(doc = "folder for latency.svg and latency.png")
     out: String = "latency",
@@ -33,6 +33,7 @@ final case class LatencyOptions(
     json: Flag
 )
 
+/** `./skein latency`: measures round trips to a simulator. */
 object LatencyCommand
     extends OptionsCommand[LatencyOptions](
       "latency",

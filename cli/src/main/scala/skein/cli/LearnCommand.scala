@@ -20,50 +20,54 @@ final case class LearnOptions(
     @arg(doc = "sac, ddpg or ppo (default: sac)")
     algorithm: Option[String],
     @arg(doc =
-      "in which is learned: the duel, or any with pursuers and evaders, one of whom learns what all of the side fly (default: duel)"
+      "the scenario to learn in: the duel, or any with pursuers and evaders; one policy is learned for all of the side " +
+        "(default: duel)"
     )
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
-    @arg(doc = "pursuer or evader: who learns (default: pursuer)")
+    @arg(doc = "the side that learns: pursuer or evader (default: pursuer)")
     side: Option[String],
     @arg(doc = "the latency profile: none, direct, vpn, constant:200ms, … (default: vpn)")
     link: Option[String],
-    @arg(doc = "between decisions for one vehicle (default: 100ms)")
+    @arg(doc = "time between decisions for one vehicle (default: 100ms)")
     period: Option[String],
     forward: ForwardOptions,
     @arg(doc = "decisions to learn from, of all environments together (default: 600000; ppo: 2000000)")
     steps: Option[Long],
-    @arg(doc = "hidden layers' widths of all networks (default: 32x32)")
+    @arg(doc = "widths of the hidden layers of all networks (default: 32x32)")
     network: Option[String],
-    @arg(doc = "that fly side by side while it learns (default: 64)")
+    @arg(doc = "environments side by side during learning (default: 64)")
     environments: Option[Int],
-    @arg(doc = "how long an episode lasts in which it learns (default: 20s)")
+    @arg(doc = "length of a training episode (default: 20s)")
     lesson: Option[String],
     @arg(doc =
-      "how far from each other episodes of learning begin, in metres (default: 3..30); in other scenarios than the duel, how far from where the scenario puts it each vehicle begins (default: 0..5)"
+      "distance between the vehicles at the start of a training episode, in metres (default: 3..30); in scenarios other " +
+        "than the duel, distance of each vehicle from the scenario's start (default: 0..5)"
     )
     start: Option[String],
-    @arg(doc = "the most that it turns, rad/s (default: 3, as far as families of search go)")
+    @arg(doc = "the largest turn rate, rad/s (default: 3, as for families of search)")
     turnRate: Option[Double],
-    @arg(doc = "of Adam (default: 0.001; ppo: 0.0003)")
+    @arg(doc = "learning rate of Adam (default: 0.001; ppo: 0.0003)")
     learningRate: Option[Double],
-    @arg(doc = "of a reward for each decision that it comes later (default: 0.98; ppo and evaders: 0.99)")
+    @arg(doc = "discount of a reward per decision (default: 0.98; ppo and evaders: 0.99)")
     discount: Option[Double],
     @arg(doc = "transitions of an update (default: 256)")
     batch: Option[Int],
-    @arg(doc = "of sac and ddpg for each decision of one environment (default: 0.125)")
+    @arg(doc = "updates of sac and ddpg for each decision of one environment (default: 0.125)")
     updatesPerStep: Option[Double],
-    @arg(doc = "on which a policy is judged while it learns (default: 20)")
+    @arg(doc = "episodes on which a policy is evaluated during learning (default: 20)")
     episodes: Option[Int],
     @arg(doc = "fresh episodes on which the best policy is measured at the end (default: 1000)")
     fresh: Option[Int],
-    @arg(doc = "in virtual time, flown with the policy at the end under the same loop and link (default: 20)")
+    @arg(doc = "flights in virtual time with the final policy, under the same loop and link (default: 20)")
     flights: Option[Int],
     cluster: ClusterOptions,
     @arg(doc = "folder for state, policy and learning curve; without it, learned/DATE-TIME")
     out: Option[String],
-    @arg(doc = "a folder whose learning was stopped: goes on with it, and ends as if it had not been stopped")
+    @arg(doc =
+      "a folder whose learning was stopped: continues it, with the result of learning that was not stopped"
+    )
     resume: Option[String],
     view: ViewOptions,
     @arg(doc = Shown.Doc)
@@ -76,7 +80,7 @@ final case class LearnOptions(
 final class LearnCommand(program: String)(using Scenarios)
     extends OptionsCommand[LearnOptions](
       "learn",
-      "teaches a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
+      "trains a neural policy by SAC, DDPG or PPO in forward simulation under a loop's real timing",
       ParserForClass[LearnOptions]
     ):
 

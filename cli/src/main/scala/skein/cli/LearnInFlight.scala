@@ -14,12 +14,12 @@ import skein.units.Expect
 /** Whether a policy learns while it flies. */
 final case class LearnInFlight(
     @arg(doc =
-      "a folder of the command learn, by sac or ddpg: its policy flies in the place of the scenario's and learns on beside the flight"
+      "a folder of the command learn, by sac or ddpg: its policy replaces the scenario's and goes on learning during the flight"
     )
     learn: Option[String],
     @arg(
       name = "learn-updates",
-      doc = "of the networks, for each decision that it learns from (default: 1)"
+      doc = "updates of the networks for each decision (default: 1)"
     )
     learnUpdates: Option[Double],
     @arg(
@@ -29,7 +29,7 @@ final case class LearnInFlight(
     learnVersion: Option[Int],
     @arg(
       name = "learn-noise",
-      doc = "by which it tries out: deviation, as a share of the most that it turns (default: 0.1)"
+      doc = "exploration: standard deviation, as a share of the largest turn (default: 0.1)"
     )
     learnNoise: Option[Double]
 ):

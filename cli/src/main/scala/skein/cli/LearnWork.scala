@@ -57,7 +57,7 @@ private[cli] object LearnWork:
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(work => BlockBytes.of(Block.Episodes(work))), onAnswer)
 
-  /** Flights of the scenario with a policy in the place of its own, as the commands fly it.
+  /** Flights of the scenario with a policy instead of its own, as the commands fly it.
     *
     * @return
     *   settings, and a plan for each flight; or why there are none
@@ -98,16 +98,16 @@ private[cli] object LearnWork:
 
   private def landed(setup: LearnSetup, number: Int, parameters: Vector[Double])(using
       Scenarios
-  ): Either[String, Landed] =
+  ): Either[String, FlightAnswer] =
     for (settings, plans) <- flights(setup, PolicyFile(setup.role, setup.family, parameters), number + 1)
     yield SpreadFlights.one(settings, plans(number)) match
-      case Left(missing) => Landed.NotFlown(missing.message.take(MostReason))
-      case Right(flown)  => Landed.Flown(setup.game.came(flown))
+      case Left(missing) => FlightAnswer.NotFlown(missing.message.take(MostReason))
+      case Right(flown)  => FlightAnswer.Flown(setup.game.came(flown))
 
   private def distance(answer: ArraySeq[Byte]): Either[String, Option[Double]] =
-    BlockBytes.read[Landed](answer, "a flight's distance").flatMap:
-      case Landed.Flown(came)      => Right(came)
-      case Landed.NotFlown(reason) => Left(reason)
+    BlockBytes.read[FlightAnswer](answer, "a flight's distance").flatMap:
+      case FlightAnswer.Flown(came)      => Right(came)
+      case FlightAnswer.NotFlown(reason) => Left(reason)
 
   private enum Block derives Codec:
     /** Of a search. */
@@ -116,7 +116,7 @@ private[cli] object LearnWork:
     /** One flight with a policy of these parameters. */
     case Flight(number: Int, parameters: Vector[Double])
 
-  private enum Landed derives Codec:
+  private enum FlightAnswer derives Codec:
     case Flown(came: Option[Double])
     case NotFlown(reason: String)
 

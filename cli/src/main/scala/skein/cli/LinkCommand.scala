@@ -36,10 +36,11 @@ final case class LinkOptions(
       "of each direction, shared by all connections, and the queue before it: 50mbit or 50mbit/64kB; without it, unlimited"
     )
     rate: Option[String],
-    @arg(doc = "of every random choice")
+    @arg(doc = "seed of every random choice")
     seed: Long = 1
 )
 
+/** `./skein link`: an emulated network between any client and any server. */
 object LinkCommand
     extends OptionsCommand[LinkOptions](
       "link",

@@ -15,10 +15,11 @@ final case class NewOptions(
     name: Leftover[String]
 )
 
+/** `./skein new`: writes a project with a scenario, a test and all commands. */
 object NewCommand
     extends OptionsCommand[NewOptions](
       "new",
-      "writes a project with a scenario of one's own: build, policy, test, all commands",
+      "writes a project for a scenario of your own: build, policy, test, all commands",
       ParserForClass[NewOptions]
     ):
 

@@ -19,10 +19,11 @@ final case class PolicyOptions(
     json: Flag
 )
 
+/** `./skein policy`: shows what a policy file holds, and converts it to or from ONNX. */
 final class PolicyCommand(using Scenarios)
     extends OptionsCommand[PolicyOptions](
       "policy",
-      "tells what a policy file holds, and writes a network as ONNX, or an ONNX file's as a policy file",
+      "shows what a policy file contains, and converts networks to ONNX and back",
       ParserForClass[PolicyOptions]
     ):
 

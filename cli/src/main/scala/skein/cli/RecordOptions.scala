@@ -11,7 +11,7 @@ import skein.settings.{FlightPlan, NamedScene}
 /** Where flights are recorded besides their DuckDB files. */
 final case class RecordOptions(
     @arg(doc =
-      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://HOST/DATABASE writes a live flight's tables there; may be given several times"
+      "besides the DuckDB file: mcap writes a flight as an MCAP file, as export --mcap would; postgres://HOST/DATABASE writes a live flight's tables there; can be repeated"
     )
     record: Seq[String]
 ):

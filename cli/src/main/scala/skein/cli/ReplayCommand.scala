@@ -16,10 +16,11 @@ final case class ReplayOptions(
     files: Leftover[String]
 )
 
+/** `./skein replay`: repeats the decisions of a recording and compares, or plays it with `--view`. */
 final class ReplayCommand(using Scenarios)
     extends OptionsCommand[ReplayOptions](
       "replay",
-      "decides again what a recording decided, and shows whether the same comes out; with --view, plays it",
+      "repeats the decisions of a recording and compares them; with --view, plays it",
       ParserForClass[ReplayOptions]
     ):
 

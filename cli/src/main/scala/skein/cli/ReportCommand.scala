@@ -15,6 +15,7 @@ final case class ReportOptions(
     json: Flag
 )
 
+/** `./skein report`: tables and figures from recordings alone. */
 final class ReportCommand(using Scenarios)
     extends OptionsCommand[ReportOptions](
       "report",

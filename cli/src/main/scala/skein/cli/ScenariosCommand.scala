@@ -8,6 +8,7 @@ import skein.settings.ConfigKeys
 /** Options of `./skein scenarios`. */
 final case class ScenariosOptions(@arg(doc = Shown.Doc) json: Flag)
 
+/** `./skein scenarios`: the scenarios of the program with their settings. */
 final class ScenariosCommand(using scenarios: Scenarios)
     extends OptionsCommand[ScenariosOptions](
       "scenarios",

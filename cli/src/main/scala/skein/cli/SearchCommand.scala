@@ -12,7 +12,7 @@ import skein.units.{Expect, Span}
 
 /** Options of `./skein search`. */
 final case class SearchOptions(
-    @arg(doc = "of the policies to choose from (default: paper-pursuer)")
+    @arg(doc = "family of policies to search (default: paper-pursuer)")
     family: Option[String],
     @arg(doc = "pursuer or evader, for families that suit both")
     role: Option[String],
@@ -20,33 +20,37 @@ final case class SearchOptions(
     method: Option[String],
     @arg(doc = "the latency profile: none, direct, vpn, constant:200ms, … (default: vpn)")
     link: Option[String],
-    @arg(doc = "between decisions for one vehicle (default: 100ms)")
+    @arg(doc = "time between decisions for one vehicle (default: 100ms)")
     period: Option[String],
-    @arg(doc = "to try in all (default: 1000; of flights in virtual time 40)")
+    @arg(doc = "candidates to try in all (default: 1000; 40 with flights in virtual time)")
     candidates: Option[Int],
     @arg(doc =
-      "that each candidate flies; when racing, in the first round (default: 20; of flights in virtual time 2)"
+      "episodes of each candidate; when racing, of the first round (default: 20; 2 with flights in virtual time)"
     )
     episodes: Option[Int],
-    @arg(doc = "of a generation of cma-es and cross-entropy (default: 40, or more for many parameters)")
+    @arg(doc =
+      "candidates in a generation of cma-es and cross-entropy (default: 40, or more for many parameters)"
+    )
     population: Option[Int],
     @arg(doc =
       "fresh episodes on which the winner is measured (default: 4096 with a reduced model by SIMD, fewer where an episode costs more); no point of the landscape takes more"
     )
     fresh: Option[Int],
     @arg(doc =
-      "searches settings of this scenario, a team's, in the place of a duel's policy; the command scenarios lists them"
+      "searches settings of this scenario, a team's, instead of a duel's policy; the command scenarios lists them"
     )
     scenario: Option[String],
-    @arg(doc = "a setting of the scenario, for example vehicles=8; may be given several times")
+    @arg(doc = "a setting of the scenario, for example vehicles=8; can be repeated")
     set: Seq[String],
-    @arg(doc = "a setting of the scenario to search; may be given several times")
+    @arg(doc = "a setting of the scenario to search; can be repeated")
     vary: Seq[String],
     forward: ForwardOptions,
     cluster: ClusterOptions,
     @arg(doc = "folder for state, policy and pictures; without it, searches/DATE-TIME")
     out: Option[String],
-    @arg(doc = "a folder whose search was stopped: goes on with it, and ends as if it had not been stopped")
+    @arg(doc =
+      "a folder whose search was stopped: continues it, with the result of a search that was not stopped"
+    )
     resume: Option[String],
     view: ViewOptions,
     @arg(doc = Shown.Doc)
@@ -59,7 +63,7 @@ final case class SearchOptions(
 final class SearchCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[SearchOptions](
       "search",
-      "looks for the best of many policies by forward simulation under a loop's real timing",
+      "finds the best of many policies by forward simulation under a loop's real timing",
       ParserForClass[SearchOptions]
     ):
 

@@ -23,17 +23,17 @@ final case class ServeOptions(
       "workers of the server, each held by a move until it ends, as AirSim's are: a number, vehicles+4, or unlimited"
     )
     workers: String = "vehicles+4",
-    @arg(doc = "speed of the simulator's clock against the machine's")
+    @arg(doc = "speed of the simulator's clock, relative to the machine's")
     speed: Double = 1.0,
-    @arg(doc = "what stands in the world: empty, forest, pursuit, street, or a file")
+    @arg(doc = "scene: empty, forest, pursuit, street, or a file")
     scene: String = "empty",
     @arg(doc =
-      "what flies: airsim, its quadrotors, or mujoco:FILE, a model of MuJoCo's; cars drive as ever"
+      "model that flies: airsim, or mujoco:FILE"
     )
     plant: String = "airsim",
     @arg(doc =
-      "speaks MAVLink, too, as PX4's simulation does: UDP to 14550 for a ground station and to 14540, 14541, … for " +
-        "programs, a vehicle each; all vehicles also at UDP 18570"
+      "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to 14540, 14541, … for " +
+        "programs, one port for each vehicle; all vehicles also at UDP 18570"
     )
     mavlink: Flag,
     @arg(
@@ -43,13 +43,14 @@ final case class ServeOptions(
     )
     mavlinkInstance: Option[Int],
     @arg(doc =
-      "lets an autopilot outside fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), ardupilot (JSON, UDP 9002, 9012, …) " +
+      "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), ardupilot (JSON, UDP 9002, 9012, …) " +
         "or betaflight (UDP 9002, one vehicle)"
     )
     hil: Option[String],
     view: ViewOptions
 )
 
+/** `./skein serve`: runs the built-in simulator until Ctrl-C. */
 object ServeCommand
     extends OptionsCommand[ServeOptions](
       "serve",

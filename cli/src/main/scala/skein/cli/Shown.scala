@@ -18,4 +18,4 @@ private[cli] final class Shown(asJson: Boolean):
 
 private[cli] object Shown:
   /** What the option does, in every command that has it. */
-  final val Doc = "tables as JSON on standard output, for scripts; all else goes to the error output"
+  final val Doc = "tables as JSON on standard output, for scripts; everything else goes to standard error"

@@ -19,7 +19,7 @@ final case class SolverSecurity(
     )
     tls: Option[String],
     @arg(doc =
-      "in the place of --tls, for a Kafka broker with other certificates, or with passwords: file with its clients' security.protocol, ssl.… and sasl.…"
+      "instead of --tls, for a Kafka broker with other certificates, or with passwords: file with its clients' security.protocol, ssl.… and sasl.…"
     )
     kafkaSecurity: Option[String]
 ):

@@ -84,9 +84,9 @@ private[cli] object SpreadQuestion:
       val flown = flights(seeds)
       by.computed(blocks(seeds), onAnswer = _ => onLanded)(onWait)
         .flatMap(_.toRight("no worker is left"))
-        .flatMap(Expect.each(_)(BlockBytes.read[Landed](_, "a flight's answer")))
+        .flatMap(Expect.each(_)(BlockBytes.read[FlightAnswer](_, "a flight's answer")))
         .flatMap: answers =>
-          val large = answers.count(_ == Landed.TooLarge)
+          val large = answers.count(_ == FlightAnswer.TooLarge)
           if large > 0 then
             tell(s"$large of ${flown.size} flights are too large for a message and are flown here again")
           Expect.each(flown.zip(answers))(landed(_, _))
@@ -102,21 +102,21 @@ private[cli] object SpreadQuestion:
       require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, came $place")
       BlockBytes.of:
         SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
-          case Left(missing)  => Landed.NotFlown(missing.reason.take(MostReason))
+          case Left(missing)  => FlightAnswer.NotFlown(missing.reason.take(MostReason))
           case Right(summary) =>
             val bytes = SummaryBytes.write(summary)
-            if bytes.length > MostBytes then Landed.TooLarge else Landed.Flown(bytes)
+            if bytes.length > MostBytes then FlightAnswer.TooLarge else FlightAnswer.Flown(bytes)
 
     private def landed(
         plan: FlightPlan,
-        answer: Landed
+        answer: FlightAnswer
     ): Either[String, Either[NotFlown, FlightSummary]] = answer match
-      case Landed.Flown(summary)   => SummaryBytes.read(summary, Some(settings.scenario)).map(Right(_))
-      case Landed.NotFlown(reason) => Right(Left(NotFlown(plan, reason)))
-      case Landed.TooLarge         => Right(SpreadFlights.one(settings, plan))
+      case FlightAnswer.Flown(summary)   => SummaryBytes.read(summary, Some(settings.scenario)).map(Right(_))
+      case FlightAnswer.NotFlown(reason) => Right(Left(NotFlown(plan, reason)))
+      case FlightAnswer.TooLarge         => Right(SpreadFlights.one(settings, plan))
 
   /** What came of a flight. */
-  private[cli] enum Landed derives Codec:
+  private[cli] enum FlightAnswer derives Codec:
     /** As [[SummaryBytes]]. */
     case Flown(summary: ArraySeq[Byte])
     case NotFlown(reason: String)

@@ -13,16 +13,16 @@ final case class TortureOptions(
     seeds: Int = 100,
     @arg(doc = "the first seed")
     first: Long = 1,
-    @arg(doc = "of each flight, for example 60s")
+    @arg(doc = "length of each flight, for example 60s")
     duration: String = "60s",
     @arg(doc = "flights at once; without it, as many as there are cores")
     threads: Option[Int],
     @arg(doc =
-      "whose task is flown (default: duels, several side by side, where there are any, else the first)"
+      "the scenario to fly (default: duels, several side by side, where there are any, else the first)"
     )
     scenario: Option[String],
     @arg(doc =
-      "what stands in the world: empty, forest, pursuit, street, or a file; without it, what the scenario says"
+      "scene: empty, forest, pursuit, street, or a file; without it, the scenario's"
     )
     scene: Option[String],
     cluster: ClusterOptions,
@@ -40,7 +40,7 @@ final case class TortureOptions(
 final class TortureCommand(program: String)(using scenarios: Scenarios)
     extends OptionsCommand[TortureOptions](
       "torture",
-      "flies teams in virtual time while everything goes wrong, and checks what must hold all the same",
+      "flies teams in virtual time through injected faults, and checks what must hold all the same",
       ParserForClass[TortureOptions]
     ):
   import TortureCommand.*

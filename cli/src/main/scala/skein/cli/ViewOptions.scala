@@ -8,17 +8,17 @@ import skein.view.{Shows, TaskShow, Token, ViewServer}
 
 /** Whether and where a flight, or other work, can be looked at. */
 final case class ViewOptions(
-    @arg(doc = "shows it in the browser and in Foxglove, at an address that is printed")
+    @arg(doc = "shows it in the browser and in Foxglove; the address is printed")
     view: Flag,
     @arg(
       name = "view-port",
-      doc = "where --view listens, on this machine alone; 0 for any that is free (default: 8765)"
+      doc = "port of --view, on this machine alone; 0 for any free port (default: 8765)"
     )
     viewPort: Option[Int],
     @arg(
       name = "view-origin",
       doc =
-        "a site whose pages may look, too, for example https://app.foxglove.dev; may be given several times"
+        "another site whose pages may connect, for example https://app.foxglove.dev; can be repeated"
     )
     viewOrigin: Seq[String]
 ):

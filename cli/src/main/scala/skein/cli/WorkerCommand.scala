@@ -18,24 +18,25 @@ final case class WorkerOptions(
       "where the coordinator reaches this worker; with --tls, HOST as in its certificate (default: a free port of 127.0.0.1)"
     )
     listen: Option[String],
-    @arg(doc = "that fly at once; does not change the result (default: one per core)")
+    @arg(doc = "number of threads; does not change the result (default: one per core)")
     threads: Option[Int],
-    @arg(doc = "for how long it tries to reach a coordinator that is not there, or is lost")
+    @arg(doc = "how long it tries to reach a coordinator that is absent or lost")
     patience: String = "60s",
     @arg(doc = "folder of ./skein cluster with this machine's certificate; without it, loopback alone")
     tls: Option[String],
     @arg(doc =
-      "SHA-256 of a program that is run in the place of this one if the coordinator ships it (--ship, which prints it); several with commas between"
+      "SHA-256 of a program that is run instead of this one if the coordinator ships it (--ship, which prints it); several with commas between"
     )
     acceptJars: Option[String],
-    @arg(doc = "ends when its standard input does: with the process that started it")
+    @arg(doc = "ends when its standard input ends, and so with the process that started it")
     attached: Flag
 )
 
+/** `./skein worker`: computes for a command on this machine or another. */
 final class WorkerCommand(using Scenarios)
     extends OptionsCommand[WorkerOptions](
       "worker",
-      "computes for a command on this machine or another, until that has all that it asked",
+      "computes for a command of this machine or another, until the command has all answers",
       ParserForClass[WorkerOptions]
     ):
 

@@ -35,7 +35,7 @@ object DetectionFigure:
       val height = shownPx * camera.height / camera.width
       val title  = Shape.Text(
         at = Point(0, 16),
-        s"${flight.name}, ${Looks.link(flight.flight.link)}",
+        s"${flight.name}, ${FlightTheme.link(flight.flight.link)}",
         12,
         Theme.labelColour,
         bold = true

@@ -40,7 +40,7 @@ object DeviationFigure:
       val middle  = panel.left + (members.sum.toDouble / members.size + 0.5) * slot + (index + 0.5) * gap
       Shape.Text(
         Point(middle, panel.bottom + 38),
-        Looks.link(link),
+        FlightTheme.link(link),
         Theme.labelSize,
         Theme.labelColour,
         Anchor.Middle
@@ -48,7 +48,7 @@ object DeviationFigure:
     val truth = Shape.line(
       Point(panel.left, panel.atY(0)),
       Point(panel.right, panel.atY(0)),
-      Stroke(Looks.of("paused"), 1.2)
+      Stroke(FlightTheme.of("paused"), 1.2)
     )
     Drawing(
       width + 70,
@@ -57,7 +57,7 @@ object DeviationFigure:
     )
 
   private def mark(panel: Panel, deviation: Deviation, x: Double): Vector[Shape] =
-    val colour                                        = Looks.of(deviation.loop)
+    val colour                                        = FlightTheme.of(deviation.loop)
     val share                                         = deviation.share
     def line(from: Double, to: Double, width: Double) =
       Shape.line(Point(x, panel.atY(100 * from)), Point(x, panel.atY(100 * to)), Stroke(colour, width))
@@ -70,7 +70,7 @@ object DeviationFigure:
     Vector(
       line(share.least, share.most, 1),
       line(share.mean - share.sd, share.mean + share.sd, 3.2),
-      Shape.Disc(centre, 4, Some(Stroke(Looks.halo, 0.8)), Some(colour)),
+      Shape.Disc(centre, 4, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour)),
       Shape.Text(
         Point(x, panel.bottom + 13),
         deviation.name,

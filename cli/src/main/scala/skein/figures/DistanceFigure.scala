@@ -34,7 +34,7 @@ object DistanceFigure:
       plotHeight
     )
     val lines =
-      curves.map((summary, curve) => panel.curve(curve.points, Looks.of(summary)))
+      curves.map((summary, curve) => panel.curve(curve.points, FlightTheme.of(summary)))
     val stripsLeft  = panel.right + 17
     val stripsWidth = curves.size.max(5) * slotWidth
     val strips      = curves.zipWithIndex.flatMap:
@@ -51,7 +51,7 @@ object DistanceFigure:
       Theme.tickSize,
       Theme.labelColour
     )
-    val title = panel.title(Looks.link(link))
+    val title = panel.title(FlightTheme.link(link))
     Drawing(
       stripsLeft + stripsWidth + 50,
       plotHeight + 84,
@@ -60,23 +60,23 @@ object DistanceFigure:
     )
 
   private def strip(panel: Panel, x: Double, summary: FlightSummary, last: Distribution): Vector[Shape] =
-    val colour = Looks.of(summary.flight.loop)
+    val colour = FlightTheme.of(summary.flight.loop)
     val ours   = Vector(
       Shape.line(Point(x - 5, panel.atY(last.least)), Point(x - 5, panel.atY(last.most)), Stroke(colour, 2)),
-      Shape.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(Looks.halo, 0.8)), Some(colour))
+      Shape.Disc(Point(x - 5, panel.atY(last.mean)), 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
     )
     val paper = summary.published.flatMap(_.distance).toVector.flatMap: published =>
       Vector(
         Shape.line(
           Point(x + 5, panel.atY(published.least)),
           Point(x + 5, panel.atY(published.most)),
-          Stroke(Looks.published, 1.2)
+          Stroke(FlightTheme.published, 1.2)
         ),
-        Looks.diamond(Point(x + 5, panel.atY(published.mean)))
+        FlightTheme.diamond(Point(x + 5, panel.atY(published.mean)))
       )
     ours ++ paper
 
   private def legend(panel: Panel, flights: Vector[FlightSummary]): Vector[Shape] =
     val names  = flights.distinctBy(_.name)
-    val legend = Legend(0, names.map(one => Legend.line(one.name, Looks.of(one, 2.2)))*)
+    val legend = Legend(0, names.map(one => Legend.line(one.name, FlightTheme.of(one, 2.2)))*)
     legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))

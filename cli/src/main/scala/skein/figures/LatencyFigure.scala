@@ -10,9 +10,9 @@ import skein.units.Decimals.fixed
   */
 object LatencyFigure:
   private val measured     = Colour(0x7aa6c2)
-  private val profileLine  = Stroke(Looks.published, 1.1)
+  private val profileLine  = Stroke(FlightTheme.published, 1.1)
   private val halvesLine   = Stroke(Colour(0xd55e00), 1.3)
-  private val quantileLine = Stroke(Looks.published.faded(0.6), 0.8, Vector(3, 2))
+  private val quantileLine = Stroke(FlightTheme.published.faded(0.6), 0.8, Vector(3, 2))
 
   /** @param roundTripsMs
     *   by the name of the link, in the order of the panels
@@ -63,7 +63,7 @@ object LatencyFigure:
     val facts              = s"n ${samples.count}, mean ${figure(samples.mean)}, sd ${figure(samples.sd)}, " +
       s"median ${figure(samples.median)}, p99 ${figure(samples.p99)} ms"
     val titles = Vector(
-      panel.title(Looks.link(link)).moved(0, -14),
+      panel.title(FlightTheme.link(link)).moved(0, -14),
       Shape.Text(Point(panel.left, panel.top - 9), facts, Theme.tickSize, Theme.labelColour)
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)

@@ -53,7 +53,7 @@ object ObservationFigure:
         Shape.line(Point(from, panel.bottom + 18), Point(to, panel.bottom + 18), Theme.axisLine),
         Shape.Text(
           Point((from + to) / 2, panel.bottom + 30),
-          Looks.link(link),
+          FlightTheme.link(link),
           Theme.tickSize,
           Theme.labelColour,
           Anchor.Middle
@@ -77,7 +77,7 @@ object ObservationFigure:
       case TimingObservation.OpponentAge => role.opponentTrueAgeMs
       case _                             => None
     Bar(
-      Looks.of(summary.flight.loop),
+      FlightTheme.of(summary.flight.loop),
       role.observedMs.get(observation).map(_.mean),
       published.map(flight => Published.ofRole(flight.observedMs(observation), role.role)),
       trueAge.map(_.mean)
@@ -91,7 +91,7 @@ object ObservationFigure:
     val filled = bar.mean.toVector.flatMap: mean =>
       val colour = if pale then bar.colour.tinted(palePart) else bar.colour
       Vector(Shape.box(left, panel.atY(mean), right, panel.bottom, colour))
-    val mark = bar.published.toVector.map(mean => Looks.diamond(Point(middle, panel.atY(mean)), 3.6))
+    val mark = bar.published.toVector.map(mean => FlightTheme.diamond(Point(middle, panel.atY(mean)), 3.6))
     outline ++ filled ++ mark
 
   private def widthOf(summary: FlightSummary): Double = summary.roles.size * barWidth
@@ -113,7 +113,7 @@ object ObservationFigure:
     val pale             =
       Option.when(role(1).nonEmpty)(Legend.box(s"for the ${role(1)}", grey.tinted(palePart)))
     val items = Seq(full) ++ pale ++ Seq(
-      Legend.Item("paper", 8, at => Vector(Looks.diamond(at.moved(4, 0)))),
+      Legend.Item("paper", 8, at => Vector(FlightTheme.diamond(at.moved(4, 0)))),
       Legend.Item(
         "true age, by the simulator's clock",
         12,

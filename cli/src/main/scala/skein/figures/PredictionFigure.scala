@@ -14,7 +14,8 @@ object PredictionFigure:
     Option.when(panels.nonEmpty)(Drawing.stacked(Drawing.grid(panels, columns = 3.min(panels.size)), legend))
 
   private def panel(group: PredictionGroup): Drawing =
-    val curves     = Vector(group.others.byAge -> Looks.evader, group.own.byAge -> Looks.of("predictive"))
+    val curves =
+      Vector(group.others.byAge -> FlightTheme.evader, group.own.byAge -> FlightTheme.of("predictive"))
     val all        = curves.flatMap(_._1)
     val (from, to) = (all.map(_._1).min, all.map(_._1).max)
     val panel      = Panel(
@@ -34,7 +35,7 @@ object PredictionFigure:
           Stroke(colour, 1.4, dashes)
         )
       ).flatten
-    val title = panel.title(s"${group.name}, ${Looks.link(group.link)}")
+    val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
   /** A single age is a disc. */
@@ -49,8 +50,8 @@ object PredictionFigure:
   private def legend: Drawing =
     Legend(
       52,
-      Legend.line("own vehicle, median", Stroke(Looks.of("predictive"), 1.8)),
-      Legend.line("95 %", Stroke(Looks.of("predictive"), 1.4, dashes)),
-      Legend.line("opponent, median", Stroke(Looks.evader, 1.8)),
-      Legend.line("95 %", Stroke(Looks.evader, 1.4, dashes))
+      Legend.line("own vehicle, median", Stroke(FlightTheme.of("predictive"), 1.8)),
+      Legend.line("95 %", Stroke(FlightTheme.of("predictive"), 1.4, dashes)),
+      Legend.line("opponent, median", Stroke(FlightTheme.evader, 1.8)),
+      Legend.line("95 %", Stroke(FlightTheme.evader, 1.4, dashes))
     )

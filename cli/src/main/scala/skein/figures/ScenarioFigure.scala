@@ -25,7 +25,7 @@ object ScenarioFigure:
     val panels = flown.flights.map: flight =>
       val panel = Panel(axis("east y, m", easts), axis("north x, m", norths), 52, 34, side, side)
       val title =
-        panel.title(s"${flight.summary.name}, ${Looks.link(flight.summary.flight.link)}")
+        panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(
         side + 72,
         side + 82,
@@ -46,8 +46,8 @@ object ScenarioFigure:
           track.eastM(vehicle).toVector.zip(track.northM(vehicle).toVector),
           Stroke(colour.faded(0.8), 1)
         ),
-        Shape.Disc(at(track.instants.head), 2.8, Some(Stroke(colour, 1.2)), Some(Looks.halo)),
-        Shape.Disc(at(track.instants.last), 3, Some(Stroke(Looks.halo, 0.8)), Some(colour))
+        Shape.Disc(at(track.instants.head), 2.8, Some(Stroke(colour, 1.2)), Some(FlightTheme.halo)),
+        Shape.Disc(at(track.instants.last), 3, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))
       )
 
   private def broken(panel: Panel, result: Result): Vector[Shape] =
@@ -79,7 +79,7 @@ object ScenarioFigure:
           track.instants.map(instant => (track.timeS(instant), track.altitudeM(vehicle, instant))),
           Stroke(colourOf(flight.result.scenario, vehicle), 1.2)
         )
-      val title = panel.title(s"${flight.summary.name}, ${Looks.link(flight.summary.flight.link)}")
+      val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(plotWidth / 2 + 76, plotHeight + 84, (title +: panel.axes) ++ lines)
     Drawing.stacked(Drawing.grid(panels, columns = 2.min(panels.size)), Legend(52, roles(flown.scenario)*))
 
@@ -115,7 +115,7 @@ object ScenarioFigure:
       plotHeight
     )
     val lines = flights.map(flight =>
-      panel.curve(drawn(flight)._2.points.dropWhile(_._2 > panel.y.to), Looks.of(flight.summary))
+      panel.curve(drawn(flight)._2.points.dropWhile(_._2 > panel.y.to), FlightTheme.of(flight.summary))
     )
     val held = bound.map: bound =>
       Shape.line(
@@ -124,13 +124,13 @@ object ScenarioFigure:
         boundLine
       )
     val items = flights.map(_.summary).distinctBy(_.name).map(summary =>
-      Legend.line(summary.name, Looks.of(summary, 2.2))
+      Legend.line(summary.name, FlightTheme.of(summary, 2.2))
     ) ++ bound.map(bound => Legend.line(bound.name, boundLine))
     val legend = Legend(0, items*)
     Drawing(
       plotWidth + 76,
       plotHeight + 84,
-      (panel.title(Looks.link(link)) +: panel.axes) ++ held ++ lines ++
+      (panel.title(FlightTheme.link(link)) +: panel.axes) ++ held ++ lines ++
         legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
     )
 
@@ -157,7 +157,7 @@ object ScenarioFigure:
   private def legend(flown: ScenarioFlights): Seq[Legend.Item] =
     val anyBroken = flown.flights.exists(_.result.violations.nonEmpty)
     roles(flown.scenario) ++ Seq(
-      disc("start", 2.8, Some(Stroke(Theme.labelColour, 1.2)), Some(Looks.halo)),
+      disc("start", 2.8, Some(Stroke(Theme.labelColour, 1.2)), Some(FlightTheme.halo)),
       disc("end", 3, None, Some(Theme.labelColour))
     ) ++ Option.when(anyBroken)(disc("a limit broken", 5, Some(Stroke(red, 1.2)), None))
 

@@ -29,7 +29,7 @@ object TrajectoryFigure:
       val middle = (values.min + values.max) / 2
       Axis.exactly(label, middle - span / 2, middle + span / 2)
     val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
-    val title = panel.title(s"${summary.name}, ${Looks.link(summary.flight.link)}")
+    val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(
       side + 72,
       side + 82,
@@ -37,7 +37,7 @@ object TrajectoryFigure:
     )
 
   private def path(panel: Panel, summary: FlightSummary, track: Track): Vector[Shape] =
-    val colour         = if track.isA(Role.Pursuer) then Looks.of(summary.flight.loop) else Looks.evader
+    val colour = if track.isA(Role.Pursuer) then FlightTheme.of(summary.flight.loop) else FlightTheme.evader
     def at(p: Vector3) = panel.at(p.y, p.x)
     Vector(
       panel.curve(track.positionsNed.map(p => (p.y, p.x)), Stroke(colour.faded(0.85), 1.1)),
@@ -54,18 +54,22 @@ object TrajectoryFigure:
         loops.size * 9,
         at =>
           loops.indices.toVector.map(index =>
-            Shape.line(at.moved(index * 9, 0), at.moved(index * 9 + 8, 0), thick(Looks.of(loops(index))))
+            Shape.line(
+              at.moved(index * 9, 0),
+              at.moved(index * 9 + 8, 0),
+              thick(FlightTheme.of(loops(index)))
+            )
           )
       ),
-      Legend.line("evader", thick(Looks.evader)),
+      Legend.line("evader", thick(FlightTheme.evader)),
       Legend.Item("start", 8, at => Vector(start(at.moved(4, 0), Theme.labelColour))),
       Legend.Item("end", 8, at => Vector(end(at.moved(4, 0), Theme.labelColour)))
     )
 
-  private def thick(colour: Colour): Stroke = Looks.line(colour, 2.2)
+  private def thick(colour: Colour): Stroke = FlightTheme.line(colour, 2.2)
 
   private def start(at: Point, colour: Colour): Shape =
-    Shape.Disc(at, 3.4, Some(Stroke(colour, 1.4)), Some(Looks.halo))
+    Shape.Disc(at, 3.4, Some(Stroke(colour, 1.4)), Some(FlightTheme.halo))
 
   private def end(at: Point, colour: Colour): Shape =
-    Shape.Disc(at, 3.6, Some(Stroke(Looks.halo, 0.8)), Some(colour))
+    Shape.Disc(at, 3.6, Some(Stroke(FlightTheme.halo, 0.8)), Some(colour))

@@ -13,7 +13,7 @@ object TwinFigure:
   private val panelWidth  = 208.0
   private val panelHeight = 110.0
   private val points      = 200
-  private val virtualLine = Stroke(Looks.published, 1, Vector(4, 2.5))
+  private val virtualLine = Stroke(FlightTheme.published, 1, Vector(4, 2.5))
 
   def apply(set: FlightSet): Option[Drawing] =
     val lines = set.twins.filter(_.compared.nonEmpty).map(line)
@@ -26,7 +26,7 @@ object TwinFigure:
         s"(${(100 * difference).signed(1)} %)"
     val title = Shape.Text(
       Point(46, 16),
-      s"${twin.live.name}, ${Looks.link(flight.link)}${distance.getOrElse("")}",
+      s"${twin.live.name}, ${FlightTheme.link(flight.link)}${distance.getOrElse("")}",
       Theme.titleSize,
       Theme.titleColour,
       bold = true
@@ -54,7 +54,7 @@ object TwinFigure:
       panelWidth + 62,
       panelHeight + 62,
       (title +: panel.axes) ++ Vector(
-        curve(panel, compared.live, Looks.line(Looks.of(loop), 2.4)),
+        curve(panel, compared.live, FlightTheme.line(FlightTheme.of(loop), 2.4)),
         curve(panel, compared.virtual, virtualLine)
       )
     )
@@ -70,5 +70,5 @@ object TwinFigure:
 
   private def legend(set: FlightSet): Drawing =
     val loops = set.twins.map(_.live.flight.loop).distinct
-    val live  = loops.map(loop => Legend.line(s"$loop, live", Looks.line(Looks.of(loop), 2.4)))
+    val live  = loops.map(loop => Legend.line(s"$loop, live", FlightTheme.line(FlightTheme.of(loop), 2.4)))
     Legend(46, (live :+ Legend.line("virtual", virtualLine))*)

@@ -25,10 +25,19 @@ object Drawing:
       parts.zip(tops).flatMap((part, top) => part.shapes.map(_.moved(0, top))).toVector
     )
 
+/** A place in a drawing, in its units.
+  *
+  * @param x
+  *   to the right from the left edge
+  * @param y
+  *   downwards from the upper edge
+  */
 final case class Point(x: Double, y: Double):
   def moved(dx: Double, dy: Double): Point = Point(x + dx, y + dy)
 
-/** @param rgb
+/** A colour.
+  *
+  * @param rgb
   *   0xRRGGBB
   * @param opacity
   *   from 0, unseen, to 1
@@ -41,14 +50,20 @@ final case class Colour(rgb: Int, opacity: Double = 1):
     def channel(shift: Int) = math.round(255 + ((rgb >> shift & 0xff) - 255) * share).toInt << shift
     copy(rgb = channel(16) | channel(8) | channel(0))
 
-/** @param dash
+/** How a line is drawn.
+  *
+  * @param width
+  *   in the drawing's units
+  * @param dash
   *   lengths of dash and gap; empty for a solid line
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty)
 
+/** Which part of a text stands at its point. */
 enum Anchor:
   case Start, Middle, End
 
+/** What a drawing consists of. */
 enum Shape:
   /** Straight lines from point to point. */
   case Path(

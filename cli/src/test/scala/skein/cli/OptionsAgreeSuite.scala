@@ -20,12 +20,12 @@ class OptionsAgreeSuite extends munit.FunSuite:
       assert(option.summary.startsWith("folder "), s"${command.name}: ${option.summary}")
     assertEquals(options.map(_._2.flag).filter(Set("--output", "--folder", "--dir", "-o")), Seq.empty)
 
-  test("what flies is --plant, what predicts is --predictor, and nothing is --model"):
+  test("the model that flies is --plant, the one that predicts is --predictor, and nothing is --model"):
     assertEquals(having("--model"), Seq.empty)
     for (command, option) <- having("--plant") do
-      assert(option.summary.startsWith("what flies"), command.name)
+      assert(option.summary.startsWith("model that flies"), command.name)
     for (command, option) <- having("--predictor") do
-      assert(option.summary.contains("predicts by"), command.name)
+      assert(option.summary.startsWith("model that predicts"), command.name)
 
   test("scenario, settings, seed and loops are asked for in the same words wherever they are"):
     for flag <- Seq("--set", "--seed") do

@@ -70,7 +70,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
   test("a flight that is too large for a message is flown here, and told; cut-off answers are no flights"):
     val asked = ready(duels)
     var told  = Vector.empty[String]
-    val large = worker(duels)(_ => BlockBytes.of(SpreadQuestion.Landed.TooLarge))
+    val large = worker(duels)(_ => BlockBytes.of(SpreadQuestion.FlightAnswer.TooLarge))
     val there = asked.elsewhere(large, 1, told :+= _)(())(()).fold(fail(_), identity)
     assertEquals(bytes(there), bytes(Vector(duelsHere(0), duelsHere(2))))
     assertEquals(told.size, 1)
@@ -80,7 +80,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
 
   test("a flight that could not be flown elsewhere is told with its seed and its reason"):
     val asked  = ready(duels)
-    val failed = worker(duels)(_ => BlockBytes.of(SpreadQuestion.Landed.NotFlown("no rotor turned")))
+    val failed = worker(duels)(_ => BlockBytes.of(SpreadQuestion.FlightAnswer.NotFlown("no rotor turned")))
     val there  = asked.elsewhere(failed, 2, line => fail(line))(())(()).fold(fail(_), identity)
     assertEquals(
       there.map(_.left.map(_.message)).last,

@@ -16,8 +16,9 @@ object Documentation:
 
   /** By path from the root: what each page has to say. */
   val generated: Vector[(String, () => String)] = Vector(
-    "docs/commands.md"  -> (() => CommandReference.markdown),
-    "docs/recording.md" -> (() => RecordingSchema.markdown)
+    "docs/commands.md"      -> (() => CommandReference.markdown),
+    "docs/configuration.md" -> (() => ConfigurationReference.markdown),
+    "docs/recording.md"     -> (() => RecordingSchema.markdown)
   )
 
 @main def writeDocumentation(): Unit =

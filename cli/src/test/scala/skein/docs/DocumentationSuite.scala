@@ -3,6 +3,7 @@ package skein.docs
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.matching.Regex
+import skein.cli.OurScenarios
 
 /** Holds what is written to what is there: links lead somewhere, and pages that tell what code says tell it truly. */
 class DocumentationSuite extends munit.FunSuite:
@@ -22,6 +23,57 @@ class DocumentationSuite extends munit.FunSuite:
       val path = root.resolve(name)
       assert(Files.exists(path), s"$name is missing: ${Documentation.hint}")
       assertNoDiff(Files.readString(path), written(), s"$name is not up to date: ${Documentation.hint}")
+
+  test("code that a page shows of a source file stands there"):
+    val shown =
+      for
+        page  <- pages
+        found <- quoted.findAllMatchIn(Files.readString(page))
+      yield (root.relativize(page), found.group(1) == "file", found.group(2), found.group(3))
+    assert(shown.sizeIs >= 2, shown)
+    for (page, isWhole, file, code) <- shown do
+      val source = Files.readString(root.resolve(file))
+      if isWhole then assertNoDiff(code, source, s"$page shows another $file")
+      else assertEquals(strayed(code, source), None, s"$page shows lines that $file does not have there")
+
+  test("a line that was changed or moved is found"):
+    val source = "def a =\n  b\n  c\n  d\n"
+    assertEquals(strayed("b\n…\nd", source), None)
+    assertEquals(strayed("b\nd", source), Some("b\nd"))
+    assertEquals(strayed("d\n…\nb", source), Some("b"))
+
+  test("the README and the configuration name every scenario"):
+    val names = OurScenarios.all.kinds.map(_.name)
+    for page <- Seq("README.md", "flight/src/main/resources/reference.conf") do
+      val text = Files.readString(root.resolve(page))
+      assertEquals(names.filterNot(text.contains), Vector.empty, page)
+
+  test("every example has a README with a picture, and stands in their list"):
+    val list    = Files.readString(root.resolve("examples/README.md"))
+    val folders = Files.list(root.resolve("examples")).iterator.asScala.filter(Files.isDirectory(_)).toVector
+    assert(folders.sizeIs > 5, folders)
+    for folder <- folders.sorted do
+      val name = folder.getFileName.toString
+      assert(list.contains(s"[$name]($name/README.md)"), name)
+      assert(Files.readString(folder.resolve("README.md")).contains("!["), s"$name/README.md has no picture")
+
+  private val quoted: Regex = """(?s)<!-- (file|lines of) (\S+) -->\n+```scala\n(.*?)\n```""".r
+
+  /** The first passage of `code` that does not stand in `source` behind the one before it. Passages are parted by lines of
+    * `…`; indentation does not count.
+    */
+  private def strayed(code: String, source: String): Option[String] =
+    def lines(text: String) = text.linesIterator.map(_.trim).toVector
+    lines(code)
+      .foldLeft(Vector(Vector.empty[String])): (passages, line) =>
+        if line == "…" then passages :+ Vector.empty else passages.init :+ (passages.last :+ line)
+      .filter(_.nonEmpty)
+      .foldLeft[Either[Vector[String], Int]](Right(0)): (at, passage) =>
+        at.flatMap: from =>
+          lines(source).indexOfSlice(passage, from) match
+            case -1    => Left(passage)
+            case found => Right(found + passage.size)
+      .swap.toOption.map(_.mkString("\n"))
 
   private def pages: Vector[Path] =
     val found = Files.walk(root)

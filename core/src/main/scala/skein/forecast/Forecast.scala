@@ -4,8 +4,8 @@ import skein.signal.{ClockAlignment, Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleModel
 
-/** What was heard of vehicles and what was sent to them, ready to be carried forward. Immutable and pure: evidence
-  * goes in as it comes, in any order; estimates come out for any moment.
+/** What is known of vehicles from their readings and from the commands sent to them. Immutable and pure: events go in as
+  * they come, in any order; estimates come out for any moment.
   *
   * @param models
   *   one per vehicle: the vehicle's own where its commands are known, else [[skein.vehicle.ConstantVelocity]] or
@@ -22,12 +22,12 @@ final case class Forecast private (
   // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the others.
   @volatile private var told: Option[(Instant, Vector[Estimate])] = None
 
-  def withEvidence(evidence: Evidence): Forecast = evidence match
-    case Evidence.Seen(vehicle, reading)                  => seen(vehicle, reading)
-    case Evidence.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
-    case Evidence.Replaced(vehicle, sequence, answeredAt) =>
+  def withEvent(event: ForecastEvent): Forecast = event match
+    case ForecastEvent.Seen(vehicle, reading)                  => seen(vehicle, reading)
+    case ForecastEvent.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
+    case ForecastEvent.Replaced(vehicle, sequence, answeredAt) =>
       updated(vehicle)(_.replaced(sequence, answeredAt))
-    case Evidence.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
+    case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
 
   /** Where the vehicles will be when a command acts that is sent now, under the commands that are on their way; absent
     * until every vehicle was seen. A vehicle of which a newer reading is held than that moment is where it was read.
@@ -81,12 +81,14 @@ object Forecast:
   def apply(models: Vector[VehicleModel[?]]): Forecast =
     new Forecast(models, models.map(_ => None), None, None)
 
-/** What a forecast is made from; vehicles are counted from 0. */
-enum Evidence:
+/** What a forecast is made of. Vehicles are counted from 0. */
+enum ForecastEvent:
   def vehicle: Int
 
+  /** A vehicle was read. */
   case Seen(vehicle: Int, reading: Stamped[Kinematics])
 
+  /** A command was sent to a vehicle. */
   case Sent(vehicle: Int, command: Commanded)
 
   /** The vehicle answered that a command was replaced, as AirSim does when the next one arrives: a receipt for that

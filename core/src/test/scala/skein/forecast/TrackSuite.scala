@@ -71,16 +71,16 @@ class TrackSuite extends munit.FunSuite:
   test("of a simulator that starts again with an earlier clock, vehicles are where its first reading says"):
     def seen(validMs: Double, sentMs: Double, receivedMs: Double, northM: Double) =
       val told = Stamped(at(northM), simulator(validMs), controller(sentMs), controller(receivedMs))
-      Evidence.Seen(0, told)
+      ForecastEvent.Seen(0, told)
     val before = Forecast(Vector(ConstantVelocity))
-      .withEvidence(seen(20000, 100, 100, 5))
-      .withEvidence(seen(20100, 200, 200, 5))
-    val again                     = before.withEvidence(seen(100, 300, 300, 70))
+      .withEvent(seen(20000, 100, 100, 5))
+      .withEvent(seen(20100, 200, 200, 5))
+    val again                     = before.withEvent(seen(100, 300, 300, 70))
     def north(forecast: Forecast) =
       forecast.whenActing(controller(310)).map(_.head.kinematics.positionNed.x)
     assertEquals(north(before), Some(5.0))
     assertEquals(north(again), Some(70.0))
-    assertEquals(north(again.withEvidence(seen(20090, 190, 305, 5))), Some(70.0), "late, of the first run")
+    assertEquals(north(again.withEvent(seen(20090, 190, 305, 5))), Some(70.0), "late, of the first run")
 
   test("skipped readings do no harm, and commands that have acted are forgotten but for the one in effect"):
     val sparse =

@@ -43,4 +43,5 @@ final case class Chase(metres: Double = 8, trustS: Double = 0.2) extends Scenari
     val last = Window.Last(10)
     Vector(apart.mean("last 10 s", last), apart.sd("sd", last), apart.least("closest"))
 
+/** All of Skein's commands for this scenario. */
 object Main extends SkeinApp(ScenarioKind(Chase()))

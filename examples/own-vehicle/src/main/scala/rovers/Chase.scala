@@ -48,6 +48,7 @@ final case class Rovers(hareMps: Double = 1.5, houndMps: Double = 3) extends Sce
   override def measures: Vector[Measure] =
     Vector(distance.mean("last 10 s", Window.Last(10)), distance.least("closest"))
 
+/** What reading a recording of the rovers needs. */
 object Chase:
   /** What a report of their recordings is told. */
   given scenarios: Scenarios = Scenarios(ScenarioKind(Rovers()))

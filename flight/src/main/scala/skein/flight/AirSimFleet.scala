@@ -149,6 +149,7 @@ private[flight] final class AirSimFleet(
     )
     AirSimClient(rpc, timeout = AirSimFleet.askTimeout)
 
+/** How long AirSim is waited for, and what of its client a recording keeps. */
 object AirSimFleet:
   /** The paper's, of every question. */
   val askTimeout: Span = Span.ofMillis(500)

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.forecast.Evidence
+import skein.forecast.ForecastEvent
 
 /** What enters the view. */
 enum LoopEvent:
@@ -20,7 +20,7 @@ enum LoopEvent:
   case Moved(move: Move)
 
   /** What a forecast is told of besides. */
-  case Heard(evidence: Evidence)
+  case Heard(event: ForecastEvent)
 
 /** A view and the vehicles to decide upon it. */
 final case class DecisionRequest(view: TeamView, deciders: Set[Int])

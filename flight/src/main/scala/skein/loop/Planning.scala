@@ -132,6 +132,7 @@ final case class PlanReport(
     course: Option[Course]
 )
 
+/** Which vehicles plan, and how their plans begin. */
 object Planning:
 
   /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn on the spot. */

@@ -8,7 +8,7 @@ import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, Merge, Sink}
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
 import skein.flow.*
-import skein.forecast.Evidence
+import skein.forecast.ForecastEvent
 import skein.policy.Fleet
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.EventKind
@@ -100,10 +100,10 @@ private final class TeamSteering(
   def told: Flow[Steering, LoopEvent, NotUsed] = Flow[Steering].collect(Function.unlift:
     case Steering(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
     case Steering(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
-      Some(LoopEvent.Heard(Evidence.Replaced(vehicle, decision.sequence, at)))
+      Some(LoopEvent.Heard(ForecastEvent.Replaced(vehicle, decision.sequence, at)))
     case Steering(_, Steered.Ended(_, _, Success(Right(true)))) => None
     case Steering(vehicle, Steered.Ended(decision, _, _))       =>
-      Some(LoopEvent.Heard(Evidence.Failed(vehicle, decision.sequence))))
+      Some(LoopEvent.Heard(ForecastEvent.Failed(vehicle, decision.sequence))))
 
   /** Carries the newest move of each vehicle back into the view. */
   def feedBack: Flow[Move, LoopEvent, NotUsed] =
@@ -117,9 +117,9 @@ private final class TeamSteering(
   def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
     Flow[LoopEvent]
       .map:
-        case event @ LoopEvent.Moved(move)     => ((event.ordinal, move.vehicle), event)
-        case event @ LoopEvent.Heard(evidence) => ((event.ordinal, evidence.vehicle), event)
-        case event                             => ((event.ordinal, -1), event)
+        case event @ LoopEvent.Moved(move)  => ((event.ordinal, move.vehicle), event)
+        case heard @ LoopEvent.Heard(event) => ((heard.ordinal, event.vehicle), heard)
+        case event                          => ((event.ordinal, -1), event)
       .via(FeedBack.newest)
       .map(_._2)
       .addAttributes(parts.named("feed back"))

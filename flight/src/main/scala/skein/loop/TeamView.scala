@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.policy.{Action, Fleet}
-import skein.forecast.{Estimate, Evidence, Forecast}
+import skein.forecast.{Estimate, ForecastEvent, Forecast}
 import skein.signal.{ClockAlignment, Kinematics}
 import skein.units.*
 
@@ -43,7 +43,7 @@ final case class TeamView(
     copy(
       readings = readings.updated(reading.vehicle, Some(reading)),
       alignment = Some(aligned(reading))
-    ).withEvidence(Evidence.Seen(reading.vehicle, reading.state))
+    ).withEvent(ForecastEvent.Seen(reading.vehicle, reading.state))
 
   /** Nothing changes where a newer one is held already. */
   def withSensorReading(reading: SensorReading): TeamView =
@@ -54,7 +54,7 @@ final case class TeamView(
 
   def withMove(move: Move): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
 
-  def withEvidence(evidence: Evidence): TeamView = copy(forecast = forecast.map(_.withEvidence(evidence)))
+  def withEvent(event: ForecastEvent): TeamView = copy(forecast = forecast.map(_.withEvent(event)))
 
   /** Where a vehicle is taken to be: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =

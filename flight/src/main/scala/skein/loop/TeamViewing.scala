@@ -4,7 +4,7 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.{Graph, UniformFanOutShape}
 import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
 import skein.flow.Hold
-import skein.forecast.{Commanded, Evidence, Forecast}
+import skein.forecast.{Commanded, ForecastEvent, Forecast}
 import skein.policy.Fleet
 import skein.record.EventKind
 import skein.signal.ClockAlignment
@@ -59,10 +59,10 @@ private final class TeamViewing(
             case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
             case LoopEvent.Moved(move)       =>
               val command = Commanded(move.decision, Acting.guidance(fleet, move), move.sentAt)
-              (view.withMove(move).withEvidence(Evidence.Sent(move.vehicle, command)), None)
+              (view.withMove(move).withEvent(ForecastEvent.Sent(move.vehicle, command)), None)
             case LoopEvent.Due(deciders) =>
               (view, request(view, deciders))
-            case LoopEvent.Heard(evidence) => (view.withEvidence(evidence), None)
+            case LoopEvent.Heard(event) => (view.withEvent(event), None)
         ,
         _ => None
       )

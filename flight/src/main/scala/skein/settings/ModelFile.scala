@@ -59,9 +59,12 @@ object ModelFile:
       val found      = fit.identification
       val parameters = found.parameters.map: parameter =>
         val bound = if parameter.atBound then "  # at its bound: not identified" else ""
-        s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, most = ${number(parameter.most)} }$bound"
+        s"    ${parameter.name} { value = ${number(parameter.value)}, least = ${number(parameter.least)}, " +
+          s"most = ${number(parameter.most)} }$bound"
       val errors = fit.againstQuadrotor.map: error =>
-        s"    { horizon = ${number(error.horizonS)} s, position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
+        s"    { horizon = ${number(error.horizonS)} s, " +
+          s"position-p50-m = ${number(error.positionP50M)}, position-p95-m = ${number(error.positionP95M)}, " +
+          s"velocity-p50-mps = ${number(error.velocityP50Mps)}, velocity-p95-mps = ${number(error.velocityP95Mps)} }"
       s"""  ${found.structure.label} {
          |${parameters.mkString("\n")}
          |    predictions = ${found.predictions}

@@ -5,13 +5,14 @@ import skein.scenario.Scenario
 import skein.settings.NamedScene
 import skein.units.*
 
-/** How one flight stood its faultPlan. */
+/** What one flight through faults did wrong; nothing where it is clean. */
 final case class Verdict(faultPlan: FaultPlan, violations: Vector[String]):
   def isClean: Boolean = violations.isEmpty
 
+/** Seeded flights through faults, each checked from outside. */
 object Torture:
 
-  /** Flies the faultPlan of one seed. A flight that cannot be flown to its end is a violation, too. */
+  /** Flies the fault plan of one seed. A flight that cannot be flown to its end is a violation, too. */
   def of(
       seed: Long,
       duration: Span,

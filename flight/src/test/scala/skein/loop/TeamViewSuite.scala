@@ -3,7 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
-import skein.forecast.Evidence
+import skein.forecast.ForecastEvent
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.{EventKind, MemoryRecorder, Samples}
@@ -178,9 +178,9 @@ class TeamViewSuite extends munit.FunSuite:
       told,
       Seq(
         LoopEvent.Moved(decision.move(millis(210))),
-        LoopEvent.Heard(Evidence.Replaced(1, 0, millis(400))),
-        LoopEvent.Heard(Evidence.Failed(1, 0)),
-        LoopEvent.Heard(Evidence.Failed(1, 0))
+        LoopEvent.Heard(ForecastEvent.Replaced(1, 0, millis(400))),
+        LoopEvent.Heard(ForecastEvent.Failed(1, 0)),
+        LoopEvent.Heard(ForecastEvent.Failed(1, 0))
       )
     )
 

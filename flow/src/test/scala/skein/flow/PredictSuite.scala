@@ -33,16 +33,16 @@ class PredictSuite extends munit.FunSuite:
         val sampled = Span.ofMillis(100.0 * n - 30)
         val stamps  = Stamped((), start + sampled + skew, start + sampled - oneWay, start + sampled + oneWay)
         Vector(
-          Evidence.Seen(0, stamps.map(_ => north(sampled))),
-          Evidence.Seen(1, stamps.map(_ => north(Span.Zero)))
+          ForecastEvent.Seen(0, stamps.map(_ => north(sampled))),
+          ForecastEvent.Seen(1, stamps.map(_ => north(Span.Zero)))
         )
       Source
         .tick(100.millis, 100.millis, ())
         .zipWithIndex
         .take(10)
         .map((_, n) => seen(n + 1))
-        .scan(Forecast(Vector(ConstantVelocity, ConstantVelocity)))((forecast, evidence) =>
-          evidence.foldLeft(forecast)(_.withEvidence(_))
+        .scan(Forecast(Vector(ConstantVelocity, ConstantVelocity)))((forecast, event) =>
+          event.foldLeft(forecast)(_.withEvent(_))
         )
         .map(forecast => ((), forecast))
         .via(Predict.whenActing(clock, lead = lead)(verified :+= _))
@@ -64,7 +64,7 @@ class PredictSuite extends munit.FunSuite:
     val at       = Instant.Epoch + Span.ofSeconds(1)
     val forecast = Seq(at - Span.ofMillis(50), at).foldLeft(Forecast(Vector(ConstantVelocity))):
       (known, read) =>
-        known.withEvidence(Evidence.Seen(0, Stamped(north(Span.Zero), read, read, read)))
+        known.withEvent(ForecastEvent.Seen(0, Stamped(north(Span.Zero), read, read, read)))
     val waiting = Unverified.none.withMade(at, Vector(Estimate(north(Span.ofSeconds(2)), at, at)), _ => true)
     val (left, verified) = waiting.heldAgainst(forecast)
     assertEquals((left.made, verified.map(_.error)), (Vector.empty, Vector(Metres(4))))

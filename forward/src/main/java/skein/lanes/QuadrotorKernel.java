@@ -175,18 +175,22 @@ public final class QuadrotorKernel {
     goalZ[vehicle] = downM;
   }
 
+  /** Metres, world NED. */
   public Vector3 positionNed(int vehicle) {
     return new Vector3(x[vehicle], y[vehicle], z[vehicle]);
   }
 
+  /** m/s, world NED. */
   public Vector3 velocityNed(int vehicle) {
     return new Vector3(vx[vehicle], vy[vehicle], vz[vehicle]);
   }
 
+  /** From the body, FRD, to the world, NED. */
   public Quaternion orientation(int vehicle) {
     return new Quaternion(qw[vehicle], qx[vehicle], qy[vehicle], qz[vehicle]);
   }
 
+  /** rad/s about the axes of the body, FRD. */
   public Vector3 angularVelocityFrd(int vehicle) {
     return new Vector3(wx[vehicle], wy[vehicle], wz[vehicle]);
   }

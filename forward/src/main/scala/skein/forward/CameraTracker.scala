@@ -103,9 +103,9 @@ private[skein] final class CameraTracker(
     Vector3(there.startX, there.startY, there.altitudeDownM)
 
   private def place(vehicle: Int): Vector3 =
-    val craft = world.vehicles(vehicle)
-    craft.advance(world.nowS)
-    Vector3(craft.x, craft.y, world.agents(vehicle).altitudeDownM)
+    val body = world.vehicles(vehicle)
+    body.advance(world.nowS)
+    Vector3(body.x, body.y, world.agents(vehicle).altitudeDownM)
 
   private def even(number: Int, place: Int): Double =
     (WorldRandom.bits(key, number * Delays.Lines + Delays.FirstCommand + place) >>> 8) * Step

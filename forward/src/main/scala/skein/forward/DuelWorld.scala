@@ -127,11 +127,11 @@ private[skein] final class DuelWorld(
     number
 
   private def read(vehicle: Int, number: Int): Unit =
-    val craft = vehicles(vehicle)
-    val at    = slot(vehicle, number)
-    craft.advance(nowS)
-    x(at) = craft.seenX; y(at) = craft.seenY; vx(at) = craft.seenVx; vy(at) = craft.seenVy
-    if keepsKinematics then kinematics(at) = craft.seen
+    val body = vehicles(vehicle)
+    val at   = slot(vehicle, number)
+    body.advance(nowS)
+    x(at) = body.seenX; y(at) = body.seenY; vx(at) = body.seenVx; vy(at) = body.seenVy
+    if keepsKinematics then kinematics(at) = body.seen
     validAtNs(at) = time
     observer.read(vehicle, number, time, x(at), y(at))
 

@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.forecast.{Commanded, Evidence, Forecast}
+import skein.forecast.{Commanded, ForecastEvent, Forecast}
 import skein.signal.Stamped
 import skein.units.Instant
 import skein.vehicle.Setpoint
@@ -30,7 +30,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
       Instant.ofNanos(world.receivedAtNs(at))
     )
     val before = forecast.tracks(vehicle)
-    forecast = forecast.withEvidence(Evidence.Seen(vehicle, reading))
+    forecast = forecast.withEvent(ForecastEvent.Seen(vehicle, reading))
     if before.forall(reading.validAt > _.newest.validAt) then
       world.observer.entered(
         vehicle,
@@ -54,9 +54,9 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: D
       speedMps * StrictMath.sin(headingRad),
       world.agents(agent).altitudeDownM
     )
-    forecast = forecast.withEvidence(
-      Evidence.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
+    forecast = forecast.withEvent(
+      ForecastEvent.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
     )
 
   override def replaced(agent: Int, number: Int): Unit =
-    forecast = forecast.withEvidence(Evidence.Replaced(agent, number, Instant.ofNanos(world.nowNs)))
+    forecast = forecast.withEvent(ForecastEvent.Replaced(agent, number, Instant.ofNanos(world.nowNs)))

@@ -3,7 +3,21 @@ package skein.identify
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** How far predictions over one horizon were off: half of them less than the medians, 95 % less than the others. */
+/** How far predictions over one horizon were off.
+  *
+  * @param horizonS
+  *   how far ahead was predicted, s
+  * @param predictions
+  *   how many were compared
+  * @param positionP50M
+  *   distance from the flown position, m: median
+  * @param positionP95M
+  *   its 95th percentile, m
+  * @param velocityP50Mps
+  *   difference to the flown velocity, m/s: median
+  * @param velocityP95Mps
+  *   its 95th percentile, m/s
+  */
 final case class HorizonError(
     horizonS: Double,
     predictions: Int,
@@ -13,7 +27,9 @@ final case class HorizonError(
     velocityP95Mps: Double
 )
 
+/** How far a fitted model's predictions are off after some seconds. */
 object HorizonErrors:
+  /** Seconds ahead. */
   val HorizonsS: Vector[Double] = Vector(1, 2, 5)
 
   /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons; horizons that

@@ -16,11 +16,11 @@ private[lanes] final class ViewCall(bound: BoundFunction, lanes: Int => Option[(
     var i = 0
     while i < places.length do
       val vehicle = vehicles(i)
-      val craft   = all(vehicle).vehicles
+      val body    = all(vehicle).vehicles
       val from    = fields(i) match
-        case 0 => craft.seenX
-        case 1 => craft.seenY
-        case 2 => craft.seenVx
-        case _ => craft.seenVy
+        case 0 => body.seenX
+        case 1 => body.seenY
+        case 2 => body.seenVx
+        case _ => body.seenVy
       call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
       i += 1

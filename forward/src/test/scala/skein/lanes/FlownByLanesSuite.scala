@@ -16,11 +16,11 @@ class FlownByLanesSuite extends munit.FunSuite:
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
 
   private val plants = Vector[(String, VelocityResponse)](
-    "no lag"                -> VelocityResponses.Ideal,
-    "lag"                   -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
-    "drag"                  -> ReducedResponse(ReducedModel.AirSim),
-    "a `Plant` of a user's" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
-    "the quadrotor"         -> VelocityResponses.quadrotor()
+    "no lag"           -> VelocityResponses.Ideal,
+    "lag"              -> Reduced(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "drag"             -> ReducedResponse(ReducedModel.AirSim),
+    "your own `Plant`" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
+    "the quadrotor"    -> VelocityResponses.quadrotor()
   )
 
   private def loops(model: VelocityResponse): Vector[LoopTiming] = Vector(

@@ -9,6 +9,7 @@ enum Where:
 
   case Link(client: String, server: String)
 
+/** A fault of a network: where, when, and for how long. */
 final case class NetworkFault(where: Where, timed: TimedFault)
 
 /** What lies between the hosts of a [[MemoryNetwork]].

@@ -23,6 +23,7 @@ trait Transport:
 /** One accepted connection; its flow must be materialised exactly once. */
 final case class Incoming(from: Address, flow: Flow[ByteString, ByteString, NotUsed])
 
+/** A port that accepts connections until it is closed. */
 trait Listening:
   /** Where it listens, with the actual port. */
   def address: Address

@@ -15,15 +15,15 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     body
 
   flying("AirSim's quadrotor as a model hovers, and turns as the built-in one does, within 0.8 m over 100 m"):
-    val craft          = MujocoRotorcraft(example("quadrotor"))
+    val rotorcraft     = MujocoRotorcraft(example("quadrotor"))
     val (theirs, ours) = (QuadrotorState(), QuadrotorState())
     val quadrotor      = Quadrotor.AirSim
-    for (one, state) <- Seq(craft -> theirs, quadrotor -> ours) do
+    for (one, state) <- Seq(rotorcraft -> theirs, quadrotor -> ours) do
       one.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
     var apart = 0.0
-    for turn <- 0 until 10; _ <- 0 until (2 / craft.stepS).round.toInt do
+    for turn <- 0 until 10; _ <- 0 until (2 / rotorcraft.stepS).round.toInt do
       val goal = Setpoint.velocityZ(5 * math.cos(turn), 5 * math.sin(turn), -20)
-      craft.step(theirs, goal, Environment.Calm)
+      rotorcraft.step(theirs, goal, Environment.Calm)
       quadrotor.step(ours, goal, Environment.Calm)
       apart = apart.max((theirs.positionNed - ours.positionNed).norm)
     // The air of both drags, each by its own formula.
@@ -31,34 +31,34 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
 
   flying("a vehicle that has long held its place stays there"):
     for (name, steps) <- Seq("quadrotor" -> 3000, "slung-load" -> 4000) do
-      val craft = MujocoRotorcraft(example(name))
-      val state = QuadrotorState()
-      craft.hover(state, Vector3(3, -4, -20), 0.5, Environment.Calm)
-      for _ <- 1 to steps do craft.step(state, Setpoint.hold(Vector3(3, -4, -20)), Environment.Calm)
-      val off = (state.positionNed - Vector3(3, -4, -20 + craft.hoverSagM(-20))).norm
+      val rotorcraft = MujocoRotorcraft(example(name))
+      val state      = QuadrotorState()
+      rotorcraft.hover(state, Vector3(3, -4, -20), 0.5, Environment.Calm)
+      for _ <- 1 to steps do rotorcraft.step(state, Setpoint.hold(Vector3(3, -4, -20)), Environment.Calm)
+      val off = (state.positionNed - Vector3(3, -4, -20 + rotorcraft.hoverSagM(-20))).norm
       assert(off < 0.002, s"$name: $off m off")
 
   flying("a load below a vehicle that brakes swings, and the vehicle with it"):
-    val craft = MujocoRotorcraft(example("slung-load"))
-    val state = QuadrotorState()
-    craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+    val rotorcraft = MujocoRotorcraft(example("slung-load"))
+    val state      = QuadrotorState()
+    rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
     def fly(seconds: Double, goal: Setpoint): Vector[Double] =
-      Vector.fill((seconds / craft.stepS).round.toInt):
-        craft.step(state, goal, Environment.Calm)
+      Vector.fill((seconds / rotorcraft.stepS).round.toInt):
+        rotorcraft.step(state, goal, Environment.Calm)
         state.ax
     fly(6, Setpoint.velocity(5, 0, 0))
-    val braking = fly(6, Setpoint.velocity(0, 0, 0)).drop((3 / craft.stepS).toInt)
+    val braking = fly(6, Setpoint.velocity(0, 0, 0)).drop((3 / rotorcraft.stepS).toInt)
     // Once the controller alone would have it at rest, the load still pulls to both sides.
     assert(braking.max > 0.05 && braking.min < -0.05, s"${braking.min} to ${braking.max} m/s²")
 
   flying("it stands on the ground, takes off, lands and stands again, and an object's place is not MuJoCo's"):
-    val craft       = MujocoRotorcraft(example("quadrotor"))
+    val rotorcraft  = MujocoRotorcraft(example("quadrotor"))
     val state       = QuadrotorState()
     val environment = Environment(groundDownM = 2)
-    craft.land(state, 0)
+    rotorcraft.land(state, 0)
     state.place(Vector3(0, 0, 2), state.orientation)
     def fly(seconds: Double, goal: Setpoint): Unit =
-      for _ <- 0 until (seconds / craft.stepS).toInt do craft.step(state, goal, environment)
+      for _ <- 0 until (seconds / rotorcraft.stepS).toInt do rotorcraft.step(state, goal, environment)
     fly(1, Setpoint.Armed)
     assertEquals(state.positionNed, Vector3(0, 0, 2))
     fly(8, Setpoint.velocityZ(1, 0, -5))
@@ -70,11 +70,11 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
 
   flying("wind blows it by the density that the model states"):
     def drift(model: MujocoModel) =
-      val craft = MujocoRotorcraft(model)
-      val state = QuadrotorState()
-      craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+      val rotorcraft = MujocoRotorcraft(model)
+      val state      = QuadrotorState()
+      rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
       val level = Setpoint.anglesZ(0, 0, 0, -20)
-      for _ <- 1 to 1000 do craft.step(state, level, Environment(windNed = Vector3(8, 0, 0)))
+      for _ <- 1 to 1000 do rotorcraft.step(state, level, Environment(windNed = Vector3(8, 0, 0)))
       state.x
     val (blown, still) = (drift(example("quadrotor")), drift(changed("density=\"1.2\"", "density=\"0\"")))
     assert(blown > 0.5, blown)
@@ -100,21 +100,21 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       assert(together.x(place).abs > 1, together.x(place))
 
   flying("a rotor's own control is a share of its actuator's range"):
-    val craft = MujocoRotorcraft(example("slung-load"))
-    val state = QuadrotorState()
-    craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+    val rotorcraft = MujocoRotorcraft(example("slung-load"))
+    val state      = QuadrotorState()
+    rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
     // Those at the right push up: it rolls to the left.
-    for _ <- 1 to 20 do craft.step(state, Setpoint.rotors(0.6, 0.4, 0.4, 0.6), Environment.Calm)
+    for _ <- 1 to 20 do rotorcraft.step(state, Setpoint.rotors(0.6, 0.4, 0.4, 0.6), Environment.Calm)
     assert(state.wx < -0.3, state.angularVelocityFrd)
     assertEqualsDouble(state.wy, 0, 0.05)
 
   flying("MuJoCo's memory of models that nobody has any more is freed"):
     val before = NativeMemory.freed
     for _ <- 1 to 3 do
-      val craft = MujocoRotorcraft(read(path("quadrotor")))
-      val state = QuadrotorState()
-      craft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
-      craft.step(state, Setpoint.hold(Vector3(0, 0, -20)), Environment.Calm)
+      val rotorcraft = MujocoRotorcraft(read(path("quadrotor")))
+      val state      = QuadrotorState()
+      rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
+      rotorcraft.step(state, Setpoint.hold(Vector3(0, 0, -20)), Environment.Calm)
     // Each has a model, what it was measured by, and what it flies by.
     val until = System.nanoTime + 60_000_000_000L
     while NativeMemory.freed < before + 9 && System.nanoTime < until do

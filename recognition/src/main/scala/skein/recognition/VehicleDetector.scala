@@ -9,10 +9,10 @@ import skein.units.*
 /** Finds a vehicle by its looks: the box of the highest score. Which of several it is, it does not know. The bearing is that
   * of the box's middle; the range follows from the box's width.
   *
-  * @param looks
+  * @param appearance
   *   how wide what is looked for appears
   */
-final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, looks: VehicleDetector.Looks)
+final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance: VehicleDetector.Appearance)
     extends Recogniser:
 
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]] =
@@ -27,19 +27,20 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, looks: Vehi
     val f     = camera.focalPx
     val right = ((box.left + box.right) / 2 - camera.width / 2.0) / f
     val down  = ((box.top + box.bottom) / 2 - camera.height / 2.0) / f
-    val depth = f * looks.width.value / box.width * math.sqrt(1 + right * right)
+    val depth = f * appearance.width.value / box.width * math.sqrt(1 + right * right)
     val point = Vector3(1, right, down) * depth
-    val angle = Radians(StrictMath.hypot(looks.deviationPx, looks.middleShare * box.width) / f)
+    val angle = Radians(StrictMath.hypot(appearance.deviationPx, appearance.middleShare * box.width) / f)
     // What the image's border cuts may be nearer by any share.
-    val isCut = box.left < looks.deviationPx || box.right > camera.width - looks.deviationPx
-    val share = if isCut then 1.0 else StrictMath.hypot(looks.widthShare, looks.deviationPx / box.width)
+    val isCut = box.left < appearance.deviationPx || box.right > camera.width - appearance.deviationPx
+    val share =
+      if isCut then 1.0 else StrictMath.hypot(appearance.widthShare, appearance.deviationPx / box.width)
     PolarMeasurement.of(
       point,
       (azimuth = angle, elevation = angle, range = Metres(point.norm * share))
     )
 
 object VehicleDetector:
-  /** How something looks.
+  /** How something looks to a detector.
     *
     * @param width
     *   its mean width, over all sides that it may show
@@ -50,13 +51,13 @@ object VehicleDetector:
     * @param deviationPx
     *   standard deviation of a box's middle, and of its width, besides, in the camera's pixels
     */
-  final case class Looks(width: Metres, widthShare: Double, middleShare: Double, deviationPx: Double)
+  final case class Appearance(width: Metres, widthShare: Double, middleShare: Double, deviationPx: Double)
 
-  object Looks:
+  object Appearance:
     /** The built-in simulator's quadrotor as the shipped model sees it: `recognition/Test/runMain
       * skein.recognition.measureDetector`.
       */
-    val Quadrotor: Looks = Looks(Metres(0.6), 0.15, 0.03, 1.5)
+    val Quadrotor: Appearance = Appearance(Metres(0.6), 0.15, 0.03, 1.5)
 
   /** With the model that comes with this library, trained on images of the built-in simulator
     * (`examples/onnx-detector`). It looks at every second pixel.
@@ -71,7 +72,7 @@ object VehicleDetector:
     val form = model.input match
       case Vector(_, _, height, width) if height > 0 && width > 0 => InputForm(width, height)
       case _ => InputForm((camera.width / 2).max(1), (camera.height / 2).max(1))
-    VehicleDetector(camera, OnnxDetector(model, form), Looks.Quadrotor)
+    VehicleDetector(camera, OnnxDetector(model, form), Appearance.Quadrotor)
 
   /** One for all: a session answers several threads at once. */
   private[recognition] lazy val model: Either[String, OnnxModel] = OnnxRuntime.present:

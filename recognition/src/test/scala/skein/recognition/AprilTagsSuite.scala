@@ -12,7 +12,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
   private val tags   = AprilTags(camera, Metres(size))
 
   private def found(id: Int, positionFrd: Vector3, turned: Double): Vector[Tag] =
-    tags.find(TagPicture(camera, id, size, positionFrd, turned)).fold(fail(_), identity)
+    tags.find(TagImage(camera, id, size, positionFrd, turned)).fold(fail(_), identity)
 
   test("every tag at 2 to 8 m is found, its position within 2 % at the median, and as exact as it says"):
     val random = SplitMix64(1)
@@ -36,7 +36,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     assert(inDeviations.count(_ < 2) > 0.8 * runs.size, inDeviations.sorted)
 
   test("a tag becomes a measurement at the image's exposure, seen from where the camera was"):
-    val image = TagPicture(camera, 7, size, Vector3(4, 0, 0), 0).copy(
+    val image = TagImage(camera, 7, size, Vector3(4, 0, 0), 0).copy(
       positionNed = Vector3(10, 0, -20),
       orientation = Quaternion(math.sqrt(0.5), 0, 0, math.sqrt(0.5))
     )
@@ -48,7 +48,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     assert(measured.covariance.yy > measured.covariance.xx, "the range is less certain than the bearing")
 
   test("nothing is found where there is nothing, and what is no image of this camera is told"):
-    val grey  = TagPicture(camera, 7, size, Vector3(-4, 0, 0), 0)
+    val grey  = TagImage(camera, 7, size, Vector3(-4, 0, 0), 0)
     val blank = grey.copy(pixels = Pixels.Bgr(Bytes(new Array[Byte](1280 * 720 * 3), 0, 1280 * 720 * 3)))
     assertEquals(tags.find(blank), Right(Vector.empty))
     assertEquals(

@@ -48,7 +48,7 @@ object DetectorAccuracy:
       VehicleDetector.model.fold(sys.error, identity),
       InputForm(Camera.width / 2, Camera.height / 2)
     )
-    val told    = VehicleDetector(Camera, detector, VehicleDetector.Looks.Quadrotor)
+    val told    = VehicleDetector(Camera, detector, VehicleDetector.Appearance.Quadrotor)
     val images  = DroneImages(Camera, seed)
     var falsely = 0
     val rows    = ranges.toVector.map: range =>

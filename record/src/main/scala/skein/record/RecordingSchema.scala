@@ -14,9 +14,16 @@ object RecordingSchema:
   private val introduction =
     """# What a recording contains
       |
-      |A recording is one DuckDB file. Open it with any DuckDB client. `./skein export FILE --parquet DIR` turns it into Parquet, `./skein export FILE --mcap FILE` into a file for [Foxglove](guides/foxglove.md).
+      |A recording is one DuckDB file. Open it with any DuckDB client.
+      |`./skein export FILE --parquet DIR` turns it into Parquet, `./skein export FILE --mcap FILE` into a file for
+      |[Foxglove](guides/foxglove.md).
       |
-      |Names of columns end in their unit: `Ns` whole nanoseconds, `Ms` milliseconds, `M` metres, `Mps` metres per second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are the world frame; `Front`, `Right`, `Down` the body's. `validAtNs` (also `ownValidAtNs` and the like), `actsAtNs` and `predictedForNs` are on the simulator's clock, all other instants on the controller's. `sequence` counts the rows of a vehicle; other tables refer to it. Every table begins with `row`, the order in which all rows of the flight were accepted.
+      |Names of columns end in their unit: `Ns` whole nanoseconds, `Ms` milliseconds, `M` metres, `Mps` metres per
+      |second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are axes of the world frame;
+      |`Front`, `Right`, `Down` those of the body frame. `validAtNs` (also `ownValidAtNs` and similar), `actsAtNs` and
+      |`predictedForNs` are on the simulator's clock, all other instants on the controller's. `sequence` counts the rows
+      |of a vehicle; other tables refer to it. Every table begins with `row`, the order in which all rows of the flight
+      |were accepted.
       |
       |```sql
       |-- how old the data of each vehicle's decisions was, by the simulator's clock
@@ -30,25 +37,34 @@ object RecordingSchema:
     case "vehicle"   => "One row for each vehicle; `start…` is its own frame's origin in the world frame."
     case "reading"   => "One row for each answer of the simulator."
     case "decision"  =>
-      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count from a reading's arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the bound of their error. `relativeX` and `relativeY` are the evader seen from the pursuer, along its commanded heading and to the right of it (for other roles, the opponent seen from the vehicle). `elapsed` is the time since the vehicle's last decision, `actsAt` when the command acts by the forecast."
+      "One row for each decision, with the readings it was made from. `ownAge` and `opponentAge` count from a reading's " +
+        "arrival, as in the paper; `ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the " +
+        "bound of their error. `relativeX` and `relativeY` are the position of the evader relative to the pursuer, " +
+        "along its commanded heading and to the right of it (for other roles, of the opponent relative to the " +
+        "vehicle). `elapsed` is the time since the vehicle's last decision, `actsAt` the predicted time at which the " +
+        "command acts."
     case "sighting"    => "The readings of the other vehicles that a decision for a team was made from."
     case "measurement" => "One row for each answer of a sensor; `quantities` names its numbers, with units."
     case "sensing"     =>
       "The measurements that a decision was made from: one row for each sensor that its policy reads."
     case "image" =>
-      "One row for each image, where images are recorded (`fly --images`). `pixels` are compressed by Zstandard: rows from the top, `bgr8` or, as numbers of 32 bits, `32FC1`. Position and orientation are the camera's at its exposure."
+      "One row for each image, if images are recorded (`fly --images`). `pixels` are compressed by Zstandard: rows from " +
+        "the top, `bgr8`, or `32FC1` as numbers of 32 bits. Position and orientation are the camera's at the exposure."
     case "cloud" =>
-      "One row for each scan of a lidar, where these are recorded. `xyz` are compressed by Zstandard: three numbers of 32 bits a point, in the lidar's frame."
+      "One row for each scan of a lidar, if scans are recorded. `xyz` are compressed by Zstandard: three numbers of 32 " +
+        "bits for each point, in the lidar's frame."
     case "plan" =>
-      "How a plan was found: candidates, slices of each search, cost, broken limits; and where it leads, from the moment at which its command acts, a place for each step."
+      "How a plan was found: candidates, slices of each search, cost, broken limits; and the planned path, from the " +
+        "moment at which its command acts, a position for each step."
     case "solved" =>
-      "Decisions that were made in another process: when the question left and the answer came, and how long the solver took. Questions that are missing were not answered in time."
+      "Decisions that were made in another process: when the question left and the answer came, and how long the " +
+        "solver took. Questions without a row were not answered in time."
     case "prediction"      => "Predictions that a later reading could be compared with, and their errors."
     case "command"         => "One row for each command as it was sent."
     case "acknowledgement" => "How each command ended."
     case "latency"         => "Round trips over the link."
     case "event"           =>
-      "What the loop did not want: every drop, skip, time-out, reconnect; and what a learner beside it says."
-    case "truth"  => "Where vehicles were, where that is sampled apart from the readings."
-    case "ending" => "How the flight ended: one row, none where the recording broke off before."
+      "Everything unusual: every drop, skip, time-out and reconnection; and messages of a learner beside the loop."
+    case "truth"  => "True positions of vehicles, if they are sampled apart from the readings."
+    case "ending" => "How the flight ended: one row, or none if the recording is incomplete."
     case other    => throw IllegalArgumentException(s"table $other has no description")

@@ -48,6 +48,7 @@ object Placement:
       )
     )
 
+/** Products of vectors. */
 extension (a: Vector3)
   private[scene] def dot(b: Vector3): Double    = a.x * b.x + a.y * b.y + a.z * b.z
   private[scene] def cross(b: Vector3): Vector3 =

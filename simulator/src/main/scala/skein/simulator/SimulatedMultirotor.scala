@@ -9,12 +9,12 @@ import skein.vehicle.*
 /** One multirotor: its physics and what AirSim's SimpleFlight firmware keeps beside them (`OffboardApi`). */
 final private[simulator] class SimulatedMultirotor(
     settings: VehicleSettings,
-    craft: Rotorcraft,
+    rotorcraft: Rotorcraft,
     worldOrigin: GeoLocation
 ) extends SimulatedVehicle(settings, worldOrigin):
   val state: QuadrotorState = QuadrotorState()
 
-  private var tuned       = craft
+  private var tuned       = rotorcraft
   private var environment =
     Environment(groundDownM = math.max(0, -settings.startNed.z), originAltitudeM = home.altitude.value)
   private var goal        = Setpoint.Disarmed
@@ -35,13 +35,13 @@ final private[simulator] class SimulatedMultirotor(
   /** How often it was put somewhere else than where it flew. */
   def jumps: Long = jumped
 
-  def airframe: Airframe = craft.airframe
+  def airframe: Airframe = rotorcraft.airframe
 
   reset(Instant.Epoch)
 
   /** Back to the start, without api control; armed if the settings say so. */
   def reset(at: Instant): Unit =
-    craft.land(state, settings.yaw.value)
+    rotorcraft.land(state, settings.yaw.value)
     jumped += 1
     state.grounded = environment.groundDownM == 0
     sampledAt = at
@@ -144,8 +144,8 @@ final private[simulator] class SimulatedMultirotor(
     */
   def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
-    val hold = positionNed - Vector3(0, 0, craft.hoverSagM(positionNed.z, environment))
-    craft.hover(state, hold, yawRad, environment)
+    val hold = positionNed - Vector3(0, 0, rotorcraft.hoverSagM(positionNed.z, environment))
+    rotorcraft.hover(state, hold, yawRad, environment)
     // Exactly there, whatever the sum of hold and sag was rounded to.
     state.place(positionNed, state.orientation)
     flown = true
@@ -162,7 +162,7 @@ final private[simulator] class SimulatedMultirotor(
 
   /** Sets them; all controllers start anew. */
   def tune(gains: CascadeGains): Unit =
-    tuned = craft.tuned(gains)
+    tuned = rotorcraft.tuned(gains)
     state.restartController()
 
   /** Puts it into this state of motion, in its own frame; its flight controller is not asked. It stands on nothing. */
@@ -217,7 +217,7 @@ final private[simulator] class SimulatedMultirotor(
     if !armed then Setpoint.Disarmed
     else
       val sticks   = if remote.is_valid then remote else RcData.Absent
-      val tilt     = craft.gains.maxTilt
+      val tilt     = rotorcraft.gains.maxTilt
       val roll     = sticks.roll * tilt
       val pitch    = -sticks.pitch * tilt
       val throttle = math.max(sticks.throttle.toDouble, Setpoint.Armed.third)

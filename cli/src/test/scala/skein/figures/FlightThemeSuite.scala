@@ -6,11 +6,12 @@ import skein.report.DuelReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
 
-class LooksSuite extends munit.FunSuite:
+class FlightThemeSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
   test("every loop has a colour of its own, and one that is not known has another"):
-    val colours = LoopKind.values.toVector.map(loop => Looks.of(loop.label)) :+ Looks.of("a loop to come")
+    val colours =
+      LoopKind.values.toVector.map(loop => FlightTheme.of(loop.label)) :+ FlightTheme.of("a loop to come")
     assertEquals(colours.distinct.size, LoopKind.values.length + 1)
 
   test("flights stand in the order of the loops, whatever order they came in"):

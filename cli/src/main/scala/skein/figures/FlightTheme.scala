@@ -5,7 +5,7 @@ import skein.measure.FlightSummary
 import skein.plot.{Colour, Point, Shape, Stroke}
 
 /** One colour per loop in every picture: Okabe and Ito's palette, told apart by colour-blind readers too. */
-object Looks:
+object FlightTheme:
   private def of(loop: LoopKind): Colour = loop match
     case LoopKind.Paused     => Colour(0x404040)
     case LoopKind.Sequential => Colour(0xd55e00)

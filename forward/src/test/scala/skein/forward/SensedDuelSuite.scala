@@ -8,7 +8,7 @@ import skein.simd.WorldRandom
 import skein.units.*
 
 /** Pursuers that know of their evaders by a sensor's model alone. */
-class SightSuite extends munit.FunSuite:
+class SensedDuelSuite extends munit.FunSuite:
   private val exact = SensorModel(
     everyS = 0.02,
     fovRad = 3.1,

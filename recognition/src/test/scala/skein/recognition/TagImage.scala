@@ -5,7 +5,7 @@ import skein.rpc.Bytes
 import skein.units.*
 
 /** Draws a tag as a pinhole camera sees it, nine rays a pixel, on a ground of changing grey. */
-object TagPicture:
+object TagImage:
   private val patterns = AprilTags.dictionary()
 
   /** @param positionFrd

@@ -1,0 +1,68 @@
+package skein.docs
+
+import com.typesafe.config.{ConfigFactory, ConfigObject, ConfigRenderOptions, ConfigValue}
+import scala.jdk.CollectionConverters.*
+import skein.cli.OurScenarios
+import skein.settings.ConfigKeys
+
+/** All settings with their defaults as a page of the documentation: from `reference.conf` and its comments, and from the
+  * scenarios.
+  */
+object ConfigurationReference:
+  private val file = "flight/src/main/resources/reference.conf"
+
+  def markdown: String =
+    val settings = ConfigFactory.parseFile(Documentation.root.resolve(file).toFile)
+    val fly      = settings.getObject("skein.fly")
+    val nested   = inOrder(fly).collect { case (name, inner: ConfigObject) => (name, inner) }
+    Vector(
+      introduction,
+      table(fly),
+      nested.map((name, inner) => s"## $name\n\n${comment(inner)}\n\n${table(inner)}").mkString("\n"),
+      s"## Scenarios\n\n$scenariosComment\n\n$scenarios"
+    ).mkString("\n")
+
+  private val introduction =
+    s"""# Configuration
+       |
+       |`./skein fly --config FILE` reads settings from a file in [HOCON](https://github.com/lightbend/config/blob/main/HOCON.md), a superset of JSON. Most settings are options of the command too, and an option counts before the file. What neither names has the default of this page, which is made from [reference.conf](../$file). A setting that does not exist is refused, with the nearest one that does.
+       |
+       |```
+       |skein.fly {
+       |  loops = [stream, predictive]
+       |  links = ["lognormal:60ms,0.4"]
+       |  planning { deadline = 40 ms }
+       |}
+       |```
+       |
+       |## skein.fly
+       |""".stripMargin
+
+  private val scenariosComment =
+    "A scenario's settings stand under its name, for example `skein.fly { surround { ring-m = 10 } }`. " +
+      "On the command line it is `--set ring-m=10`. `./skein scenarios` lists them too, those of your own program among them."
+
+  private def inOrder(of: ConfigObject): Vector[(String, ConfigValue)] =
+    of.asScala.toVector.sortBy(_._2.origin.lineNumber)
+
+  private def comment(of: ConfigValue): String =
+    of.origin.comments.asScala.map(_.trim).mkString(" ").trim
+
+  private def table(of: ConfigObject): String =
+    val rows = inOrder(of).collect {
+      case (name, value) if !value.isInstanceOf[ConfigObject] =>
+        s"| `$name` | `${text(value)}` | ${comment(value).replace("|", "\\|")} |\n"
+    }
+    s"| setting | default | meaning |\n|---|---|---|\n${rows.mkString}"
+
+  private def text(value: ConfigValue): String = value.unwrapped match
+    case text: String => text
+    case _            => value.render(ConfigRenderOptions.concise).replace("\"", "").replace(",", ", ")
+
+  private def scenarios: String =
+    val rows =
+      for
+        kind          <- OurScenarios.all.kinds
+        (name, value) <- kind.standard.settings
+      yield s"| ${kind.name} | `${ConfigKeys.ofField(name)}` | `$value` |\n"
+    s"| scenario | setting | default |\n|---|---|---|\n${rows.mkString}"
