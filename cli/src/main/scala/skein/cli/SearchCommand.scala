@@ -78,7 +78,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _ <- OutFolder.alone(folder):
         options.view.serving("search"): task =>
           EpisodeRunner.using(cluster, program, ready, question, folder, threads, block, shown): runner =>
-            SearchJob(ready, question, folder, threads, runner, shown, task)
+            SearchJob(ready, question, folder, runner, shown, task)
               .run(state.getOrElse(ready.search.start))
     yield ()
 

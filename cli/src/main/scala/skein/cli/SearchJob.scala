@@ -11,12 +11,14 @@ private[cli] final class SearchJob(
     ready: ReadySearch,
     question: SearchFile.Question,
     folder: Path,
-    threads: Int,
     runner: EpisodeRunner,
     shown: Shown,
     task: TaskShow
 ):
   import SearchJob.*
+
+  /** Notes who does not fly as the others do. */
+  private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
 
   private val onShow = SearchOnShow(task, ready.title, ready.search.expected, ready.measure)
 
@@ -29,7 +31,7 @@ private[cli] final class SearchJob(
       var last      = from
       runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
-        SearchRun(ready.search, question, runner(Judge.Candidates), folder, () => System.nanoTime())
+        SearchRun(ready.search, question, candidates, folder, () => System.nanoTime())
           .run(from, () => stopped): state =>
             last = state
             line.show(state.flown, progress(state))
@@ -42,6 +44,7 @@ private[cli] final class SearchJob(
         say(
           f"$flown%,d episodes of ${ready.conditions.duel.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
+        candidates.others(ready.engine(ready.space.defaults, Judge.Candidates)).foreach(say)
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else conclude(state).map(_ => if !state.isDone then say(goOn))
@@ -57,9 +60,7 @@ private[cli] final class SearchJob(
        |loop ${ready.under}, every ${(ready.conditions.timing.periodS * 1000).significant(
         4
       )} ms; ${ready.conditions.vehicle.description}
-       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engine(
-        threads
-      )}""".stripMargin
+       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engines}""".stripMargin
 
   private def progress(state: SearchState): String =
     state.best.fold("no candidate measured yet"): best =>

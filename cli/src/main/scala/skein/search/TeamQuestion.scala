@@ -186,9 +186,16 @@ final case class TeamSetup(
       .ofKeys(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  def engine(threads: Int): String = batch(threads).engine(candidate(space.defaults))
+  def engine(candidate: Vector[Double], judge: Judge): String =
+    val team = this.candidate(candidate)
+    val told = asked.engine(team)
+    if judge == Judge.Candidates || !asked.fliesByLanes(team) then told
+    else s"$told, after a scalar flight of each episode, which makes its timetable"
 
-  def byLanes: Boolean = batch(1).fliesByLanes(candidate(space.defaults))
+  def byLanes: Boolean = asked.fliesByLanes(candidate(space.defaults))
+
+  /** Is asked what flies, and flies nothing. */
+  private lazy val asked = batch(1)
 
   def effort: Effort = Effort.ofTeam(byLanes)
 

@@ -31,7 +31,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
 
   test("the best settings of a scenario are found by lanes, and flown as they are written down"):
     val ready = setup()
-    assert(ready.engine(2).startsWith("SIMD"), ready.engine(2))
+    assert(ready.engines.startsWith("SIMD"), ready.engines)
     val judges = ready.judges(2)
     val found  = SearchResult.measured(ready, judges, ended(ready.search, judges(Judge.Candidates)), 4)
     assert(found.fresh.mean < found.baseline.mean, SearchResult(ready, found).summary)

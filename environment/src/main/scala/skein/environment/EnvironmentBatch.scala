@@ -7,6 +7,7 @@ import skein.lanes.SteppedDuels.WORLDS
 import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.simd.LaneMath
 import skein.units.Expect
 
 /** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for from outside
@@ -45,6 +46,12 @@ final class EnvironmentBatch private (
     case side: ScenarioSide =>
       Array(ScenarioGroup(side, autoreset, count, EnvironmentBuffers(block, 1, count)))
   private var isReset = false
+
+  /** What flies the environments, in a line for the user. */
+  val engine: String = config match
+    case _: EnvironmentSettings.Resolved => s"SIMD, ${LaneMath.LANES} environments at a time"
+    case side: ScenarioSide              =>
+      s"scalar: environments of ${side.scenario.name} fly one by one; those of the duel fly by lanes"
 
   /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides, from their
     * next episodes on.
