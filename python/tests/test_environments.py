@@ -214,6 +214,9 @@ def _walk(env):
 def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):
     from skein_uav.served import Server
 
+    with contextlib.closing(make(3, backend="socket")) as env:
+        assert env.engine.startswith("SIMD, ")
+
     expected = _walk(make(3))
     with Server() as server:
         backend = f"unix:{server.path}"
@@ -249,6 +252,7 @@ def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):
 def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
     settings = {"scenario": "surround", "settings": {"vehicles": 4}, "objective": "off-ring", "episode_s": 3.0}
     with contextlib.closing(gym.make_vec("skein_uav/Pursuit-v0", num_envs=3, link="vpn", **settings)) as env:
+        assert env.unwrapped.engine.startswith("scalar: environments of surround")
         seen, _ = env.reset(seed=1)
         assert len({tuple(row[:2]) for row in seen}) == 3
         rewards = np.zeros(3)

@@ -27,6 +27,8 @@ class Backend(Protocol):
 
     def close(self) -> None: ...
 
+    def engine(self) -> str: ...
+
 
 class Block:
     """The arrays that a batch of environments shares with who flies it, all views of one block of bytes.
@@ -105,6 +107,9 @@ class InProcess:
 
     def close(self) -> None:
         self._batch.close()
+
+    def engine(self) -> str:
+        return str(self._batch.engine())
 
     def _told(self, call: Any) -> Any:
         try:

@@ -117,6 +117,12 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     backend : {'process', 'socket', 'unix:PATH'}
         Java in this process; in one of its own; in that of a :class:`skein_uav.served.Server`, for processes that fork.
 
+    Attributes
+    ----------
+    engine : str
+        What flies: those of the duel fly side by side (``SIMD, …``), those of another scenario one by one
+        (``scalar: …``), some hundred times slower.
+
     Raises
     ------
     ValueError
@@ -189,6 +195,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         self._actions = self._block.actions[0]
         self._all = np.ones(num_envs, dtype=np.bool_)
         self._is_reset = False
+        self.engine = self._backend.engine()
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -303,6 +310,7 @@ class PursuitEnv(gym.Env[Floats, Floats]):
     def __init__(self, render_mode: str | None = None, **settings: Any) -> None:
         self._one = PursuitVectorEnv(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **settings)
         self.render_mode = render_mode
+        self.engine = self._one.engine
         self.observation_space = self._one.single_observation_space
         self.action_space = self._one.single_action_space
 

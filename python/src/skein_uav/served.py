@@ -107,6 +107,11 @@ class Served:
     def step(self) -> None:
         self._ask(b"\x01")
 
+    def engine(self) -> str:
+        self._ask(b"\x04")
+        (length,) = struct.unpack(">i", self._receive(4))
+        return self._receive(length).decode()
+
     def close(self) -> None:
         self._socket.close()
         if self._server is not None:

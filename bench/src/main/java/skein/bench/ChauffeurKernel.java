@@ -7,7 +7,7 @@ import static jdk.incubator.vector.VectorOperators.LSHL;
 import static jdk.incubator.vector.VectorOperators.LSHR;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.XOR;
-import static skein.simd.LaneMath.HALF_PI;
+import static skein.bench.SinCos.sinCos;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.ONE;
@@ -15,7 +15,6 @@ import static skein.simd.LaneMath.SPECIES;
 import static skein.simd.LaneMath.ZERO;
 import static skein.simd.LaneMath.atan2;
 import static skein.simd.LaneMath.constant;
-import static skein.simd.LaneMath.sinCos;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
@@ -50,6 +49,7 @@ public final class ChauffeurKernel {
   private static final float LAG_S = 0.5f;
   private static final float RADIUS_M = 8f;
 
+  private static final FloatVector HALF_PI = constant(1.57079633f);
   private static final FloatVector STEP = constant(TICK_S);
   private static final FloatVector KEEP = constant((float) Math.exp(-TICK_S / LAG_S));
   private static final FloatVector GAIN =

@@ -10,6 +10,8 @@ import upickle.default.{ReadWriter, macroRW, write}
   *
   * @param policy
   *   or scenario
+  * @param engine
+  *   what flew it, in a line
   * @param marks
   *   named links with what was flown over them as they were measured
   */
@@ -20,6 +22,7 @@ final case class BudgetMap(
     unit: String,
     vehicles: String,
     policy: String,
+    engine: String,
     tolerance: Tolerance,
     episodes: Int,
     budget: LatencyBudget,
@@ -95,6 +98,7 @@ object BudgetMap:
       loop: String,
       periodMs: Double,
       vehicles: String,
+      engine: String,
       objective: String,
       unit: String,
       latencies: String,
@@ -115,6 +119,7 @@ object BudgetMap:
       map.loop,
       map.periodMs,
       map.vehicles,
+      map.engine,
       map.objective,
       map.unit,
       map.legs.text,

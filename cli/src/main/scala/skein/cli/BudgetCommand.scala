@@ -234,6 +234,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
           subject.unit,
           subject.vehicles,
           subject.label,
+          sweep.engine,
           tolerance,
           sweep.episodes,
           budget,

@@ -142,7 +142,7 @@ final class LearnCommand(program: String)(using Scenarios)
          |loop ${question.conditions.loop} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
-         |${question.environments} environments, ${setup.rounds * setup.stepsOfRound} steps""".stripMargin
+         |${question.environments} environments, ${setup.rounds * setup.stepsOfRound} steps; engine: ${setup.engine}""".stripMargin
     )
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):

@@ -18,6 +18,9 @@ private[cli] final class SearchJob(
 ):
   import SearchJob.*
 
+  /** Notes who does not fly as the others do. */
+  private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
+
   private val onShow = SearchOnShow(task, ready.title, ready.search.expected, ready.measure)
 
   def run(from: SearchState): Either[String, Unit] =
@@ -29,7 +32,7 @@ private[cli] final class SearchJob(
       var last      = from
       runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
-        SearchRun(ready.search, question, runner(Judge.Candidates), folder, () => System.nanoTime())
+        SearchRun(ready.search, question, candidates, folder, () => System.nanoTime())
           .run(from, () => stopped): state =>
             last = state
             line.show(state.flown, progress(state))
@@ -42,6 +45,7 @@ private[cli] final class SearchJob(
         say(
           f"$flown%,d episodes of ${ready.durationS}%.0f s flown in $seconds%.1f s, ${flown / seconds.max(1e-3)}%,.0f a second"
         )
+        candidates.others(ready.engine(ready.space.defaults, Judge.Candidates)).foreach(say)
         val goOn = s"stopped; ./skein search --resume $folder goes on"
         if state.best.isEmpty then Right(shown.tables(Nil, goOn))
         else conclude(state).map(_ => if !state.isDone then say(goOn))
@@ -55,9 +59,9 @@ private[cli] final class SearchJob(
     val axes = shownAxes.mkString(", ") + (if more > 0 then s" and $more more" else "")
     s"""${ready.text}: ${ready.subject(axes)}
        |loop ${ready.under}, every ${ready.periodMs.significant(4)} ms; ${ready.vehicles}
-       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engine(
+       |${ready.method}, about ${ready.search.expected} episodes; engine: ${ready.engines}${ready.rate(
         threads
-      )}""".stripMargin
+      ).fold("")("; " + _)}""".stripMargin
 
   private def progress(state: SearchState): String =
     state.best.fold("no candidate measured yet"): best =>

@@ -46,8 +46,19 @@ trait ReadySearch:
       episodes: Range
   ): (RunningStats, RunningStats)
 
-  /** A line that says what flies the candidates. */
-  def engine(threads: Int): String
+  /** A line that says what flies a candidate, or the baseline, where it is judged. */
+  def engine(candidate: Vector[Double], judge: Judge): String
+
+  /** What flies the candidates, and where it is something else, what flies the winner's fresh episodes and the baseline's. */
+  final def engines: String =
+    val together = engine(space.defaults, Judge.Candidates)
+    val fresh    =
+      Vector(engine(space.defaults, Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
+    together + (if fresh == Vector(together) then ""
+                else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
+
+  /** How many episodes are flown in a second, for people; where that is few, by flying one. */
+  def rate(threads: Int): Option[String] = None
 
   /** Whether many candidates that meet the same episodes fly by lanes. */
   def byLanes: Boolean

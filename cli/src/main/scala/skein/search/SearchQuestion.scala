@@ -191,17 +191,20 @@ final case class SearchSetup(
 
   def effort: Effort = Effort.of(byLanes, fliesByLanes(together = false), conditions.vehicle)
 
-  def engine(threads: Int): String =
-    val (pursuer, evader) = pair
-    batch(threads).engine(pursuer, evader, shareEpisodes = true, Seq(delays))
+  def engine(candidate: Vector[Double], judge: Judge): String =
+    val of                = if judge == Judge.Baseline then paper.family else family
+    val (pursuer, evader) = pair(of.policy(candidate))
+    asked.engine(pursuer, evader, shareEpisodes = judge == Judge.Candidates, Seq(delays))
 
   private def fliesByLanes(together: Boolean) =
-    val (pursuer, evader) = pair
-    batch(1).fliesByLanes(pursuer, evader, shareEpisodes = together, Seq(delays))
+    val (pursuer, evader) = pair(family.defaultPolicy)
+    asked.fliesByLanes(pursuer, evader, shareEpisodes = together, Seq(delays))
 
-  private def pair: (Policy, Policy) =
-    if role == Role.Pursuer then (family.defaultPolicy, opponent.policy)
-    else (opponent.policy, family.defaultPolicy)
+  /** Is asked what flies, and flies nothing. */
+  private lazy val asked = batch(1)
+
+  private def pair(of: Policy): (Policy, Policy) =
+    if role == Role.Pursuer then (of, opponent.policy) else (opponent.policy, of)
 
   /** As a policy file. */
   def file(found: Found): (String, String) =

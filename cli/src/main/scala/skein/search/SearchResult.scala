@@ -24,21 +24,27 @@ final case class SearchResult(ready: ReadySearch, found: Found):
 
   /** As a table: what was found, and the baseline beside it. */
   def section: Section =
-    def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats) = Vector(
+    def row(name: String, parameters: Seq[(String, Double)], tally: RunningStats, engine: String) = Vector(
       name,
       parameters.map((parameter, value) => s"$parameter = $value").mkString(", "),
       tally.mean.toString,
       tally.halfWidth95.toString,
       tally.count.toString,
-      ready.unit
+      ready.unit,
+      engine
     )
     Section(
       s"${ready.formula}, on fresh episodes",
       table = Some(TextTable(
-        Vector("<policy", "<parameters", "mean", "± 95 %", "episodes", "<unit"),
+        Vector("<policy", "<parameters", "mean", "± 95 %", "episodes", "<unit", "<engine"),
         Vector(
-          row(ready.name, parameters, fresh),
-          row(ready.baseline.name, ready.baseline.parameters, baseline)
+          row(ready.name, parameters, fresh, ready.engine(found.best, Judge.Winner)),
+          row(
+            ready.baseline.name,
+            ready.baseline.parameters,
+            baseline,
+            ready.engine(ready.baseline.candidate, Judge.Baseline)
+          )
         )
       ))
     )

@@ -230,9 +230,17 @@ final case class TeamSetup(
       .ofKeys(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  def engine(threads: Int): String = flownBy match
-    case TeamEngine.Reduced(conditions, _) => batch(conditions, threads).engine(candidate(space.defaults))
-    case TeamEngine.Whole(flights, _)      => flights.engine(scenario(space.defaults), objective, threads)
+  def engine(candidate: Vector[Double], judge: Judge): String = flownBy match
+    case TeamEngine.Reduced(conditions, _) =>
+      val (asked, team) = (batch(conditions, 1), this.candidate(candidate))
+      val told          = asked.engine(team)
+      if judge == Judge.Candidates || !asked.fliesByLanes(team) then told
+      else s"$told, after a scalar flight of each episode, which makes its timetable"
+    case TeamEngine.Whole(flights, _) => flights.engine
+
+  override def rate(threads: Int): Option[String] = flownBy match
+    case _: TeamEngine.Reduced        => None
+    case TeamEngine.Whole(flights, _) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   def byLanes: Boolean = flownBy match
     case TeamEngine.Reduced(conditions, _) => batch(conditions, 1).fliesByLanes(candidate(space.defaults))

@@ -1,6 +1,6 @@
 package skein.training
 
-import skein.environment.EnvironmentSettings
+import skein.environment.{EnvironmentBatch, EnvironmentSettings}
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
@@ -176,9 +176,15 @@ final case class LearnSetup(
       TeamObjective.judged(team.objective.measures, durationS, conditions.timing.periodS)
     )
 
+  /** What flies while it learns, in a line for the user. */
+  def engine: String = EnvironmentBatch.engine(environment)
+
   /** @return or what was expected and came */
   def task(using Scenarios): Either[String, SideTask] =
-    val settings = EnvironmentSettings(
+    SideTask.of(environment, game.opponent, question.environments, question.seed)
+
+  private def environment =
+    EnvironmentSettings(
       learners = question.role,
       loop = question.conditions.loop,
       link = question.link,
@@ -193,7 +199,6 @@ final case class LearnSetup(
       set = question.set,
       objective = if isOfTeam then game.text else ""
     )
-    SideTask.of(settings, game.opponent, question.environments, question.seed)
 
   def title: String =
     val where = if isOfTeam then s" of ${question.scenario}" else ""

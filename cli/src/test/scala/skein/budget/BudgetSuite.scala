@@ -59,6 +59,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     "m",
     "ideal",
     "paper-pursuer",
+    "SIMD",
     Tolerance.Share(0.05),
     1,
     LatencyBudget(
@@ -93,6 +94,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(map.csvRows.size, 6)
     assert(map.csvRows(1).startsWith("100.0,25.0,0.0,8.2,0.0,1,0.0249999"), map.csvRows(1))
     val json = ujson.read(BudgetMap.json(Vector(map)))(0)
+    assertEquals(json("engine").str, "SIMD")
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Shape.Text => text.content }

@@ -24,6 +24,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       val (status, out, err) =
         run(Seq("--algorithm", algorithm, "--side", side, "--json", "--out", folder.toString) ++ short)
       assertEquals(status, 0, err)
+      assert(err.contains("engine: SIMD, "), err)
       val rows = ujson.read(out)("tables")(0)("rows").arr
       assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", s"paper-$side", "learned:8"))
       assertEquals(rows.map(_(4).num).toSeq, Seq(4.0, 4.0, 1.0))
@@ -39,6 +40,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
     val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
     assertEquals(status, 0, err)
+    assert(err.contains("engine: scalar: environments of surround"), err)
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))

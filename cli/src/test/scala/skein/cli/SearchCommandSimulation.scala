@@ -16,4 +16,5 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals((found(0).str, paper(0).str), ("lead-pursuit", "paper-pursuer"))
     assertEquals((found(4).num, paper(4).num), (2.0, 2.0))
     assert(found(2).num > 0 && found(3).num > 0, found.toString)
+    assert(found(6).str.startsWith("SIMD, ") && paper(6).str.startsWith("SIMD, "), found.toString)
     assert(ran.err.contains("policy.conf"))

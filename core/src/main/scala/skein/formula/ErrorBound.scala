@@ -65,7 +65,7 @@ object ErrorBound:
           margins(node.id) = margin
           if sameWay then beside else by + beside
 
-      errors(node.id) = node.op match
+      val error = node.op match
         case Const | Param => rounded
         case Input         => off(node.index) + rounded
         case Always        => 0
@@ -114,4 +114,6 @@ object ErrorBound:
           if ea + eb == 0 || node.args(0) == node.args(1) then 0 else jump(math.abs(a - b), ea + eb, 1, 0)
         case Not      => ea
         case And | Or => math.max(ea, eb)
+      // Nothing times what is unbounded is unbounded.
+      errors(node.id) = if error.isNaN then Double.PositiveInfinity else error
     ErrorBound(values, errors, margins)

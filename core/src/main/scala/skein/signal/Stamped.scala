@@ -17,10 +17,26 @@ final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receiv
   /** Whether this was sampled later, judged by the two readings alone: by the simulator's clock, or because it was asked
     * for after the other had arrived. Across a restart of the simulator use [[ClockAlignment.isNewer]].
     */
-  def isNewerThan(other: Stamped[?]): Boolean = validAt > other.validAt || sentAt > other.receivedAt
+  def isNewerThan(other: Stamped[?]): Boolean =
+    Stamped.isNewer(
+      validAt.toNanos,
+      sentAt.toNanos,
+      other.validAt.toNanos,
+      other.receivedAt.toNanos
+    )
 
   /** The request's round trip on the controller's clock. */
   def roundTrip: Span = receivedAt.since(sentAt)
 
   /** Age by arrival: time since the answer arrived. The paper's published age; it hides the network's own delay. */
   def ageByArrival(usedAt: Instant): Span = usedAt.since(receivedAt)
+
+object Stamped:
+  /** [[Stamped.isNewerThan]] by the times alone, ns. */
+  private[skein] def isNewer(
+      validAtNs: Long,
+      sentAtNs: Long,
+      otherValidAtNs: Long,
+      otherReceivedAtNs: Long
+  ): Boolean =
+    validAtNs > otherValidAtNs || sentAtNs > otherReceivedAtNs

@@ -7,6 +7,7 @@ import skein.lanes.SteppedDuels.WORLDS
 import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
+import skein.simd.LaneMath
 import skein.units.Expect
 
 /** Many episodes, step by step. A side of the duel or both, or a side of another scenario, are decided for from outside
@@ -45,6 +46,11 @@ final class EnvironmentBatch private (
     case side: ScenarioSide =>
       Array(ScenarioGroup(side, autoreset, count, EnvironmentBuffers(block, 1, count)))
   private var isReset = false
+
+  /** What flies the environments, in a line for the user. */
+  val engine: String = EnvironmentBatch.engine(config match
+    case duel: EnvironmentSettings.Resolved => duel.settings
+    case side: ScenarioSide                 => side.settings)
 
   /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides, from their
     * next episodes on.
@@ -101,6 +107,11 @@ object EnvironmentBatch:
 
   /** Fewer groups are flown by the caller's thread alone. */
   private val Together = 4
+
+  /** What flies environments of these settings, in a line for the user. */
+  def engine(settings: EnvironmentSettings): String =
+    if settings.isDuel then s"SIMD, ${LaneMath.LANES} environments at a time"
+    else s"scalar: environments of ${settings.scenario} fly one by one; those of the duel fly by lanes"
 
   /** @param opponent
     *   of the side that does not learn; without one, as the settings name it

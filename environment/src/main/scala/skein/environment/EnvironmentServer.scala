@@ -15,8 +15,9 @@ import skein.scenario.Scenarios
   *
   * A connection is one batch. It begins with a text of `name=value` lines: `count`, `autoreset` (0 next step, 1 same
   * step, 2 disabled), `file`, and the settings. Then each request is a byte: 1 for a step; 2 for a reset, and a seed an
-  * environment (64 bits); 3 for a reset of some, with a byte an environment behind the seeds. Every answer, also the
-  * one to the text, is a byte: 0 done; 1 wrong arguments, 2 not now, both with a text. A text is its length in bytes
+  * environment (64 bits); 3 for a reset of some, with a byte an environment behind the seeds; 4 to hear what flies them.
+  * Every answer, also the one to the text, is a byte: 0 done, to a 4 with a text; 1 wrong arguments, 2 not now, both with
+  * a text. A text is its length in bytes
   * (32 bits) and UTF-8. Numbers are big-endian.
   *
   * It ends with its standard input: when whoever started it ends.
@@ -71,8 +72,9 @@ object EnvironmentServer:
             case 1 => batch.step()
             case 2 => batch.reset(seeds(in, batch.count))
             case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
-            case _ => throw EOFException(s"expected 1, 2 or 3, came $request")
-          out.write(0)
+            case 4 => ()
+            case _ => throw EOFException(s"expected 1 to 4, came $request")
+          if request == 4 then answer(out, 0, batch.engine) else out.write(0)
         catch
           case mistake: IllegalArgumentException => answer(out, 1, mistake.getMessage)
           case mistake: IOException              => throw mistake

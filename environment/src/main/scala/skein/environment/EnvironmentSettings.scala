@@ -6,6 +6,7 @@ import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{SteppedDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
@@ -50,7 +51,7 @@ final case class EnvironmentSettings(
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
-    movesInFlight: Int = LoopTiming.MostOutstanding,
+    movesInFlight: Int = Moves.MostOutstanding,
     turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS,
     evaderRateRadPerS: Double = 0,
     scenario: String = PaperDuel.Name,

@@ -41,6 +41,12 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
       Decided(seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS, ())
 
+  test("what flies is told: another scenario one by one, the duel by lanes"):
+    val team = Learner(surround, 2).batch.engine
+    assert(team.startsWith("scalar: environments of surround"), team)
+    val duel = Learner(EnvironmentSettings(), 2).batch.engine
+    assert(duel.startsWith("SIMD, "), duel)
+
   for (loop, link) <- Seq("stream" -> "vpn", "predictive" -> "direct", "paused" -> "none") do
     test(
       s"stepped under $loop over $link it flies, and rewards, what the reference flies with the same policy"

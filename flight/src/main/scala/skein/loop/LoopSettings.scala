@@ -1,6 +1,7 @@
 package skein.loop
 
-import skein.flow.{Sense, Steer}
+import skein.flow.Sense
+import skein.port.Moves
 import skein.units.*
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
@@ -17,7 +18,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param paceInterval
   *   that `stream` keeps at least between two decisions (or commands) for one vehicle; the ticks keep the period
   * @param movesInFlight
-  *   moves of one vehicle that may be unanswered: see [[Steer]]
+  *   moves of one vehicle that may be unanswered: see [[skein.flow.Steer]]
   * @param patience
   *   how long `stream` waits for the readings of the other vehicles when one has come
   * @param spread
@@ -41,9 +42,9 @@ final case class LoopSettings(
     period: Span = Span.ofMillis(100),
     window: Int = 4,
     moveDuration: Span = Span.ofSeconds(10),
-    minCommandInterval: Span = Span.ofMillis(20),
+    minCommandInterval: Span = Moves.LeastInterval,
     paceInterval: Span = Span.ofMillis(50),
-    movesInFlight: Int = Steer.MostOutstanding,
+    movesInFlight: Int = Moves.MostOutstanding,
     patience: Span = Span.ofMillis(100),
     spread: Span = Span.Zero,
     early: Sense.Early = Sense.Early.Overtakes,

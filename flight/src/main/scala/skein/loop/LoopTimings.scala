@@ -1,7 +1,8 @@
 package skein.loop
 
-import skein.flow.{Sense, Steer}
+import skein.flow.Sense
 import skein.forward.{Asking, LoopTiming, Steering}
+import skein.port.Moves
 import skein.units.*
 
 /** The live loops' timing as forward simulation has it. */
@@ -21,7 +22,7 @@ object LoopTimings:
       inOrder = settings.early == Sense.Early.Waits
     )
     val steering =
-      Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Steer.Handover.toSeconds)
+      Steering(settings.minCommandInterval.toSeconds, settings.movesInFlight, Moves.HandoverAllowed.toSeconds)
     kind match
       case LoopKind.Paused     => Some(LoopTiming.Paused(periodS))
       case LoopKind.Sequential => Some(LoopTiming.Sequential(periodS, asking, steering))

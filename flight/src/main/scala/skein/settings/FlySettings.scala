@@ -4,11 +4,11 @@ import com.typesafe.config.{Config, ConfigFactory, ConfigValueFactory}
 import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
-import skein.flow.Steer
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy}
+import skein.port.Moves
 import skein.record.ImagingSensor
 import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.signal.LatencyProfile
@@ -49,7 +49,7 @@ final case class FlySettings(
     seed: Long,
     scenario: Scenario = PaperDuel(),
     predictor: PredictionModel = PredictionModel.Quadrotor,
-    movesInFlight: Int = Steer.MostOutstanding,
+    movesInFlight: Int = Moves.MostOutstanding,
     deadline: Option[Span] = None,
     fallback: Fallback = Fallback.Repeat,
     policies: List[PolicyFile] = Nil,

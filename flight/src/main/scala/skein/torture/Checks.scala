@@ -1,6 +1,7 @@
 package skein.torture
 
 import skein.loop.{LoopKind, Outcome}
+import skein.port.Moves
 import skein.record.{DecisionRow, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -45,7 +46,7 @@ object Checks:
       found < 0
 
   private def outstanding(seen: FlightTrace): Vector[String] =
-    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > MostOutstanding
+    for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.MostOutstanding
     yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
   /** While the simulator stands still no time passes between commands. */
@@ -125,7 +126,7 @@ object Checks:
   private def unbounded(seen: FlightTrace): Vector[String] =
     // Each sensor that a policy reads is asked beside the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
-    val most    = seen.vehicles.size.toLong * (seen.window + MostOutstanding + SignsOfLife) +
+    val most    = seen.vehicles.size.toLong * (seen.window + Moves.MostOutstanding + SignsOfLife) +
       sensors * seen.window + seen.images.size * ImagesOnTheWay
     // Where steps take no time, the flight is longer than it took.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
@@ -214,9 +215,6 @@ object Checks:
       case Left(error) => Some(s"the file cannot be read: ${error.message}")
 
   private def ms(seen: FlightTrace, at: Instant): String = s"${at.since(seen.startedAt).toMillis.fixed(1)} ms"
-
-  /** The move that flies and the one that replaces it. */
-  private val MostOutstanding = 2
 
   /** Asked for when an answer is missed. */
   private val SignsOfLife = 1

@@ -140,6 +140,8 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   for (team, loop) <- Seq(
       Surround()             -> LoopKind.Paused,
       Surround()             -> LoopKind.Stream,
+      Surround()             -> LoopKind.Sequential,
+      Formation()            -> LoopKind.Sequential,
       Formation()            -> LoopKind.Stream,
       Crossing(vehicles = 8) -> LoopKind.Stream,
       Crossing(vehicles = 8) -> LoopKind.Futures,

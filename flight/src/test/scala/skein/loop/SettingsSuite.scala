@@ -1,8 +1,9 @@
 package skein.loop
 
-import skein.flow.{Sense, Steer}
+import skein.flow.Sense
 import skein.forward.{Asking, LoopTiming, Steering}
 import skein.planning.Geofence
+import skein.port.Moves
 import skein.scenario.Fence
 import skein.units.*
 import skein.vehicle.{ConstantTurn, ConstantVelocity, ReducedModel}
@@ -60,7 +61,7 @@ class SettingsSuite extends munit.FunSuite:
       Some(LoopTiming.Predictive(0.2, ConstantVelocity, asking, steering))
     )
     assertEquals(of(LoopKind.Plan), None)
-    assertEquals(Steer.Handover, ms(0.5))
+    assertEquals(Moves.HandoverAllowed, ms(0.5))
 
   private def mistake(settings: PlanSettings): String = settings.mistakes.mkString("; ")
 

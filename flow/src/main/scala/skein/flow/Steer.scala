@@ -6,6 +6,7 @@ import scala.collection.immutable.Queue
 import scala.concurrent.Future
 import scala.util.Try
 import scala.util.control.NonFatal
+import skein.port.Moves
 import skein.units.*
 
 /** What became of a command: every one is `Sent` and later `Ended`, once each. */
@@ -40,7 +41,7 @@ enum Steered[+C, +R]:
   * @param minInterval
   *   between two commands sent: the rate cap
   * @param mostOutstanding
-  *   commands that may be unanswered. More than [[Steer.MostOutstanding]] let a link of a long round trip carry more
+  *   commands that may be unanswered. More than [[Moves.MostOutstanding]] let a link of a long round trip carry more
   *   commands than one a round trip; only for links that never deliver several at once
   * @param send
   *   one command; the future ends when the move ends
@@ -55,7 +56,7 @@ enum Steered[+C, +R]:
   * @param hold
   *   parks the vehicle for as long as it is held
   */
-final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Steer.MostOutstanding)(
+final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.MostOutstanding)(
     send: C => Future[R],
     park: () => Future[R],
     isCertain: R => Boolean = (_: R) => true,
@@ -86,8 +87,8 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
         outstanding -= 1
         if !result.toOption.exists(isCertain) then doubtful = true
         if outstanding > 0 then
-          nextAt = nextAt.max(clock.now() + Steer.Handover)
-          parkAt = parkAt.max(clock.now() + Steer.Handover)
+          nextAt = nextAt.max(clock.now() + Moves.HandoverAllowed)
+          parkAt = parkAt.max(clock.now() + Moves.HandoverAllowed)
         report(Ended(command, clock.now(), result))
 
       private val parkEnded = getAsyncCallback[(Boolean, Try[R])]: (last, result) =>
@@ -169,16 +170,8 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
       setHandlers(in, out, this)
 
 object Steer:
-  /** The move that flies and the one that replaces it. */
-  val MostOutstanding = 2
-
   /** Events that may wait for downstream before no more commands are taken. */
   val EventLimit = 64
-
-  /** Time that a simulator has, after it answered a move, to let the next one begin. AirSim takes up to 0.3 ms, and a
-    * third move that comes within does not replace the second but waits for its end.
-    */
-  val Handover: Span = Span.ofMillis(0.5)
 
   /** Pause before a vehicle that could not be parked is told again. */
   val ParkAgain: Span = Span.ofMillis(100)

@@ -12,8 +12,8 @@ import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
+import skein.forward.Delays;
 import skein.forward.LoopTiming;
-import skein.forward.Rollout;
 import skein.simd.WorldRandom;
 
 /**
@@ -23,7 +23,7 @@ import skein.simd.WorldRandom;
  * which ends as the n-th from behind, where n may be under way.
  */
 final class FuturesOffers extends LaneOffers {
-  private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
+  private static final int STEP = Delays.Lines() * WorldRandom.STRIDE;
 
   /** Tasks last for longer and for shorter by about so much. */
   private static final double AHEAD_S = 0.2;

@@ -15,8 +15,8 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
+import skein.forward.Delays;
 import skein.forward.Duelist;
-import skein.forward.Rollout;
 import skein.forward.Steering;
 import skein.simd.WorldRandom;
 
@@ -97,7 +97,7 @@ final class LaneAgents {
     this.decidesFirst = decidesFirst;
     this.together = together;
     decided = decidesFirst ? new Directions(WORLDS) : sent;
-    line = Rollout.CommandPlace() + 2 * self;
+    line = Delays.command(self);
     startHeading = (float) duelist.startHeadingRad();
     periodGrains = LaneViews.grains(periodS);
     intervalGrains = LaneViews.grains(Math.max(intervalS, steering.minIntervalS()));

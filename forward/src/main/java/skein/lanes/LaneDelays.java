@@ -8,7 +8,7 @@ import static skein.simd.LaneMath.LANES;
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
-import skein.forward.Rollout;
+import skein.forward.Delays;
 import skein.simd.WorldRandom;
 
 /**
@@ -52,7 +52,7 @@ final class LaneDelays {
 
   /** Where the random numbers of a step begin. */
   static int placeOf(int step) {
-    return step * Rollout.Places() * WorldRandom.STRIDE;
+    return step * Delays.Lines() * WorldRandom.STRIDE;
   }
 
   private static final LaneVectors ALL = LaneVectors.all();

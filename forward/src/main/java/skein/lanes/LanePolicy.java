@@ -20,11 +20,11 @@ class LanePolicy {
   private final PolicyLanes form;
   private final LaneFunction function;
   private final float[] parameters, scratch;
-  private final float[][] arrays;
-  private final int[] offsets;
 
-  /** What the last decision was made upon. */
-  private LaneObservation seen;
+  /** What the function reads and writes: the inputs, the outputs, the own readings. */
+  final float[][] arrays;
+
+  final int[] offsets;
 
   /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
   private final float[] initial, memory, newMemory;
@@ -141,34 +141,7 @@ class LanePolicy {
     set(outputs + 1, into.sin, intoAt);
     if (withEffort) set(outputs + 2, turned, 0);
     if (form.keepsHeading()) set(outputs + decided + memories, newHeading, 0);
-    seen = observation;
     function.apply(arrays, offsets, parameters, scratch);
-  }
-
-  /** What the last decision was made from, by input, as {@link PolicyLanes} numbers them. */
-  final scala.collection.immutable.Vector<float[]> lastInputs() {
-    return copies(0, form.inputs());
-  }
-
-  /** What it came to, by output. */
-  final scala.collection.immutable.Vector<float[]> lastOutputs() {
-    return copies(form.inputs(), form.inputs() + 3);
-  }
-
-  private scala.collection.immutable.Vector<float[]> copies(int from, int until) {
-    var all = scala.collection.immutable.Vector$.MODULE$.<float[]>newBuilder();
-    for (int i = from; i < until; i++)
-      all.addOne(
-          i < LaneObservation.READ
-              ? difference(i)
-              : Arrays.copyOfRange(arrays[i], offsets[i], offsets[i] + WORLDS));
-    return all.result();
-  }
-
-  private float[] difference(int what) {
-    float[] difference = new float[WORLDS];
-    seen.difference(what, difference);
-    return difference;
   }
 
   private void set(int place, float[] array, int offset) {

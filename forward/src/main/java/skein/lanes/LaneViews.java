@@ -11,6 +11,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import skein.forward.DelayTable;
 import skein.forward.LoopTiming;
+import skein.forward.Nanos;
 import skein.simd.WorldRandom;
 
 /**
@@ -107,7 +108,7 @@ final class LaneViews {
 
   LaneViews(LoopTiming.Stream timing, double durationS, boolean shortCut) {
     this.mayCut = shortCut;
-    periodNs = Math.round(timing.periodS() * 1e9);
+    periodNs = Nanos.of(timing.periodS());
     ahead = Math.min(MOST_AHEAD, timing.asking().window());
     periodGrains = grains(timing.periodS());
     patienceGrains = grains(timing.patienceS());
@@ -116,12 +117,12 @@ final class LaneViews {
   }
 
   static int grains(double seconds) {
-    return (int) (Math.round(seconds * 1e9) / GRAIN_NS);
+    return (int) (Nanos.of(seconds) / GRAIN_NS);
   }
 
   /** Whether a time is a whole number of grains. */
   static boolean isWhole(double seconds) {
-    return Math.round(seconds * 1e9) % GRAIN_NS == 0;
+    return Nanos.of(seconds) % GRAIN_NS == 0;
   }
 
   /** Back to the start of an episode. */

@@ -11,6 +11,7 @@ import skein.forward.Duel;
 import skein.forward.LoopTiming;
 import skein.forward.Rollout;
 import skein.forward.Steering;
+import skein.port.Moves;
 
 /**
  * Duels of many worlds at a time, each with delays of its own, under the full event timing of {@code
@@ -44,9 +45,9 @@ final class LoopDuelKernel extends DuelKernel {
     if (!model.fliesAlone()) return "worlds with delays of their own fly vehicle by vehicle with the quadrotor";
     Steering steering = LoopTiming.steeringOf(timing);
     double deadTimeS = model.deadTimeS();
-    if (steering.mostOutstanding() != LoopTiming.MostOutstanding())
+    if (steering.mostOutstanding() != Moves.MostOutstanding())
       return "the lanes know "
-          + LoopTiming.MostOutstanding()
+          + Moves.MostOutstanding()
           + " moves in flight, and this loop has "
           + steering.mostOutstanding();
     double patienceS = 0, toleranceS = 0;

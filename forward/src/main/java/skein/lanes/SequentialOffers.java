@@ -11,8 +11,8 @@ import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
+import skein.forward.Delays;
 import skein.forward.LoopTiming;
-import skein.forward.Rollout;
 import skein.simd.WorldRandom;
 
 /**
@@ -20,7 +20,7 @@ import skein.simd.WorldRandom;
  * what was read at the last answer. A round whose question failed offers nothing.
  */
 final class SequentialOffers extends LaneOffers {
-  private static final int STEP = Rollout.Places() * WorldRandom.STRIDE;
+  private static final int STEP = Delays.Lines() * WorldRandom.STRIDE;
 
   /** Rounds last for longer and for shorter by so much until worlds are apart. */
   private static final double AHEAD_S = 0.5;

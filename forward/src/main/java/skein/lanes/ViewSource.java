@@ -3,6 +3,8 @@ package skein.lanes;
 import skein.forward.DelayTable;
 import skein.forward.Delays;
 import skein.forward.LoopTiming;
+import skein.forward.Nanos;
+import skein.signal.Stamped;
 
 /**
  * The views of one world of two vehicles under the {@code stream} loop, one after the other, with
@@ -75,15 +77,11 @@ final class ViewSource {
    */
   ViewSource(LoopTiming.Stream timing, double durationS, int ahead) {
     this.ahead = ahead;
-    periodNs = nanos(timing.periodS());
-    timeoutNs = nanos(timing.asking().timeoutS());
-    patienceNs = nanos(timing.patienceS());
+    periodNs = Nanos.of(timing.periodS());
+    timeoutNs = Nanos.of(timing.asking().timeoutS());
+    patienceNs = Nanos.of(timing.patienceS());
     window = timing.asking().window();
-    endNs = nanos(durationS);
-  }
-
-  private static long nanos(double seconds) {
-    return Math.round(seconds * 1e9);
+    endNs = Nanos.of(durationS);
   }
 
   /** Begins at a question when all questions before are answered and joined, if there were any. */
@@ -179,18 +177,17 @@ final class ViewSource {
 
   /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
   private boolean isLater(int vehicle, int number) {
+    return isNewer(vehicle, number, reachesAt[vehicle][told[vehicle] % RING], toldAt[vehicle]);
+  }
+
+  private boolean isNewer(int vehicle, int number, long thanValidAt, long thanReceivedAt) {
     int at = number % RING;
-    return reachesAt[vehicle][at] > reachesAt[vehicle][told[vehicle] % RING]
-        || sentAt[vehicle][at] > toldAt[vehicle];
+    return Stamped.isNewer(reachesAt[vehicle][at], sentAt[vehicle][at], thanValidAt, thanReceivedAt);
   }
 
   private boolean seen(int vehicle, int number, long now) {
     int at = number % RING;
-    boolean isNewer =
-        !known[vehicle]
-            || reachesAt[vehicle][at] > validAt[vehicle]
-            || sentAt[vehicle][at] > receivedAt[vehicle];
-    if (!isNewer) return false;
+    if (known[vehicle] && !isNewer(vehicle, number, validAt[vehicle], receivedAt[vehicle])) return false;
     known[vehicle] = true;
     renewed[vehicle] = true;
     validAt[vehicle] = reachesAt[vehicle][at];

@@ -25,10 +25,8 @@ private[skein] abstract class AskingRun(world: DuelWorld, periodS: Double, askin
   final def timedOut(vehicle: Int, question: Int): Unit = questions(vehicle).ended(question, answered = false)
 
   final def seen(vehicle: Int, question: Int): Unit =
-    val at      = world.slot(vehicle, question)
-    val isNewer =
-      !known(vehicle) || world.validAtNs(at) > validAt(vehicle) || world.sentAtNs(at) > receivedAt(vehicle)
-    if isNewer then
+    val at = world.slot(vehicle, question)
+    if !known(vehicle) || world.isNewer(at, validAt(vehicle), receivedAt(vehicle)) then
       known(vehicle) = true
       validAt(vehicle) = world.validAtNs(at)
       receivedAt(vehicle) = world.receivedAtNs(at)

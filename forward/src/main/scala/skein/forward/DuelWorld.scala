@@ -3,7 +3,7 @@ package skein.forward
 import skein.forecast.{Forecast, Leg}
 import skein.fusion.Exposure
 import skein.policy.Assignment
-import skein.signal.Kinematics
+import skein.signal.{Kinematics, Stamped}
 
 /** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their way to and from the
   * vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
@@ -117,6 +117,10 @@ private[skein] final class DuelWorld(
 
   /** The answer has come back. */
   def received(vehicle: Int, number: Int): Unit = receivedAtNs(slot(vehicle, number)) = time
+
+  /** Whether a reading, by its [[slot]], is newer than one of these times. */
+  def isNewer(slot: Int, thanValidAtNs: Long, thanReceivedAtNs: Long): Boolean =
+    Stamped.isNewer(validAtNs(slot), sentAtNs(slot), thanValidAtNs, thanReceivedAtNs)
 
   /** Reads a vehicle without any message. */
   def readNow(vehicle: Int, step: Int): Int =

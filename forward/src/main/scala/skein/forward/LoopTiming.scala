@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.port.Moves
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** The timing of a control loop as data: when an observation is taken, how old it is at the decision, when the command
@@ -83,9 +84,6 @@ enum LoopTiming:
   )
 
 object LoopTiming:
-  /** Commands to one vehicle that may be unanswered: the one that flies and the one that replaces it. */
-  val MostOutstanding = 2
-
   /** The `stream` loop of a period as it is flown live: half of it between two decisions at least, and all of it as
     * patience.
     */
@@ -130,8 +128,8 @@ final case class Asking(
   * be, it may be until the next command.
   */
 final case class Steering(
-    minIntervalS: Double = 0.02,
-    mostOutstanding: Int = LoopTiming.MostOutstanding,
-    handoverS: Double = 0.0005
+    minIntervalS: Double = Moves.LeastInterval.toSeconds,
+    mostOutstanding: Int = Moves.MostOutstanding,
+    handoverS: Double = Moves.HandoverAllowed.toSeconds
 ):
   require(mostOutstanding > 0 && mostOutstanding <= 16, s"from 1 to 16 outstanding, got $mostOutstanding")

@@ -49,9 +49,8 @@ private[skein] final class PeriodicQuestions(
 
   /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other. */
   private def isNewer(question: Int): Boolean =
-    val answer = world.slot(vehicle, question)
-    val last   = world.slot(vehicle, told)
-    world.validAtNs(answer) > world.validAtNs(last) || world.sentAtNs(answer) > world.receivedAtNs(last)
+    val last = world.slot(vehicle, told)
+    world.isNewer(world.slot(vehicle, question), world.validAtNs(last), world.receivedAtNs(last))
 
   private def ask(): Unit =
     if waits && underWay < asking.window then

@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.port.Moves
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
@@ -13,8 +14,7 @@ private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hover
     extends VelocityResponse:
   def create(): Vehicle = QuadrotorVehicle(quadrotor, Nanos.of(hoveredS))
 
-  /** AirSim's: `skein.simulator.SimulatorSettings.Handover`. */
-  override def handoverS: Double = 0.0003
+  override def handoverS: Double = Moves.Handover.toSeconds
 
 private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends Vehicle:
   private val stepNs             = Nanos.of(quadrotor.stepS)

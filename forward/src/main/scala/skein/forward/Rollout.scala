@@ -147,10 +147,6 @@ object Rollout:
     case DuelWorld.ImageReceived => tracker.imageReceived(number)
     case DuelWorld.Recognised    => tracker.recognised(number)
 
-  /** Places of the random sequence that belong to one step; the kernels use the same. */
-  private[skein] val Places: Int       = Delays.Lines
-  private[skein] val CommandPlace: Int = Delays.FirstCommand
-
 /** Adds up distances as they come. */
 private[skein] final class Score(captureRadiusM: Double = 0.0, durationS: Double = 0.0):
   var count                = 0

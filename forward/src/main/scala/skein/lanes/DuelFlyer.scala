@@ -14,19 +14,26 @@ private trait DuelFlyer:
 
 /** By the scalar reference. */
 private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse) extends DuelFlyer:
-  val batch: Int                             = 16
-  private var last: (Policy, Policy, Delays) = (null, null, null)
-  private var rollout: Rollout               = null
+  val batch: Int      = 16
+  private val rollout = KeptRollout(duel, timing, model)
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit =
     for world <- numbers do
-      val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
-      if wanted != last then
-        last = wanted
-        val (pursuer, evader, link) = wanted
-        val own = Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
-        rollout = Rollout(own, timing, link, model)
-      into.set(world, rollout.fly(worlds.key(world), captureRadiusM), worlds.withEfforts)
+      into.set(world, rollout(worlds, world).fly(worlds.key(world), captureRadiusM), worlds.withEfforts)
+
+/** The rollout of the world flown last, which also flies the next if that has the same policies and link. Mutable. */
+private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => VelocityResponse):
+  private var last: (Policy, Policy, Delays) = (null, null, null)
+  private var rollout: Rollout               = null
+
+  def apply(worlds: DuelWorlds, world: Int): Rollout =
+    val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
+    if wanted != last then
+      last = wanted
+      val (pursuer, evader, link) = wanted
+      val own = duel.copy(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader))
+      rollout = Rollout(own, timing, link, model)
+    rollout
 
 /** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know are flown by
   * another.

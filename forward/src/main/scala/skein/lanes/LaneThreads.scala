@@ -4,7 +4,7 @@ import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
 import skein.units.Expect
 
 /** Whether this Java can compute by lanes. */
-private[lanes] object LaneSupport:
+private[skein] object LaneSupport:
   /** A class with vectors is not touched where their module is missing. */
   val present: Either[String, Unit] = Expect.that(
     ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import java.util.concurrent.{ConcurrentHashMap, CopyOnWriteArrayList}
+import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{ObservingPolicy, PlanarObservation, Policy}
 import skein.simd.{LaneCompiler, LaneFunction}
@@ -189,18 +189,14 @@ private[skein] object PolicyLanes:
     case numbers: Array[Double] => numbers.toVector
     case _                      => Vector.empty
 
-  private val known = ConcurrentHashMap[Class[?], CopyOnWriteArrayList[Either[Untraceable, PolicyLanes]]]()
+  private val known = ConcurrentHashMap[Class[?], Forms[Policy, PolicyLanes]]()
 
   /** How a policy flies by lanes, or why it does not. Compiled once for each form. */
   def of(policy: Policy): Either[Untraceable, PolicyLanes] =
-    val forms = known.computeIfAbsent(policy.getClass, _ => CopyOnWriteArrayList())
-    find(forms, policy).getOrElse(forms.synchronized(find(forms, policy).getOrElse {
-      val made =
-        try formulaOf(policy).map(PolicyLanes(_))
-        catch case refused: Untraceable => Left(refused)
-      forms.add(made)
-      made
-    }))
+    known.computeIfAbsent(
+      policy.getClass,
+      _ => Forms[Policy, PolicyLanes](_.fits(_))(formulaOf(_).map(PolicyLanes(_)))
+    )(policy)
 
   private def formulaOf(policy: Policy): Either[Untraceable, Formula] = policy match
     case observing: ObservingPolicy[?] => Formula.of(observing, "decide")
@@ -208,14 +204,3 @@ private[skein] object PolicyLanes:
 
   /** Of a policy that is known to be a formula. */
   def get(policy: Policy): PolicyLanes = of(policy).fold(throw _, identity)
-
-  private def find(
-      forms: CopyOnWriteArrayList[Either[Untraceable, PolicyLanes]],
-      policy: Policy
-  ): Option[Either[Untraceable, PolicyLanes]] =
-    var i = 0
-    while i < forms.size do
-      val form = forms.get(i)
-      if form.fold(_ => true, _.fits(policy)) then return Some(form)
-      i += 1
-    None

@@ -1,8 +1,8 @@
 package skein.lanes
 
-import java.util.concurrent.CopyOnWriteArrayList
 import skein.formula.{Angles, Formula, Node, Trace, Untraceable}
 import skein.scenario.{Positions, Quantity}
+import skein.units.Expect
 
 /** How quantities are computed in many worlds at once, compiled from their methods [[Quantity.of]]: several of one
   * view, together. Quantities of one form differ in numbers alone.
@@ -55,28 +55,14 @@ private[lanes] object QuantityLanes:
   private final val FirstParameter = 1 << 20
   private final val Stride         = 1 << 18
 
-  private val known = CopyOnWriteArrayList[QuantityLanes]()
+  private val known =
+    Forms[(Vector[Quantity], Int), QuantityLanes]((form, of) => form.fits(of._1, of._2)):
+      (quantities, vehicles) =>
+        Expect.each(quantities)(formulaOf(_, vehicles)).map(QuantityLanes(_, vehicles))
 
   /** How quantities of so many vehicles are computed by lanes, or why they are not. Compiled once for each form. */
   def of(quantities: Vector[Quantity], vehicles: Int): Either[Untraceable, QuantityLanes] =
-    find(quantities, vehicles).map(Right(_)).getOrElse(known.synchronized:
-      find(quantities, vehicles).map(Right(_)).getOrElse:
-        val formulas = quantities.map(formulaOf(_, vehicles))
-        formulas.collectFirst { case Left(refused) => refused } match
-          case Some(refused) => Left(refused)
-          case None          =>
-            try
-              val made = QuantityLanes(formulas.flatMap(_.toOption), vehicles)
-              known.add(made): Unit
-              Right(made)
-            catch case refused: Untraceable => Left(refused))
-
-  private def find(quantities: Vector[Quantity], vehicles: Int): Option[QuantityLanes] =
-    var i = 0
-    while i < known.size do
-      if known.get(i).fits(quantities, vehicles) then return Some(known.get(i))
-      i += 1
-    None
+    known((quantities, vehicles))
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
     // Who writes a quantity may call its argument as they like.

@@ -1,7 +1,6 @@
 package skein.lanes
 
 import skein.forward.*
-import skein.policy.Policy
 import skein.signal.Kinematics
 import skein.units.Vector3
 
@@ -28,8 +27,8 @@ private final class SteppedBatch(
 
   private val stepNs    = Nanos.of(stepS)
   private val hoveredNs = Nanos.of(hoveredS)
+  private val kept      = Array.tabulate(batch)(lane => KeptRollout(duel, timing, Places(lane)))
   private val rollouts  = Array.ofDim[Rollout](batch)
-  private val flownBy   = Array.fill[(Policy, Policy, Delays)](batch)((null, null, null))
   private val nextNs    = Array.ofDim[Long](batch)
 
   /** The end of the last step, since the flight's start, ns. */
@@ -39,7 +38,8 @@ private final class SteppedBatch(
     for some <- numbers.grouped(batch) do
       steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
       for lane <- some.indices do
-        rolloutOf(lane, worlds, some(lane)).start(worlds.key(some(lane)), captureRadiusM)
+        rollouts(lane) = kept(lane)(worlds, some(lane))
+        rollouts(lane).start(worlds.key(some(lane)), captureRadiusM)
         nextNs(lane) = 0
       vehicles.use(some.length * Vehicles)
       flyAll(some.length)
@@ -57,15 +57,6 @@ private final class SteppedBatch(
         lane += 1
       vehicles.step()
       steppedTo = until
-
-  private def rolloutOf(lane: Int, worlds: DuelWorlds, world: Int): Rollout =
-    val wanted = (worlds.pursuer(world), worlds.evader(world), worlds.link(world))
-    if wanted != flownBy(lane) then
-      flownBy(lane) = wanted
-      val (pursuer, evader, link) = wanted
-      val own = Duel(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader), duel.durationS)
-      rollouts(lane) = Rollout(own, timing, link, Places(lane))
-    rollouts(lane)
 
   /** Where the vehicles of one world are. */
   private final class Places(lane: Int) extends VelocityResponse:

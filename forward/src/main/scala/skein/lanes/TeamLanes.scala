@@ -1,9 +1,9 @@
 package skein.lanes
 
-import java.util.concurrent.CopyOnWriteArrayList
 import scala.collection.mutable
 import skein.formula.{Angles, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{TeamPolicy, TeamObservation}
+import skein.units.Expect
 
 /** How the policies of a team decide in many worlds at once, compiled from their methods [[TeamPolicy.course]]. Teams of
   * one form differ in numbers alone.
@@ -105,28 +105,13 @@ private[lanes] object TeamLanes:
     case Parameter(number: Int)
     case Shared(number: Int)
 
-  private val known = CopyOnWriteArrayList[TeamLanes]()
+  private val known = Forms[Vector[TeamPolicy], TeamLanes](_.fits(_)): policies =>
+    Expect
+      .each(policies.zipWithIndex)((policy, self) => formulaOf(policy, self, policies.size))
+      .map(TeamLanes(_))
 
   /** How a team flies by lanes, or why it does not. Compiled once for each form. */
-  def of(policies: Vector[TeamPolicy]): Either[Untraceable, TeamLanes] =
-    find(policies).map(Right(_)).getOrElse(known.synchronized(find(policies).map(Right(_)).getOrElse {
-      try
-        val formulas = policies.zipWithIndex.map((policy, self) => formulaOf(policy, self, policies.size))
-        formulas.collectFirst { case Left(refused) => refused } match
-          case Some(refused) => Left(refused)
-          case None          =>
-            val made = TeamLanes(formulas.flatMap(_.toOption))
-            known.add(made): Unit
-            Right(made)
-      catch case refused: Untraceable => Left(refused)
-    }))
-
-  private def find(policies: Vector[TeamPolicy]): Option[TeamLanes] =
-    var i = 0
-    while i < known.size do
-      if known.get(i).fits(policies) then return Some(known.get(i))
-      i += 1
-    None
+  def of(policies: Vector[TeamPolicy]): Either[Untraceable, TeamLanes] = known(policies)
 
   /** What a policy computes as one of so many. */
   def formulaOf(policy: TeamPolicy, self: Int, count: Int): Either[Untraceable, Formula] = Formula.of(

@@ -84,7 +84,8 @@ final class DuelEvaluator(
 
   override def sideBySide: Int =
     val policy = family.defaultPolicy
-    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true, Nil) then LaneMath.LANES
+    if shareEpisodes && batch.fliesByLanes(pursuer(policy), evader(policy), true, Seq(link)) then
+      LaneMath.LANES
     else 1
 
   def valuesUnless(isCancelled: () => Boolean)(

@@ -248,7 +248,7 @@ private final class PassCompiler(
         else fma(unary("neg", times), of(y), x)
       case Op.Always => throw Untraceable("a condition that always holds")
 
-  // The polynomials of LaneMath.
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has those of the last two for passes written by hand.
 
   private def sinCos(of: Node): (Int, Int) = pairs.getOrElseUpdate(
     of, {

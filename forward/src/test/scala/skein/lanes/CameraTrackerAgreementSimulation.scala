@@ -1,9 +1,8 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.formula.{ErrorBound, Node, Trace}
+import skein.formula.ErrorBound
 import skein.forward.*
-import skein.fusion.Exposure
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Instant
@@ -14,7 +13,7 @@ import skein.units.Instant
   */
 class CameraTrackerAgreementSimulation extends munit.FunSuite:
   import CameraTrackerAgreementSimulation.*
-  import AgreementSimulation.{Log, Logged}
+  import DuelAgreement.Event
 
   private val worlds = DuelKernel.WORLDS
   private val model  = Reduced.AirSim
@@ -44,49 +43,29 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       val key      = WorldRandom.key(5, 0, episode)
       val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
       val eye      = LoggedEye(forms, duel.pursuer, duel.evader)
-      val lanes    = Vector(Logged(evader(0)), Logged(pursuer(0)))
+      val lanes    = DuelAgreement.taken(pursuer, evader)
       val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
-      for world <- 0 until worlds do
-        lanes(0).take(world, evader(world))
-        lanes(1).take(world, pursuer(world))
-      val flown = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), eye, null)
+      val flown    = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), eye, null)
       flown.fly(
         Timetable.of(2, duel.durationS, timing, DelayTable.vpn, key, vehicles, Map(1 -> camera)),
         worlds,
         0
       )
       isFlownByBatch(timing, key, flown)
-      var same, parted = 0
-      for world <- 0 until worlds by 5 do
-        val policies = Vector(evader(world), pursuer(world))
-        val logs     = policies.map(Log(_))
-        val events   = Events()
-        val scalar   =
-          duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
-        val outcome = Rollout(scalar, timing, DelayTable.vpn, model).fly(key, observer = events)
-        val differs = events.all.iterator
-          .flatMap:
-            case Event.Decided(agent, k, timeS) =>
-              Option
-                .when(k < lanes(agent).made.size):
-                  AgreementSimulation.difference(agent, k, policies(agent), logs(agent), lanes(agent), world)
-                .flatten
-                .map(found => (found.isUndecided, s"$timeS s: $found"))
-            case Event.Looked(k, timeS, exposure) =>
-              Option
-                .when(k < eye.looks.size)(difference(exposure, eye.looks(k), world))
-                .flatten
-                .map(found => (found.isUndecided, s"$timeS s, image $k: $found"))
-          .nextOption()
-        differs match
-          case None =>
-            same += 1
-            assertEqualsDouble(flown.meanDistance(world), outcome.meanDistanceM, 5e-3, s"world $world")
-            assertEqualsDouble(flown.pursuerEffortRad(world), outcome.pursuerEffortRad, 5e-3, s"world $world")
-          case Some((isUndecided, told)) =>
-            parted += 1
-            assert(isUndecided, s"world $world of episode $episode, at $told")
-      assert(same > 0, s"in all $parted worlds rounding decided sooner or later")
+      val agreement = new DuelAgreement(
+        duel,
+        timing,
+        model,
+        _ => DelayTable.vpn,
+        _ => key,
+        0,
+        Vector(evader, pursuer),
+        lanes,
+        flown
+      ):
+        override def difference(looked: Event.Looked, world: Int): Option[Agreement.Departure] =
+          if looked.k < eye.looks.size then found(looked, eye.looks(looked.k), world) else None
+      agreement.check(s"episode $episode", 0 until worlds by 5)
 
   /** What the front of forward simulation flies is this, to the bit. */
   private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: DuelKernel): Unit =
@@ -103,7 +82,8 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel.meanDistance.toSeq)
 
   /** Where an image shows an opponent to the one and not to the other. */
-  private def difference(scalar: Exposure, lanes: Looked, world: Int): Option[Difference] =
+  private def found(event: Event.Looked, lanes: Looked, world: Int): Option[Agreement.Departure] =
+    val scalar  = event.exposure
     val isFound = camera.measured(Instant.Epoch, scalar).isDefined
     val doubles =
       Array(scalar.axisRad, scalar.ownNed.x, scalar.ownNed.y, scalar.ownNed.z) ++
@@ -112,60 +92,20 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     floats(0) += 2 * math.Pi * math.rint((doubles(0) - floats(0)) / (2 * math.Pi))
     // Until decisions part, all is where it is in doubles.
     val away = doubles.zip(floats).map((x, y) => math.abs(x - y))
-    assert(away(0) < MostOffRad && away.tail.max < MostOffM, s"world $world: ${away.mkString(", ")} off")
+    assert(away.max < Agreement.mostOff(event.timeS), s"world $world: ${away.mkString(", ")} off")
     Option.when(isFound != (lanes.found(world) > 0)):
       val detected = lanes.by.detected
       val shown    = Seq(detected.bound.nodes(0))
       val inputs   = detected.inputsOf(doubles)
       val off      = inputs.zip(detected.inputsOf(floats)).map((x, y) => math.abs(x - y))
-      val bound    = ErrorBound.of(shown, inputs, off, Array.emptyDoubleArray)
-      val drawn    = scalar.found < camera.detection
-      val compared = Trace
-        .needed(shown)
-        .filter(node => node.op.isCondition && node.args.size == 2 && !node.args.head.op.isCondition)
-        .map: node =>
-          val Vector(a, b) = node.args
-          Compared(node, math.abs(bound.value(a) - bound.value(b)), bound.error(a) + bound.error(b))
-      Difference(isFound, scalar.found - camera.detection, compared, drawn && bound.undecided(shown).nonEmpty)
+      // The number drawn is exact; beyond the probability of detection nothing is found.
+      val drawn = scalar.found < camera.detection
+      val near  =
+        if drawn then ErrorBound.of(shown, inputs, off, Array.emptyDoubleArray).undecided(shown)
+        else Vector.empty
+      Agreement.Departure(1, event.k, event.timeS, Vector(1.0 -> 1.0), near)
 
 private object CameraTrackerAgreementSimulation:
-  /** Of what floats add up to in the vehicles' flight, and in what is believed of the opponent. */
-  private val MostOffM   = 5e-3
-  private val MostOffRad = 5e-3
-
-  /** A comparison of what is seen with what can be seen: how near both sides are, and how far floats may be off. */
-  final case class Compared(threshold: Node, margin: Double, bound: Double)
-
-  /** @param isFound
-    *   by the scalar engine, not by lanes; or else the other way
-    * @param drawn
-    *   the number drawn less the probability of detection, which is exact
-    */
-  final case class Difference(
-      isFound: Boolean,
-      drawn: Double,
-      compared: Vector[Compared],
-      isUndecided: Boolean
-  )
-
-  enum Event:
-    case Decided(agent: Int, k: Int, timeS: Double)
-    case Looked(k: Int, timeS: Double, exposure: Exposure)
-
-  /** What the scalar engine decides and looks at, in turn. */
-  final class Events extends LoopObserver:
-    val all: ArrayBuffer[Event] = ArrayBuffer.empty
-    private val decisions       = Array(0, 0)
-    private var looks           = 0
-
-    override def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit =
-      all += Event.Decided(vehicle, decisions(vehicle), atNs * 1e-9)
-      decisions(vehicle) += 1
-
-    override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
-      all += Event.Looked(looks, atNs * 1e-9, image)
-      looks += 1
-
   /** An image that the lanes took, by world. */
   final class Looked(
       val by: CameraTrackerLanes.Forms,

@@ -6,12 +6,11 @@ import skein.forward.{
   LoopTiming,
   Reduced,
   ReducedResponse,
-  Rollout,
   VelocityResponse,
   VelocityResponses
 }
 import skein.optimise.LatencyBudget
-import skein.policy.{PaperEvader, PaperPursuer}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -29,10 +28,9 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   private val captureM = 3.9f
 
   // The evader does not start straight ahead, on a threshold of its pursuer.
-  private def duel(world: Int, durationS: Double, asideM: Double = 0): Duel = Duel(
+  private def duel(world: Int, durationS: Double): Duel = Duel(
     Duel.paper.pursuer.copy(
-      policy = PaperPursuer(0.6 + 0.008 * world),
-      startY = Duel.paper.pursuer.startY + asideM
+      policy = PaperPursuer(0.6 + 0.008 * world)
     ),
     Duel.paper.evader.copy(policy = PaperEvader(7 + 0.02 * world), startY = 2),
     durationS
@@ -73,22 +71,11 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "300 ms and 300 ms of jitter" -> wild(300, 300)
   )
 
-  /** Whether the world flies as the scalar reference does; if not, a decision must lie at a threshold. */
-  private def same(
-      kernel: LoopDuelKernel,
-      world: Int,
-      timing: LoopTiming,
-      link: DelayTable,
-      model: VelocityResponse,
-      durationS: Double
-  ): Boolean =
-    def scalar(asideM: Double) =
-      Rollout(duel(world, durationS, asideM), timing, link, model).fly(keys(world), captureM)
-    val reference   = scalar(0)
-    val apart       = ScalarWitness.apart(kernel, world, reference)
-    def atThreshold = ScalarWitness.isAtThreshold(reference)(scalar)
-    assert(apart < 2e-3 || atThreshold, s"world $world: $apart apart, and at no threshold")
-    apart < 2e-3
+  private def agreement(timing: LoopTiming, link: DelayTable, durationS: Double, model: VelocityResponse) =
+    DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
+      duel(_, durationS).pursuer.policy.asInstanceOf[Policy],
+      duel(_, durationS).evader.policy.asInstanceOf[Policy]
+    )
 
   for
     (vehicles, model) <- models
@@ -96,10 +83,10 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     (name, link)      <- links
     if vehicles == "lag" || name == "vpn" || name.startsWith("110")
   do
-    test(s"$vehicles, $timing over $name: each world flies 5 s as the scalar reference does, to 2 mm"):
-      val kernel = fly(timing, link, 5, model)
-      val equal  = (0 until worlds by 2).count(same(kernel, _, timing, link, model, 5))
-      assert(equal >= 60, s"$equal of ${worlds / 2} at no threshold")
+    test(
+      s"$vehicles, $timing over $name: the scalar reference's decisions and flight for 5 s, in each world compared"
+    ):
+      agreement(timing, link, 5, model).check(name, 0 until worlds by 3)
 
   for (name, timing) <- Seq(
       "every 20 ms"  -> LoopTiming.Futures(0.02),
@@ -108,14 +95,13 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       "every 300 ms" -> LoopTiming.Futures(0.3)
     )
   do
-    test(
-      s"${timing.productPrefix} $name over vpn: each world flies 12 s as the scalar reference does, to 2 mm"
-    ):
-      val kernel = fly(timing, DelayTable.vpn, 12, lag)
-      val equal  = (0 until worlds by 16).count(same(kernel, _, timing, DelayTable.vpn, lag, 12))
-      assert(equal >= 6, s"$equal of 8 at no threshold")
+    test(s"${timing.productPrefix} $name over vpn: the scalar reference's decisions and flight for 12 s"):
+      agreement(timing, DelayTable.vpn, 12, lag).check(name, 0 until worlds by 16)
 
   for timing <- loops do
+    test(s"$timing over vpn: the scalar reference's decisions and flight for 60 s, in each world compared"):
+      agreement(timing, DelayTable.vpn, 60, lag).check("60 s", 0 until worlds by 11)
+
     test(
       s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
     ):

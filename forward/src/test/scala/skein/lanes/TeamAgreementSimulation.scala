@@ -1,8 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.formula.{ErrorBound, Node}
-import skein.forward.{DelayTable, Duelist, Engagement, LoopTiming, Reduced, Rollout}
+import skein.forward.{DelayTable, Duelist, Engagement, Grounds, LoopObserver, LoopTiming, Reduced, Rollout}
 import skein.policy.{Course, TeamPolicy, TeamObservation}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
 import skein.signal.SplitMix64
@@ -50,50 +49,41 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
         agents(self).take(world, drawn(world).agents(self), numbers(world)(self))
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
         .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
-      val forms        = Vector.tabulate(lanes.count)(self => Form(lanes, self))
-      var same, parted = 0
+      val forms     = Vector.tabulate(lanes.count)(self => Form(lanes, self))
+      val agreement = Agreement()
       for world <- 0 until worlds by 7 do
-        val logs  = policies(drawn(world)).map(Log(_))
-        val all   = drawn(world)
-        val flown = all.copy(agents = all.agents.zip(logs).map((agent, log) => agent.copy(policy = log)))
-        Rollout(flown, timing, DelayTable.vpn, plant).fly(key): Unit
-        val order =
-          for self <- 0 until lanes.count; k <- 0 until logs(self).seen.size.min(agents(self).made.size)
-          yield (self, k)
-        val differs = order
-          .sortBy((self, k) => k.toDouble / logs(self).seen.size)
-          .iterator
-          .flatMap: (self, k) =>
-            forms(self).difference(k, logs(self).seen(k), agents(self).made(k), world, numbers(world)(self))
+        val logs   = policies(drawn(world)).map(Log(_))
+        val all    = drawn(world)
+        val flown  = all.copy(agents = all.agents.zip(logs).map((agent, log) => agent.copy(policy = log)))
+        val events = Events(lanes.count)
+        Rollout(flown, timing, DelayTable.vpn, plant).fly(key, observer = events): Unit
+        val first = events.all.iterator
+          .flatMap: (self, k, timeS) =>
+            assert(k < agents(self).made.size, s"world $world: vehicle $self decides only $k times by lanes")
+            forms(self).difference(
+              k,
+              timeS,
+              logs(self).seen(k),
+              agents(self).made.take(k + 1).takeRight(2).toVector,
+              world,
+              numbers(world)(self)
+            )
           .nextOption()
-        differs match
-          case None                                       => same += 1
-          case Some(difference) if difference.isUndecided => parted += 1
-          case Some(difference)                           => fail(s"seed $seed, world $world: $difference")
-      assert(same > 0, s"in all $parted worlds rounding decided sooner or later")
+        agreement.add(world, first)(())
+      agreement.check(s"seed $seed")
 
   private def policies(of: Engagement) = of.agents.map(_.policy.asInstanceOf[TeamPolicy])
 
 object TeamAgreementSimulation:
-  /** Of what floats add up to in the vehicles' flight. */
-  private val MostOffM = 5e-3
-
-  final case class Difference(
-      agent: Int,
-      decision: Int,
-      apart: Vector[(Double, Double)],
-      near: Vector[(Node, Double)]
-  ):
-    /** A threshold is so near that rounding may decide, and the decision is off by no more than both ways allow. */
-    def isUndecided: Boolean = near.nonEmpty && apart.forall((by, most) => by <= most)
-
-  /** What one decision was made from in all worlds, and the velocity that it came to. */
+  /** What one decision was made from in all worlds, and the velocity and the direction that it came to. */
   final case class Made(
       readings: Vector[Array[Float]],
       cos: Array[Float],
       sin: Array[Float],
       elapsedS: Float,
-      velocity: Vector[Array[Float]]
+      velocity: Vector[Array[Float]],
+      nextCos: Array[Float],
+      nextSin: Array[Float]
   )
 
   /** How a vehicle's decision is computed, and what its inputs are. */
@@ -119,34 +109,54 @@ object TeamAgreementSimulation:
               case Source.Parameter(number) => own(number)
               case Source.Shared(_)         => throw IllegalStateException("nothing is shared here")
 
-    /** Where a decision differs by more than the bound of the way that doubles take. */
+    /** Where a decision differs by more than the bound of the way that doubles take.
+      *
+      * @param made
+      *   by lanes: the decision before, if there was one, and this
+      */
     def difference(
         k: Int,
+        timeS: Double,
         seen: TeamObservation,
-        made: Made,
+        made: Vector[Made],
         world: Int,
         own: Array[Double]
-    ): Option[Difference] =
+    ): Option[Agreement.Departure] =
+      def where    = s"world $world, vehicle $self, decision $k, at $timeS s"
+      val now      = made.last
       val readings = Vector(seen.northM, seen.eastM, seen.northMps, seen.eastMps).flatMap(_.toSeq)
-      val ours     = made.readings.map(_(world).toDouble)
-      val doubles  = inputs(
-        readings,
-        StrictMath.cos(seen.headingRad),
-        StrictMath.sin(seen.headingRad),
-        seen.elapsedS,
-        own
+      val ours     = now.readings.map(_(world).toDouble)
+      val cos      = StrictMath.cos(seen.headingRad)
+      val sin      = StrictMath.sin(seen.headingRad)
+      val doubles  = inputs(readings, cos, sin, seen.elapsedS, own)
+      val floats   = inputs(ours, now.cos(world), now.sin(world), now.elapsedS, own)
+      val away     = readings.zip(ours).map((x, y) => math.abs(x - y)).max
+      munit.Assertions.assert(away < Agreement.mostOff(timeS), s"$where: $away off in a reading")
+      munit.Assertions.assertEqualsDouble(now.elapsedS, seen.elapsedS, 1e-6, where)
+      // The own direction is that decided before.
+      if made.size == 1 then munit.Assertions.assertEqualsDouble(now.cos(world), cos, 1e-6, where)
+      else
+        munit.Assertions.assertEquals(now.cos(world), made.head.nextCos(world), where)
+        munit.Assertions.assertEquals(now.sin(world), made.head.nextSin(world), where)
+      Agreement.departure(
+        self,
+        k,
+        timeS,
+        north,
+        doubles,
+        doubles.zip(floats).map((x, y) => math.abs(x - y)),
+        Array.emptyDoubleArray,
+        now.velocity.map(_(world).toDouble)
       )
-      val floats = inputs(ours, made.cos(world), made.sin(world), made.elapsedS, own)
-      val away   = (0 until 2 * lanes.count).map(i => math.abs(readings(i) - ours(i))).max
-      // Until decisions part, the vehicles are where they are in doubles.
-      if away >= MostOffM then throw AssertionError(s"world $world, vehicle $self, decision $k: $away m off")
-      val off                     = doubles.zip(floats).map((x, y) => math.abs(x - y))
-      def of(isSame: Boolean)     = ErrorBound.of(north, doubles, off, Array.emptyDoubleArray, isSame)
-      def apart(most: ErrorBound) = north.zip(made.velocity).map: (node, lane) =>
-        (math.abs(lane(world) - most.value(node)), most.error(node))
-      Option.when(apart(of(true)).exists((by, most) => !(by <= most))):
-        val either = of(false)
-        Difference(self, k, apart(either), either.undecided(north))
+
+  /** What the scalar engine decides, in turn: for whom, the how manieth from 0, and when. */
+  final class Events(count: Int) extends LoopObserver:
+    val all: ArrayBuffer[(Int, Int, Double)] = ArrayBuffer.empty
+    private val decisions                    = Array.ofDim[Int](count)
+
+    override def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit =
+      all += ((vehicle, decisions(vehicle), atNs * 1e-9))
+      decisions(vehicle) += 1
 
   final class Logged(self: Int, duelist: Duelist, model: LaneDynamics, team: TeamViews)
       extends TeamAgents(self, duelist, model, team):
@@ -175,7 +185,9 @@ object TeamAgreementSimulation:
         cos,
         sin,
         times(number),
-        Vector(copied(headings.cos, after), copied(headings.sin, after))
+        Vector(copied(headings.cos, after), copied(headings.sin, after)),
+        direction._1.clone,
+        direction._2.clone
       )
 
   /** Notes what a policy sees, and answers as it does. */

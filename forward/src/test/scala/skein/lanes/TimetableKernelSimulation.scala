@@ -45,7 +45,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
       link: Delays,
       key: Int,
       durationS: Double,
-      model: VelocityResponse = lag
+      model: VelocityResponse
   ): TimetableDuels =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
@@ -92,7 +92,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
     timing                   <- loops ++ predicted(model)
     (name, link)             <- flown
   do
-    // None of these worlds meets a threshold within 5 s: AgreementSimulation would name it.
+    // None of these worlds meets a threshold within 5 s: DuelAgreement would name it.
     test(
       s"$vehicles, $timing over $name: candidates fly by the timetable as by the scalar reference, 5 s to 2 mm"
     ):
@@ -114,23 +114,21 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
     // Long flights of one loop: the others differ in their timetables alone.
     if timing == LoopTiming.Stream() then
-      test(s"$vehicles, $timing over $name: over 60 s half of the candidates agree to 2 cm"):
-        val key     = WorldRandom.key(4, 1, 0)
-        val kernel  = fly(timing, link, key, 60, model)
-        val some    = 0 until worlds by 4
-        val scalars = some.map(world => Rollout(duel(world, 60), timing, link, model).fly(key, captureM))
-        // A candidate at the edge of two ways to circle is decided by a rounding error; the median does not see it.
-        def median(values: Seq[Double]) = values.sorted.apply(values.size / 2)
-        val off = median(some.map(w => (kernel.meanLast10s(w) - scalars(w / 4).meanLast10sM).abs))
-        assert(off < 0.02, s"$off m")
-        val closer = median(some.map(w => (kernel.minDistance(w) - scalars(w / 4).minDistanceM).abs))
-        assert(closer < 0.02, s"$closer m")
+      test(s"$vehicles, $timing over $name: the same decisions and captures for 60 s in each world compared"):
+        agreement(timing, link, WorldRandom.key(4, 1, 0), 60, model).check(name, 0 until worlds by 6)
 
-  test("a period that does not divide 10 s: the last scores' mean is that of the scalar reference"):
-    val (timing, durationS) = (LoopTiming.stream(0.3), 12.0)
-    val key                 = WorldRandom.key(5, 1, 0)
-    val kernel              = fly(timing, DelayTable.direct, key, durationS)
-    val off                 = (0 until worlds by 4).map: world =>
-      val scalar = Rollout(duel(world, durationS), timing, DelayTable.direct, lag).fly(key, captureM)
-      (kernel.meanLast10s(world) - scalar.meanLast10sM).abs
-    assert(off.sorted.apply(off.size / 2) < 5e-3, s"$off")
+  test("a period that does not divide 10 s: as the scalar reference"):
+    agreement(LoopTiming.stream(0.3), DelayTable.direct, WorldRandom.key(5, 1, 0), 12, lag)
+      .check("every 0.3 s", 0 until worlds by 4)
+
+  private def agreement(
+      timing: LoopTiming,
+      link: Delays,
+      key: Int,
+      durationS: Double,
+      model: VelocityResponse
+  ): DuelAgreement =
+    DuelAgreement.shared(paper.copy(durationS = durationS), timing, model, link, key, captureM)(
+      pursuer,
+      evader
+    )

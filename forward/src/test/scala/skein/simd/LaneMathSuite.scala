@@ -1,5 +1,7 @@
 package skein.simd
 
+import skein.formula.{Op, Trace}
+
 class LaneMathSuite extends munit.FunSuite:
   private val count = 1 << 16
 
@@ -14,16 +16,38 @@ class LaneMathSuite extends munit.FunSuite:
     LaneMath.atan2(ys, xs, out, ys.length)
     out
 
-  for (limit, bound) <- Seq(math.Pi -> 1e-7, 8192.0 -> 3e-7) do
-    test(s"sine and cosine err by less than $bound up to ±$limit"):
-      val angles  = spread(-limit, limit)
-      val sines   = Array.ofDim[Float](count)
-      val cosines = Array.ofDim[Float](count)
-      LaneMath.sinCos(angles, sines, cosines, count)
-      val sinError = largestError(sines, i => math.sin(angles(i)))
-      val cosError = largestError(cosines, i => math.cos(angles(i)))
-      assert(sinError < bound, sinError)
-      assert(cosError < bound, cosError)
+  /** A function of one number, compiled. */
+  private def compiled(op: Op, xs: Array[Float]): Array[Float] =
+    val trace    = Trace()
+    val function = LaneCompiler.compile(1, Vector(trace.unary(op, trace.input(0))))
+    val into     = Array.ofDim[Float](xs.length)
+    val scratch  = Array.ofDim[Float](function.scratch)
+    for at <- xs.indices by LaneFunction.COUNT do
+      function.apply(Array(xs, into), Array(at, at), Array.emptyFloatArray, scratch)
+    into
+
+  for
+    (op, exact, limit, bound) <- Seq[(Op, Double => Double, Double, Double)](
+      (Op.Sin, math.sin, math.Pi, 1e-7),
+      (Op.Cos, math.cos, math.Pi, 1e-7),
+      (Op.Sin, math.sin, 8192, 3e-7),
+      (Op.Cos, math.cos, 8192, 3e-7),
+      (Op.Atan, math.atan, 20, 3e-7),
+      (Op.Asin, math.asin, 1, 6e-7),
+      (Op.Acos, math.acos, 1, 6e-7),
+      (Op.Tanh, math.tanh, 12, 1e-6)
+    )
+  do
+    test(s"$op, compiled, errs by less than $bound up to ±$limit"):
+      val xs    = spread(-limit, limit)
+      val error = largestError(compiled(op, xs), i => exact(xs(i)))
+      assert(error < bound, error)
+
+  test("the exponential, compiled, errs by less than 2.5e-7 of its value"):
+    val xs    = spread(-20, 20)
+    val out   = compiled(Op.Exp, xs)
+    val error = (0 until count).map(i => math.abs(out(i) / math.exp(xs(i)) - 1)).max
+    assert(error < 2.5e-7, error)
 
   test("the angle of a point errs by less than 3e-7 in all directions and at all distances"):
     val angles = spread(-math.Pi, math.Pi)

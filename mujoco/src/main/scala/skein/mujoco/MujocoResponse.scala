@@ -1,6 +1,7 @@
 package skein.mujoco
 
 import skein.forward.{QuadrotorVehicle, SteppedResponse, SteppedVehicles, Vehicle}
+import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.*
 
@@ -15,8 +16,7 @@ final class MujocoResponse(model: MujocoModel) extends SteppedResponse:
 
   def together(vehicles: Int): SteppedVehicles = MujocoVehicles(model, vehicles)
 
-  /** AirSim's: `skein.simulator.SimulatorSettings.Handover`. */
-  override def handoverS: Double = 0.0003
+  override def handoverS: Double = Moves.Handover.toSeconds
 
 /** So many multirotors of a model, each with its flight controller's state. */
 private[mujoco] final class MujocoVehicles(model: MujocoModel, vehicles: Int) extends SteppedVehicles:

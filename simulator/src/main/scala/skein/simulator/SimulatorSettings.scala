@@ -3,6 +3,7 @@ package skein.simulator
 import skein.airsim.{SettingsError, WorldSettings}
 import skein.hil.AutopilotInterface
 import skein.link.Address
+import skein.port.Moves
 import skein.rpc.{FrameLimits, ServerLimits}
 import skein.scene.Scene
 import skein.units.*
@@ -62,8 +63,8 @@ final case class SimulatorSettings(
   private[simulator] def newWorkers[Job, Flight](): Workers[Job, Flight] =
     val vehicles = world.vehicles.size
     overload match
-      case Overload.Workers(count) => Workers(count, vehicles, SimulatorSettings.Handover)
-      case Overload.AirSim         => Workers(vehicles + 4, vehicles, SimulatorSettings.Handover)
+      case Overload.Workers(count) => Workers(count, vehicles, Moves.Handover)
+      case Overload.AirSim         => Workers(vehicles + 4, vehicles, Moves.Handover)
       case Overload.Never          => Workers(Int.MaxValue, vehicles, Span.Zero)
 
 object SimulatorSettings:
@@ -72,9 +73,6 @@ object SimulatorSettings:
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),
     heldBytesInCommon = 256 << 20
   )
-
-  /** Time from a move's cancellation to its successor's start, measured at AirSim's server: below 0.3 ms. */
-  val Handover: Span = Span.ofMillis(0.3)
 
   /** Checks that the built-in simulator has these vehicles. */
   def supported(world: WorldSettings): Either[SettingsError, WorldSettings] =

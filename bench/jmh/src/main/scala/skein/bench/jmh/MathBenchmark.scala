@@ -2,6 +2,7 @@ package skein.bench.jmh
 
 import java.util.concurrent.TimeUnit
 import org.openjdk.jmh.annotations.*
+import skein.bench.SinCos
 import skein.simd.LaneMath
 
 /** Elementary functions by lanes of floats beside `StrictMath`'s of doubles, which decides flights: millions of numbers a
@@ -26,7 +27,7 @@ class MathBenchmark:
   @Benchmark
   @OperationsPerInvocation(1024)
   def sinCosByLanes(): Array[Float] =
-    LaneMath.sinCos(numbers, into, second, 1024)
+    SinCos.sinCos(numbers, into, second, 1024)
     witnessed()
 
   @Benchmark

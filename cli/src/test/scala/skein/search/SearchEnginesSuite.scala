@@ -1,0 +1,93 @@
+package skein.search
+
+import java.nio.file.Files
+import skein.optimise.{Evaluator, RunningStats}
+import skein.scenario.Scenarios
+import skein.testing.{Optimised, TemporaryFolders}
+
+/** What flies a search's candidates, and what its fresh episodes, is told apart. */
+class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
+  private given Scenarios = Scenarios.ours
+
+  private def engines(loop: String = "stream", link: String = "vpn", eye: Option[String] = None): String =
+    SearchQuestion(
+      family = "lead-pursuit",
+      role = "pursuer",
+      objective = "last10s",
+      method = "random",
+      conditions = Conditions(loop, "reduced", 100, 12, eye = eye),
+      link = link,
+      opponent = "paper-evader turningRadiusM=8.0",
+      candidates = 8,
+      episodes = 1,
+      population = 4,
+      seed = 1
+    ).setup.fold(fail(_), identity).engines
+
+  test("where both fly by lanes, each says by which"):
+    val told = engines()
+    assert(told.startsWith("SIMD, ") && !told.contains("scalar"), told)
+
+  test("fresh episodes that fly by the scalar engine are told of, with the reason"):
+    val predictive = engines(loop = "predictive")
+    assert(
+      predictive.matches("SIMD, .*; fresh episodes: scalar: .*under sequential, futures and stream.*"),
+      predictive
+    )
+    val mixed = engines(link = "vpn-mixed")
+    assert(mixed.matches("SIMD, .*; fresh episodes: scalar: .*do not come in stretches"), mixed)
+    val file = temporaryFolder().resolve("eye.conf")
+    Files.writeString(file, SearchEnginesSuite.Eye)
+    val seeing = engines(eye = Some(file.toString))
+    assert(seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor .*"), seeing)
+
+  test("a team's fresh episodes each need a scalar flight first"):
+    val team = TeamQuestion(
+      scenario = "surround",
+      set = Map("vehicles" -> "3"),
+      vary = Vector(Varied("ring-m", 4, 12)),
+      objective = "off-ring",
+      method = "random",
+      conditions = Conditions("stream", "drag", 100, 10),
+      link = "vpn",
+      candidates = 8,
+      episodes = 1,
+      population = 4,
+      seed = 1,
+      fresh = 2
+    ).setup.fold(fail(_), identity)
+    assert(
+      team.engines.matches("SIMD, .*; fresh episodes: SIMD, .*, after a scalar flight of each episode.*"),
+      team.engines
+    )
+
+  test("candidates that another engine flies are counted, and told of with its reason"):
+    val by = new Evaluator:
+      def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
+        candidates.map(_ => RunningStats.of(1)(_ => 0.0))
+    def engine(candidate: Vector[Double]) =
+      if candidate.head > 1 then "scalar: a policy is no formula" else "SIMD"
+    val noted = NotedEvaluator(by, engine)
+    noted.tallies(Vector(Vector(0.0), Vector(1.0)), 0 until 1): Unit
+    assertEquals(noted.others("SIMD"), None)
+    noted.talliesUnless(() => false)(Vector(Vector(2.0), Vector(0.5), Vector(3.0)), 0 until 1): Unit
+    assertEquals(
+      noted.others("SIMD"),
+      Some("of 5 candidates judged 2 by another engine, scalar: a policy is no formula")
+    )
+
+private object SearchEnginesSuite:
+  val Eye: String =
+    """skein.sensor {
+      |  detection.value = 0.9
+      |  bearing-sd-deg.value = 0.5
+      |  range-bias.value = 1
+      |  range-sd.value = 0.5
+      |  every-s = 0.1
+      |  fov-deg = 90
+      |  farthest-m = 40
+      |  workers = 2
+      |  deadline-s = 0.3
+      |  takes-ms = [15, 30, 60]
+      |}
+      |""".stripMargin

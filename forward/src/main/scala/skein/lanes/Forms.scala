@@ -1,0 +1,39 @@
+package skein.lanes
+
+import java.util.concurrent.CopyOnWriteArrayList
+import java.util.{Collections, WeakHashMap}
+import skein.formula.Untraceable
+
+/** What things of one kind were compiled to: each form once, for all threads.
+  *
+  * @param fits
+  *   whether a thing is of a form
+  * @param compile
+  *   a thing's form, or why it has none
+  */
+private[lanes] final class Forms[Of, Form](fits: (Form, Of) => Boolean)(
+    compile: Of => Either[Untraceable, Form]
+):
+  private val known = CopyOnWriteArrayList[Form]()
+
+  /** Of what was refused, a form is not known: something else of the same class may be a formula. */
+  private val refused = Collections.synchronizedMap(WeakHashMap[Of, Untraceable]())
+
+  def apply(of: Of): Either[Untraceable, Form] =
+    find(of).getOrElse(known.synchronized(find(of).getOrElse {
+      val made =
+        try compile(of)
+        catch case why: Untraceable => Left(why)
+      made match
+        case Right(form) => known.add(form): Unit
+        case Left(why)   => refused.put(of, why): Unit
+      made
+    }))
+
+  private def find(of: Of): Option[Either[Untraceable, Form]] =
+    var i = 0
+    while i < known.size do
+      val form = known.get(i)
+      if fits(form, of) then return Some(Right(form))
+      i += 1
+    Option(refused.get(of)).map(Left(_))

@@ -1,0 +1,279 @@
+package skein.lanes
+
+import scala.collection.mutable.ArrayBuffer
+import skein.forward.*
+import skein.fusion.Exposure
+import skein.policy.{Decided, ObservingPolicy, PlanarObservation, Policy}
+
+/** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the vehicles' flight is
+  * followed to the bit: a decision's own heading and memory are those that lanes decided before, the opponent's heading is
+  * that of the decision which the scalar engine knows of.
+  *
+  * @param lanes
+  *   by agent, the evader first: what flew
+  * @param policies
+  *   the same, of a world
+  */
+private[skein] class DuelAgreement(
+    duel: Duel,
+    timing: LoopTiming,
+    model: VelocityResponse,
+    link: Int => Delays,
+    key: Int => Int,
+    captureM: Float,
+    policies: Vector[Int => Policy],
+    lanes: Vector[LoggedPolicy],
+    val flown: DuelKernel
+):
+  import DuelAgreement.*
+
+  /** Compares some worlds. */
+  def check(what: String, worlds: Seq[Int], atLeast: Int = 1)(using munit.Location): Unit =
+    val agreement = Agreement()
+    for world <- worlds do
+      val logs   = policies.map(of => Log(of(world)))
+      val events = Events()
+      val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
+      val came   = Rollout(scalar, timing, link(world), model).fly(key(world), captureM, events)
+      // How far directions have been off, each within its bound.
+      var off   = 0.0
+      val first = events.all.iterator
+        .flatMap:
+          case looked: Event.Looked   => difference(looked, world)
+          case decided: Event.Decided =>
+            val departs = difference(decided, logs(decided.agent), world, placesOff(decided.timeS, off))
+            off = off.max(directionOff(decided, logs(decided.agent), world))
+            departs
+        .nextOption()
+      agreement.add(world, first)(outcomes(world, came, events.distances.toVector, placesOff(_, off)))
+    agreement.check(what, atLeast)
+
+  /** The same of an image that a world's scalar engine took. */
+  protected def difference(looked: Event.Looked, world: Int): Option[Agreement.Departure] = None
+
+  /** How far vehicles may be off, m and m/s: by rounding, and by their speeds in directions that are. */
+  private def placesOff(timeS: Double, direction: Double) =
+    Agreement.mostOff(timeS) + direction * (duel.pursuer.speed + duel.evader.speed) * timeS.max(1)
+
+  private def directionOff(event: Event.Decided, log: Log, world: Int): Double =
+    val ours    = lanes(event.agent).made(lanes(event.agent).number(world, event.k))
+    val heading = log.decided(event.k)
+    math.hypot(
+      ours.outputs(0)(world) - StrictMath.cos(heading),
+      ours.outputs(1)(world) - StrictMath.sin(heading)
+    )
+
+  private def difference(
+      event: Event.Decided,
+      log: Log,
+      world: Int,
+      placesOff: Double
+  ): Option[Agreement.Departure] =
+    import event.{agent, k, timeS}
+    def where  = s"world $world, agent $agent, decision $k, at $timeS s"
+    val form   = PolicyLanes.get(policies(agent)(world))
+    val number = lanes(agent).number(world, k)
+    must(number >= 0, s"$where: lanes decided only ${lanes(agent).count(world)} times")
+    val ours   = lanes(agent).made(number)
+    val inputs = inputsOf(form, log.seen(k), log.before(k), ours, world)
+    val off    = ours.off(inputs, world)
+    for i <- 0 until LaneObservation.READ if i < 2 || form.needsVelocity do
+      must(off(i) < placesOff, s"$where: ${off(i)} off in reading $i")
+    for i <- Seq(PolicyLanes.In.Elapsed) ++
+        Option.when(form.needsAges)(Seq(PolicyLanes.In.OwnAge, PolicyLanes.In.OpponentAge)).toSeq.flatten
+    do must(off(i) <= TimeOff * (1 + inputs(i)), s"$where: ${off(i)} s off in time $i of ${inputs(i)} s")
+    if k > 0 then
+      val before = lanes(agent).made(lanes(agent).number(world, k - 1))
+      for (input, output) <- carried(form) do
+        must(
+          ours.inputs(input)(world) == before.outputs(output)(world),
+          s"$where: input $input is not what was decided before"
+        )
+    else
+      for (input, _) <- carried(form) do
+        must(
+          off(input) <= AtFirst * (1 + math.abs(inputs(input))),
+          s"$where: ${off(input)} off in input $input"
+        )
+    if duel.pursuer.eye.isEmpty && duel.evader.eye.isEmpty && event.known > 0 then
+      val other = lanes(1 - agent)
+      val known = other.made(other.number(world, event.known - 1))
+      for i <- 0 until 2 do
+        must(
+          ours.inputs(PolicyLanes.In.KnownCos + i)(world) == known.outputs(i)(world),
+          s"$where: not the opponent's decision ${event.known - 1}"
+        )
+    departure(agent, k, timeS, policies(agent)(world), log.seen(k), log.before(k), ours, world)
+
+  /** Where decisions are the same, so are the flights. */
+  private def outcomes(
+      world: Int,
+      came: Outcome,
+      distances: Vector[(Double, Double)],
+      placesOff: Double => Double
+  ): Unit =
+    def same(what: String, ours: Double, scalar: Double) =
+      must(math.abs(ours - scalar) < placesOff(duel.durationS), s"world $world: $what $ours, scalar $scalar")
+    same("least distance", flown.minDistance(world), came.minDistanceM)
+    same("mean distance", flown.meanDistance(world), came.meanDistanceM)
+    same("mean of the last 10 s", flown.meanLast10s(world), came.meanLast10sM)
+    same("pursuer's effort", flown.pursuerEffortRad(world), came.pursuerEffortRad)
+    same("evader's effort", flown.evaderEffortRad(world), came.evaderEffortRad)
+    // One captures a period before the other where that period's distance is within what distances may be off.
+    val sooner = math.min(flown.captureS(world), came.captureS)
+    must(
+      flown.captureS(world) == came.captureS.toFloat ||
+        distances.exists((timeS, m) =>
+          math.abs(timeS - sooner) < 1e-3 && math.abs(m - captureM) < math.sqrt(2) * placesOff(timeS)
+        ),
+      s"world $world: captured after ${flown.captureS(world)} s, scalar ${came.captureS} s; " +
+        s"nearest to the radius: ${distances.minByOption((_, m) => math.abs(m - captureM))}"
+    )
+
+private[skein] object DuelAgreement:
+  private val Heading = PolicyLanes.In.Heading
+
+  /** Of a second, in floats; grains of 4 ns are exact. */
+  private val TimeOff = 2e-7
+
+  /** Of a number that is not computed. */
+  private val AtFirst = 1e-6
+
+  /** Of a policy in doubles, by its form. */
+  private def inputsOf(
+      form: PolicyLanes,
+      seen: PlanarObservation,
+      memory: Any,
+      ours: LoggedPolicy.Made,
+      world: Int
+  ): Array[Double] =
+    val inputs = form.inputsOf(seen, memory)
+    // Angles a turn apart are one.
+    inputs(
+      Heading
+    ) += 2 * math.Pi * math.rint((ours.inputs(Heading)(world) - inputs(Heading)) / (2 * math.Pi))
+    inputs
+
+  /** What lanes decided in a world, beside what the policy decides in doubles. */
+  def departure(
+      agent: Int,
+      k: Int,
+      timeS: Double,
+      policy: Policy,
+      seen: PlanarObservation,
+      memory: Any,
+      ours: LoggedPolicy.Made,
+      world: Int
+  ): Option[Agreement.Departure] =
+    val form    = PolicyLanes.get(policy)
+    val inputs  = inputsOf(form, seen, memory, ours, world)
+    val turning = form.keepsHeading
+    Agreement.departure(
+      agent,
+      k,
+      timeS,
+      form.outputs,
+      inputs,
+      ours.off(inputs, world),
+      form.parametersOf(policy),
+      ours.outputs.map(_(world).toDouble),
+      (i, a, b) =>
+        if turning && i == form.outputs.size - 1 then math.abs(math.IEEEremainder(a - b, 2 * math.Pi))
+        else math.abs(a - b)
+    )
+
+  /** Inputs that are outputs of the decision before. */
+  private def carried(form: PolicyLanes): Seq[(Int, Int)] =
+    Seq(PolicyLanes.In.OwnCos -> 0, PolicyLanes.In.OwnSin -> 1) ++
+      Seq.tabulate(form.memories)(i => (PolicyLanes.In.Memory + i, 3 + i)) ++
+      Option.when(form.keepsHeading)(Heading -> (form.outputs.size - 1))
+
+  private def must(holds: Boolean, clue: => String): Unit = if !holds then throw AssertionError(clue)
+
+  /** Candidates that meet one episode, by [[TimetableKernel]]. */
+  def shared(
+      duel: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      link: Delays,
+      key: Int,
+      captureM: Float = 0
+  )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =
+    val lanes    = taken(pursuer, evader)
+    val vehicles = LaneDynamics.under(timing, model, duel).fold(munit.Assertions.fail(_), identity)
+    val kernel   = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0))
+    kernel.fly(Timetable.of(2, duel.durationS, timing, link, key, vehicles), DuelKernel.WORLDS, captureM)
+    DuelAgreement(duel, timing, model, _ => link, _ => key, captureM, Vector(evader, pursuer), lanes, kernel)
+
+  /** Worlds with delays of their own, by [[LoopDuelKernel]]. */
+  def alone(
+      duel: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      link: Int => DelayTable,
+      key: Int => Int,
+      captureM: Float = 0
+  )(pursuer: Int => Policy, evader: Int => Policy): DuelAgreement =
+    val lanes    = taken(pursuer, evader)
+    val worlds   = Array.range(0, DuelKernel.WORLDS)
+    val links    = worlds.map(link)
+    val slowestS = links.map(_.maxS).max
+    val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
+    munit.Assertions.assertEquals(LoopDuelKernel.refusal(timing, slowestS, vehicles), null)
+    val kernel = LoopDuelKernel(duel, timing, vehicles, slowestS, lanes(1), lanes(0))
+    kernel.fly(worlds.map(key), links, captureM)
+    DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
+
+  /** Lanes that fly these, the evader's first. */
+  def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =
+    Vector(evader, pursuer).map: of =>
+      val lanes = LoggedPolicy(of(0))
+      for world <- 0 until DuelKernel.WORLDS do lanes.take(world, of(world))
+      lanes
+
+  enum Event:
+    /** @param k
+      *   counts the agent's decisions from 0
+      * @param known
+      *   the newest decision of the opponent that is known, from 1; 0 before the first
+      */
+    case Decided(agent: Int, k: Int, timeS: Double, known: Int)
+    case Looked(k: Int, timeS: Double, exposure: Exposure)
+
+  /** What the scalar engine decides and looks at, in turn; and how far apart the two are, once a period. */
+  final class Events extends LoopObserver:
+    val all: ArrayBuffer[Event]                  = ArrayBuffer.empty
+    val distances: ArrayBuffer[(Double, Double)] = ArrayBuffer.empty
+    private val decisions                        = Array(0, 0)
+    private var looks                            = 0
+    private var (x0, y0)                         = (0.0, 0.0)
+
+    override def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit =
+      all += Event.Decided(vehicle, decisions(vehicle), atNs * 1e-9, upon.sentDecision(1 - vehicle))
+      decisions(vehicle) += 1
+
+    override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
+      all += Event.Looked(looks, atNs * 1e-9, image)
+      looks += 1
+
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+      if vehicle == 0 then
+        x0 = x; y0 = y
+      else distances += timeS -> math.hypot(x - x0, y - y0)
+
+  /** Notes what a policy sees, and answers as it does. */
+  final class Log(policy: Policy) extends ObservingPolicy[Any]:
+    val seen: ArrayBuffer[PlanarObservation] = ArrayBuffer.empty
+    val before: ArrayBuffer[Any]             = ArrayBuffer.empty
+    val decided: ArrayBuffer[Double]         = ArrayBuffer.empty
+    def initial: Any                         =
+      seen.clear()
+      before.clear()
+      decided.clear()
+      ObservingPolicy.initialOf(policy)
+    def decide(observed: PlanarObservation, memory: Any): Decided[Any] =
+      seen += observed
+      before += memory
+      val answer = ObservingPolicy.decide(policy, observed, memory)
+      decided += answer.headingRad
+      answer

@@ -1,0 +1,61 @@
+package skein.lanes
+
+import java.util.Arrays
+import scala.collection.mutable.ArrayBuffer
+import skein.policy.Policy
+
+/** Notes what many worlds' decisions are made from, and what they come to. */
+private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLanes.get(of)):
+  import LoggedPolicy.*
+  private val form   = PolicyLanes.get(of)
+  private val worlds = LanePolicy.WORLDS
+
+  /** In turn; in each some world decides. */
+  val made: ArrayBuffer[Made] = ArrayBuffer.empty
+
+  /** By world: which of those decisions are its own. */
+  private val numbers = Array.fill(worlds)(ArrayBuffer.empty[Int])
+
+  def count(world: Int): Int = numbers(world).size
+
+  /** In [[made]], of a world's decision; -1 where there was none. */
+  def number(world: Int, decision: Int): Int =
+    if decision < numbers(world).size then numbers(world)(decision) else -1
+
+  override def decide(
+      observation: LaneObservation,
+      own: Directions,
+      ownAt: Int,
+      known: Directions,
+      knownAt: Int,
+      into: Directions,
+      intoAt: Int
+  ): Unit =
+    super.decide(observation, own, ownAt, known, knownAt, into, intoAt)
+    val read = Vector.tabulate(LaneObservation.READ): what =>
+      val difference = Array.ofDim[Float](worlds)
+      observation.difference(what, difference)
+      difference
+    def copied(from: Int, until: Int) =
+      Vector.range(from, until).map(i => Arrays.copyOfRange(arrays(i), offsets(i), offsets(i) + worlds))
+    made += Made(
+      read ++ copied(LaneObservation.READ, form.inputs),
+      copied(form.inputs, form.inputs + form.outputs.size)
+    )
+
+  /** All worlds have decided. */
+  override def commit(effort: Array[Float]): Unit =
+    super.commit(effort)
+    for of <- numbers do of += made.size - 1
+
+  /** Some have. */
+  override def rememberBefore(times: Array[Int], from: Int, before: Int): Unit =
+    super.rememberBefore(times, from, before)
+    for world <- 0 until worlds if times(from + world) < before do numbers(world) += made.size - 1
+
+private[skein] object LoggedPolicy:
+  /** By input or output of the policy's form, then by world. */
+  final case class Made(inputs: Vector[Array[Float]], outputs: Vector[Array[Float]]):
+    /** How far a world's inputs are from these. */
+    def off(from: Array[Double], world: Int): Array[Double] =
+      from.indices.map(i => math.abs(inputs(i)(world) - from(i))).toArray
