@@ -177,7 +177,9 @@ final case class LearnSetup(
     )
 
   /** What flies while it learns, in a line for the user. */
-  def engine: String = EnvironmentBatch.engine(environment)
+  def engine: String = game match
+    case _: LearnGame.OfTeam => EnvironmentBatch.engineOf(question.scenario)
+    case _                   => EnvironmentBatch.EngineOfGame
 
   /** @return or what was expected and came */
   def task(using Scenarios): Either[String, SideTask] =

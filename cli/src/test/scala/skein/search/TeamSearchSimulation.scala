@@ -56,7 +56,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
 
   test("a measure of whole flights is searched world by world, and the engine says so"):
-    val ready  = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
+    val ready = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
     assert(ready.engines.matches("scalar: surrounded-after is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
     assert(!ready.isVirtual && !ready.byLanes)

@@ -48,9 +48,9 @@ final class EnvironmentBatch private (
   private var isReset = false
 
   /** What flies the environments, in a line for the user. */
-  val engine: String = EnvironmentBatch.engine(config match
-    case duel: EnvironmentSettings.Resolved => duel.settings
-    case side: ScenarioSide                 => side.settings)
+  val engine: String = config match
+    case _: EnvironmentSettings.Resolved => EnvironmentBatch.EngineOfGame
+    case side: ScenarioSide              => EnvironmentBatch.engineOf(side.settings.scenario)
 
   /** In other scenarios than the duel: what those of the learner's role fly for whom nobody outside decides, from their
     * next episodes on.
@@ -108,10 +108,12 @@ object EnvironmentBatch:
   /** Fewer groups are flown by the caller's thread alone. */
   private val Together = 4
 
-  /** What flies environments of these settings, in a line for the user. */
-  def engine(settings: EnvironmentSettings): String =
-    if settings.isDuel then s"SIMD, ${LaneMath.LANES} environments at a time"
-    else s"scalar: environments of ${settings.scenario} fly one by one; those of the duel fly by lanes"
+  /** What flies environments of the paper's game, in a line for the user. */
+  val EngineOfGame: String = s"SIMD, ${LaneMath.LANES} environments at a time"
+
+  /** What flies those of another scenario. */
+  def engineOf(scenario: String): String =
+    s"scalar: environments of $scenario fly one by one; those of the duel fly by lanes"
 
   /** @param opponent
     *   of the side that does not learn; without one, as the settings name it

@@ -138,24 +138,25 @@ private final class LoopFlyer(duel: Duel, timing: LoopTiming, model: LaneDynamic
     case table: DelayTable => LoopDuelKernel.refusal(timing, table.maxS, model) == null
     case _                 => false
 
-  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes = new Lanes(pursuer, evader, withEfforts):
-    private val keys    = Array.ofDim[Int](batch)
-    private val links   = Array.ofDim[DelayTable](batch)
-    private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
+  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes =
+    new Lanes(pursuer, evader, withEfforts):
+      private val keys    = Array.ofDim[Int](batch)
+      private val links   = Array.ofDim[DelayTable](batch)
+      private val kernels = collection.mutable.HashMap.empty[Double, LoopDuelKernel]
 
-    // One for links about as slow: how far a loop is looked ahead depends on it, and no result does.
-    private def slowestS: Double =
-      val slowest = links.iterator.map(_.maxS).max
-      Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
+      // One for links about as slow: how far a loop is looked ahead depends on it, and no result does.
+      private def slowestS: Double =
+        val slowest = links.iterator.map(_.maxS).max
+        Iterator.iterate(LoopFlyer.FastestS)(_ * 1.4).find(_ >= slowest).get
 
-    protected def kernel: LoopDuelKernel =
-      kernels.getOrElseUpdate(slowestS, LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders))
+      protected def kernel: LoopDuelKernel =
+        kernels.getOrElseUpdate(slowestS, LoopDuelKernel(duel, timing, model, slowestS, pursuers, evaders))
 
-    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
-      keys(lane) = worlds.key(world)
-      links(lane) = worlds.link(world).asInstanceOf[DelayTable]
+      protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+        keys(lane) = worlds.key(world)
+        links(lane) = worlds.link(world).asInstanceOf[DelayTable]
 
-    protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
+      protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
 private object LoopFlyer:
   /** One-way, s. */
@@ -173,36 +174,37 @@ private final class TimetableFlyer(
 
   protected def canFly(link: Delays): Boolean = true
 
-  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes = new Lanes(pursuer, evader, withEfforts):
-    protected val kernel: TimetableDuels = TimetableDuels(
-      duel,
-      timing,
-      model,
-      pursuers,
-      evaders,
-      eyes.pursuer.map(CameraTrackerLanes(_, duel.pursuer, duel.evader)).orNull,
-      eyes.evader.map(CameraTrackerLanes(_, duel.evader, duel.pursuer)).orNull
-    )
-    private var timetable: Timetable = null
+  protected def lanes(pursuer: Policy, evader: Policy, withEfforts: Boolean): Lanes =
+    new Lanes(pursuer, evader, withEfforts):
+      protected val kernel: TimetableDuels = TimetableDuels(
+        duel,
+        timing,
+        model,
+        pursuers,
+        evaders,
+        eyes.pursuer.map(CameraTrackerLanes(_, duel.pursuer, duel.evader)).orNull,
+        eyes.evader.map(CameraTrackerLanes(_, duel.evader, duel.pursuer)).orNull
+      )
+      private var timetable: Timetable = null
 
-    protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
-      if lane == 0 then
-        val (link, key) = (worlds.link(world), worlds.key(world))
-        val isAlways    = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
-        val episode     = if isAlways then () else (link, key)
-        val sensors     = Seq(0 -> duel.evader.eye, 1 -> duel.pursuer.eye)
-        timetable = timetables.getOrMake(episode):
-          Timetable.of(
-            2,
-            duel.durationS,
-            timing,
-            link,
-            key,
-            model,
-            sensors.collect { case (self, Some(eye)) => self -> eye }.toMap
-          )
+      protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit =
+        if lane == 0 then
+          val (link, key) = (worlds.link(world), worlds.key(world))
+          val isAlways    = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
+          val episode     = if isAlways then () else (link, key)
+          val sensors     = Seq(0 -> duel.evader.eye, 1 -> duel.pursuer.eye)
+          timetable = timetables.getOrMake(episode):
+            Timetable.of(
+              2,
+              duel.durationS,
+              timing,
+              link,
+              key,
+              model,
+              sensors.collect { case (self, Some(eye)) => self -> eye }.toMap
+            )
 
-    protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
+      protected def fly(captureRadiusM: Float): Unit = kernel.fly(timetable, count, captureRadiusM)
 
 /** By which alone the two of a duel know of one another, where they are not told. */
 private final case class DuelEyes(
