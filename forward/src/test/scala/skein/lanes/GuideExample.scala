@@ -3,10 +3,10 @@ package skein.lanes
 // guide: policy
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation}
 
-/** Where the opponent was seen last, and how fast that bearing turns on average. */
+/** The opponent's last bearing, and the mean rate at which it turns. */
 final case class Bearing(rad: Double, rateRadPerS: Double)
 
-/** Leads the opponent by its bearing's average rate, and believes old readings less. */
+/** Leads the opponent by the mean rate of its bearing, and trusts old readings less. */
 final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double)
     extends ObservingPolicy[Bearing]:
   def initial: Bearing = Bearing(0, 0)
