@@ -33,7 +33,7 @@ final case class ScenarioQuestion(
     *   or what was expected, what came, and in which option
     */
   def subject(plantIsTold: Boolean): Either[String, BudgetSubject] =
-    engagement match
+    WholeFlights.plane(scenario, conditions.durationS) match
       case Left(reason) if plantIsTold =>
         Left(
           s"--plant: expected none, since this scenario flies in virtual time by ${WholeFlights.SimulatorsQuadrotor}: $reason"
@@ -44,14 +44,6 @@ final case class ScenarioQuestion(
         yield
           if terms.forall(_._2.reduced.nonEmpty) then TeamSubject(this, plane, flown)
           else FlownSubject.forward(this, plane, flown)
-
-  private def engagement: Either[String, Engagement] =
-    WholeFlights.plane(scenario, conditions.durationS).flatMap: plane =>
-      Either.cond(
-        plane.agents.map(_.altitudeDownM).distinct.size == 1,
-        plane,
-        "not all fly at one altitude"
-      )
 
 object ScenarioQuestion:
 

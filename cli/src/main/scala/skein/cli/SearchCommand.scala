@@ -132,10 +132,10 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
         forward.seed.getOrElse(1),
         options.fresh.getOrElse(Effort.TeamsFresh)
       )
-      ready <- question.setup
-      small = inFlights(question, options)
-      _ <- if ready.isVirtual then small.setup else Right(ready)
-    yield if ready.isVirtual then small else question
+      ready <- question.read
+      asked = if ready.isVirtual then inFlights(question, options) else question
+      _ <- asked.setup
+    yield asked
 
   /** What was not told, for an engine that flies some candidates a second. */
   private def inFlights(question: TeamQuestion, options: SearchOptions): TeamQuestion =

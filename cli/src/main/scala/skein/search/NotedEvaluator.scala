@@ -9,7 +9,7 @@ import skein.optimise.{Evaluator, RunningStats}
   *   of a candidate, in a line for the user
   */
 final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) extends Evaluator:
-  private val candidates = collection.mutable.LinkedHashMap.empty[String, Int].withDefaultValue(0)
+  private val engines = collection.mutable.LinkedHashMap.empty[Vector[Double], String]
 
   override def sideBySide: Int = by.sideBySide
 
@@ -24,11 +24,13 @@ final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) exte
     note(of)
     by.talliesUnless(isCancelled)(of, episodes)
 
-  private def note(of: Vector[Vector[Double]]): Unit = of.foreach(each => candidates(engine(each)) += 1)
+  /** A candidate that is judged in several rounds counts once. */
+  private def note(of: Vector[Vector[Double]]): Unit =
+    of.foreach(each => engines.getOrElseUpdate(each, engine(each)): Unit)
 
-  /** How often candidates were flown by something else than this, in a line for the user. */
+  /** How many candidates were flown by something else than this, in a line for the user. */
   def others(expected: String): Option[String] =
-    val others = candidates.toVector.filter(_._1 != expected)
+    val others = engines.values.filter(_ != expected).groupMapReduce(identity)(_ => 1)(_ + _).toVector.sorted
     Option.when(others.nonEmpty):
-      val told = others.map((engine, times) => s"$times by another engine, $engine")
-      s"of ${candidates.values.sum} candidates judged ${told.mkString("; ")}"
+      val told = others.map((engine, count) => s"$count by another engine, $engine")
+      s"of ${engines.size} candidates judged ${told.mkString("; ")}"

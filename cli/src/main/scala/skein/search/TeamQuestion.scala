@@ -72,6 +72,14 @@ final case class TeamQuestion(
   /** @return or what was expected, what came, and in which option */
   def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
+      ready <- read
+      _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
+        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} flights in virtual time, came some ${ready.search.expected}"
+    yield ready
+
+  /** The same, however many flights it asks for. */
+  def read(using scenarios: Scenarios): Either[String, TeamSetup] =
+    for
       kind  <- scenarios.kind(scenario).left.map("--scenario: " + _)
       _     <- Expect.that(vary.nonEmpty)("--vary: expected a setting to search, for example ring-m=4..12")
       plain <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
@@ -86,12 +94,11 @@ final case class TeamQuestion(
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
       by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
+      // A measure's name may have a setting in it.
+      _      <- Expect.each(corners)(TeamObjective.ofAll(objective, _)).left.map("--objective, --vary: " + _)
       engine <- engine(by, plain +: corners)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
-      ready = TeamSetup(this, kind, space, by, engine, method)
-      _ <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
-        s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} flights in virtual time, came some ${ready.search.expected}"
-    yield ready
+    yield TeamSetup(this, kind, space, by, engine, method)
 
   /** By lanes, where forward simulation knows the policies and the measures; world by world, where it knows the policies;
     * else in flights in virtual time.

@@ -54,7 +54,10 @@ final class WholeFlights private (
     val from  = System.nanoTime()
     val again = flown
     val rate  = threads / ((System.nanoTime() - from) * 1e-9)
-    again.fold(identity, _ => f"about ${rate.max(1)}%,.0f a second")
+    again.fold(
+      identity,
+      _ => if rate >= 1 then s"about ${rate.round} a second" else s"about one in ${(1 / rate).round} s"
+    )
 
 object WholeFlights:
   /** What an episode counts for that never comes to a measure, in the measure's unit: worse than all that do. */
@@ -71,7 +74,9 @@ object WholeFlights:
   def plane(scenario: Scenario, durationS: Double): Either[String, Engagement] =
     try
       val plane = Engagement.of(scenario.fleet, durationS)
-      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars") else Right(plane)
+      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars")
+      else if plane.agents.map(_.altitudeDownM).distinct.size > 1 then Left("not all fly at one altitude")
+      else Right(plane)
     catch
       case refused: IllegalArgumentException => Left(refused.getMessage.stripPrefix("requirement failed: "))
 

@@ -71,6 +71,8 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     noted.tallies(Vector(Vector(0.0), Vector(1.0)), 0 until 1): Unit
     assertEquals(noted.others("SIMD"), None)
     noted.talliesUnless(() => false)(Vector(Vector(2.0), Vector(0.5), Vector(3.0)), 0 until 1): Unit
+    // A round later.
+    noted.tallies(Vector(Vector(2.0)), 1 until 2): Unit
     assertEquals(
       noted.others("SIMD"),
       Some("of 5 candidates judged 2 by another engine, scalar: a policy is no formula")

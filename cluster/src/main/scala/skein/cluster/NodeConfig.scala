@@ -25,7 +25,9 @@ private[cluster] object NodeConfig:
       .withFallback(ConfigFactory.parseString(common(listen)))
       .withFallback(ConfigFactory.load())
 
-  /** Without certificates. */
+  /** Without certificates, which only loopback gets: nothing is encrypted. The engine passes bytes on, and so can check the
+    * lengths of frames.
+    */
   private val Plain = """
     pekko.remote.artery {
       transport = tls-tcp

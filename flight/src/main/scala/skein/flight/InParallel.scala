@@ -1,8 +1,8 @@
 package skein.flight
 
-import java.util.concurrent.{Callable, ExecutorCompletionService, Executors}
+import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
 
-/** Work on threads of its own, which end with it. Blocks. What is shared out in pieces of microseconds is shared out
+/** Work on threads of its own. What one of them throws is thrown here, and nothing more is begun. Blocks. What is shared out in pieces of microseconds is shared out
   * otherwise; it says why there.
   */
 private[skein] object InParallel:
@@ -10,8 +10,9 @@ private[skein] object InParallel:
   /** What each comes to, in their order; at most so many threads at once. */
   def map[A, B](all: Seq[A], threads: Int)(one: A => B): Vector[B] =
     val pool = Executors.newFixedThreadPool(threads.min(all.size).max(1))
-    try all.toVector.map(each => pool.submit(() => one(each))).map(_.get())
-    finally pool.shutdown()
+    try all.toVector.map(each => pool.submit(() => one(each))).map(result)
+    finally
+      val _ = pool.shutdownNow()
 
   /** Tells what each comes to, as it comes, on the calling thread. `all` may be without end: the next is taken when one has
     * ended.
@@ -28,7 +29,7 @@ private[skein] object InParallel:
         submit(all.next())
         underWay += 1
       while underWay > 0 do
-        val came = ended.take().get()
+        val came = result(ended.take())
         underWay -= 1
         if all.hasNext then
           submit(all.next())
@@ -36,3 +37,7 @@ private[skein] object InParallel:
         use(came)
     finally
       val _ = pool.shutdownNow()
+
+  private def result[B](of: Future[B]): B =
+    try of.get()
+    catch case failed: ExecutionException => throw failed.getCause

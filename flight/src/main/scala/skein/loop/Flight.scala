@@ -104,14 +104,19 @@ object Flight:
       system: ActorSystem
   ): Future[Done] =
     import system.dispatcher
-    val graph   = own.graph(team, switch)
-    val started = Promise[Materializer]()
-    val streams = system.actorOf(Props(Streams(started)))
-    val running = started.future.flatMap(graph.run()(using _))
+    val started   = Promise[Materializer]()
+    val brokenOff = Promise[Done]()
+    val streams   = system.actorOf(Props(Streams(started)))
+    // A graph that cannot be built is a flight that fails: its vehicles hover, and its recording is closed.
+    val running = started.future.flatMap(own.graph(team, switch).run()(using _))
+    // What it answers with need not end with its streams.
+    val ended = Future.firstCompletedOf(Seq(running, brokenOff.future))
     stopping.foreach: _ =>
-      val breakingOff = system.scheduler.scheduleOnce(OwnLoop.Grace.toDuration)(system.stop(streams))
-      running.onComplete(_ => breakingOff.cancel())
-    running.andThen(_ => system.stop(streams))
+      val breakingOff = system.scheduler.scheduleOnce(OwnLoop.Grace.toDuration):
+        system.stop(streams)
+        brokenOff.tryFailure(OwnLoop.BrokenOff(own.name)): Unit
+      ended.onComplete(_ => breakingOff.cancel())
+    ended.andThen(_ => system.stop(streams))
 
   /** Its streams end with it. */
   private final class Streams(started: Promise[Materializer]) extends Actor:

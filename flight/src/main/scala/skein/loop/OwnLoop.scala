@@ -33,6 +33,10 @@ object OwnLoop:
     */
   val Grace: Span = Span.ofSeconds(30)
 
+  /** The graph of this name had not ended [[Grace]] after its switch was shut down. */
+  final class BrokenOff(name: String)
+      extends RuntimeException(s"the loop $name had not ended ${Grace.toSeconds.round} s after its flight")
+
   extension (loop: LoopKind | OwnLoop)
     /** What recordings call it. */
     def label: String = loop match

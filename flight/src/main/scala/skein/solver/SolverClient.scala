@@ -201,6 +201,7 @@ final class SolverClient(
     val again = rehearsals > 0 && clock.now() < until
     rehearsedUntil = Some(until)
     rehearsals = if again then rehearsals - 1 else 0
+    if again then standing = Standing.Greeting("it answered, and then fell silent")
     again
 
   private def refused(why: String): Unit =

@@ -5,7 +5,7 @@ import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.*
 import org.apache.pekko.stream.{ClosedShape, SharedKillSwitch}
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.loop.*
 import skein.policy.Action
 import skein.port.{Sensor, VehicleError, VehiclePort}
@@ -76,6 +76,23 @@ class OwnLoopSimulation extends munit.FunSuite:
     val landed = fly(deaf)
     assertEquals(landed.hovers, 2)
     assert(landed.recorder.recording.events.exists(_.kind == skein.record.EventKind.Aborted))
+
+  test("a graph whose answer never comes is broken off, and the vehicles hover"):
+    val mute = OwnLoop(
+      "mute",
+      (team, stop) =>
+        team.ticks(team.now).via(stop.flow).to(Sink.ignore).mapMaterializedValue(_ => Promise[Done]().future)
+    )
+    val landed = fly(mute)
+    assertEquals(landed.hovers, 2)
+    assert(clue(
+      landed.recorder.recording.events
+    ).exists(_.detail.contains("the loop mute had not ended 30 s after")))
+
+  test("a graph that cannot be built ends the flight as failed, and the vehicles hover"):
+    val unbuilt = OwnLoop("unbuilt", (_, _) => throw IllegalArgumentException("an inlet is not connected"))
+    val landed  = fly(unbuilt)
+    assertEquals((landed.outcome, landed.hovers), (Outcome.Failed("an inlet is not connected"), 2))
 
   test("a graph that fails ends the flight as failed"):
     val broken = OwnLoop(

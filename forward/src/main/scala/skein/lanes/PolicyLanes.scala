@@ -191,11 +191,14 @@ private[skein] object PolicyLanes:
 
   private val known = ConcurrentHashMap[Class[?], Forms[Policy, PolicyLanes]]()
 
+  /** Policies of a class that are no formulas, before all of it are taken for none. */
+  private val MostRefused = 16
+
   /** How a policy flies by lanes, or why it does not. Compiled once for each form. */
   def of(policy: Policy): Either[Untraceable, PolicyLanes] =
     known.computeIfAbsent(
       policy.getClass,
-      _ => Forms[Policy, PolicyLanes](_.fits(_))(formulaOf(_).map(PolicyLanes(_)))
+      _ => Forms[Policy, PolicyLanes](_.fits(_), MostRefused)(formulaOf(_).map(PolicyLanes(_)))
     )(policy)
 
   private def formulaOf(policy: Policy): Either[Untraceable, Formula] = policy match

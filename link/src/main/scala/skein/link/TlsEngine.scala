@@ -1,7 +1,7 @@
 package skein.link
 
 import java.nio.ByteBuffer
-import javax.net.ssl.{SSLEngine, SSLEngineResult}
+import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLParameters, SSLSession}
 
 /** An engine of TLS that looks at each record's header before the JDK's own does. That one waits for the whole of a record,
   * however long it says it is, in a format of before TLS up to 32 KiB; Pekko has room for 18, and so tries for ever.
@@ -18,9 +18,16 @@ private[skein] final class TlsEngine(own: SSLEngine) extends SSLEngine:
 
   private def isRecord(source: ByteBuffer): Boolean =
     def u8(index: Int) = source.get(source.position() + index) & 0xff
-    (source.remaining < 1 || Types.contains(
-      u8(0)
-    )) && (source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most)
+    val isOfKnownType  = source.remaining < 1 || Types.contains(u8(0))
+    val fits           = source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most
+    isOfKnownType && fits
+
+  // An engine that does not pass these on would forget to verify names.
+  override def getSSLParameters: SSLParameters                   = own.getSSLParameters
+  override def setSSLParameters(parameters: SSLParameters): Unit = own.setSSLParameters(parameters)
+  override def getPeerHost: String                               = own.getPeerHost
+  override def getPeerPort: Int                                  = own.getPeerPort
+  override def getHandshakeSession: SSLSession                   = own.getHandshakeSession
 
   export own.{
     wrap,

@@ -111,7 +111,8 @@ final class UdpSocket private (
         Sink
           .foreach[ByteString](bytes => bytes.grouped(MostBytes).foreach(send(at, _)))
           .mapMaterializedValue(_.onComplete: _ =>
-            peers.remove(at)
+            // By then another may have come from there.
+            peers.remove(at, this)
             onEnd()),
         source
       )
@@ -148,7 +149,7 @@ final class UdpSocket private (
 
   private def forgetIdle(): Unit = peers.forEach: (at, peer) =>
     if peer.isIdle then
-      peers.remove(at)
+      peers.remove(at, peer)
       peer.end()
 
 object UdpSocket:

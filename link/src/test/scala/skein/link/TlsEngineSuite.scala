@@ -38,3 +38,14 @@ class TlsEngineSuite extends munit.FunSuite:
       assertEquals(server.unwrap(piece, into).getStatus, Status.BUFFER_UNDERFLOW)
     val result = server.unwrap(greeting, into)
     assertEquals((result.getStatus, result.getHandshakeStatus), (Status.OK, HandshakeStatus.NEED_TASK))
+
+  test("that names are verified is asked of the engine itself"):
+    val own        = SSLContext.getDefault.createSSLEngine("lab", 1)
+    val parameters = own.getSSLParameters
+    parameters.setEndpointIdentificationAlgorithm("HTTPS")
+    own.setSSLParameters(parameters)
+    val engine = TlsEngine(own)
+    assertEquals(engine.getSSLParameters.getEndpointIdentificationAlgorithm, "HTTPS")
+    engine.setSSLParameters(engine.getSSLParameters)
+    assertEquals(own.getSSLParameters.getEndpointIdentificationAlgorithm, "HTTPS")
+    assertEquals((engine.getPeerHost, engine.getPeerPort), ("lab", 1))

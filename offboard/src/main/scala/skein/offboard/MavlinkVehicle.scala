@@ -30,7 +30,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
 
   def arm(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.arm(token, now))
 
-  /** Stops the motors at once, wherever it is. */
+  /** Stops the motors wherever it is: at once, for the link is ready. */
   def kill(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.kill(token, now))
 
   /** To the autopilot's own height, or 2.5 m; answers when it begins. */

@@ -1,0 +1,24 @@
+package skein.lanes
+
+import skein.formula.Untraceable
+
+class FormsSuite extends munit.FunSuite:
+  private def counted(mostRefused: Int, accepts: Int => Boolean) =
+    var compiled = 0
+    val forms    = Forms[Integer, Int](_ == _, mostRefused): of =>
+      compiled += 1
+      if accepts(of) then Right(of) else Left(Untraceable(s"$of is odd"))
+    (forms, () => compiled)
+
+  test("what was refused is not compiled again, and something else of its kind may be a formula"):
+    val (forms, compiled) = counted(mostRefused = 2, _ % 2 == 0)
+    val one: Integer      = 1001
+    assert(forms(one).isLeft && forms(one).isLeft)
+    assertEquals(compiled(), 1)
+    assertEquals(forms(1002), Right(1002))
+    for odd <- Seq(1003, 1005, 1007) do assertEquals(forms(odd).left.map(_.getMessage), Left(s"$odd is odd"))
+
+  test("after so many refusals and no form, nothing more is compiled"):
+    val (forms, compiled) = counted(mostRefused = 3, _ => false)
+    for number <- 1001 to 1020 do assert(forms(number).isLeft)
+    assertEquals(compiled(), 3)
