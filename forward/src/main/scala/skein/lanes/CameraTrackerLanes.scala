@@ -159,5 +159,5 @@ private[lanes] object CameraTrackerLanes:
         detected    <- form("detected", 9)
         joined      <- form("joined", Belief + Detection + 1)
         decidedUpon <- form("decidedUpon", Belief + 8)
-      yield Forms(detected, joined, decidedUpon)).left
+      yield new Forms(detected, joined, decidedUpon)).left
         .map((why: Untraceable) => s"the sensor is no formula: ${why.getMessage}")
