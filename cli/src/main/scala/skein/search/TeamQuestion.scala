@@ -238,9 +238,9 @@ final case class TeamSetup(
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
   def engine(candidate: Vector[Double], judge: Judge): String = flownBy match
-    case TeamEngine.Reduced(conditions, _) =>
-      val (asked, team) = (batch(conditions, 1), this.candidate(candidate))
-      val told          = asked.engine(team)
+    case _: TeamEngine.Reduced =>
+      val team = this.candidate(candidate)
+      val told = asked.engine(team)
       if judge == Judge.Candidates || !asked.fliesByLanes(team) then told
       else s"$told, after a scalar flight of each episode, which makes its timetable"
     case TeamEngine.Whole(flights, _) => flights.engine
@@ -250,8 +250,13 @@ final case class TeamSetup(
     case TeamEngine.Whole(flights, _) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   def byLanes: Boolean = flownBy match
-    case TeamEngine.Reduced(conditions, _) => batch(conditions, 1).fliesByLanes(candidate(space.defaults))
-    case _: TeamEngine.Whole               => false
+    case _: TeamEngine.Reduced => asked.fliesByLanes(candidate(space.defaults))
+    case _: TeamEngine.Whole   => false
+
+  /** Is asked what flies, of every candidate, and flies nothing; where teams fly by measures of quantities. */
+  private lazy val asked: TeamBatch = flownBy match
+    case TeamEngine.Reduced(conditions, _) => batch(conditions, 1)
+    case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
 
   def effort: Effort = flownBy match
     case _: TeamEngine.Reduced        => Effort.ofTeam(byLanes)
