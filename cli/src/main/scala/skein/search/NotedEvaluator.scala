@@ -9,28 +9,28 @@ import skein.optimise.{Evaluator, RunningStats}
   *   of a candidate, in a line for the user
   */
 final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => String) extends Evaluator:
-  private val engines = collection.mutable.LinkedHashMap.empty[Vector[Double], String]
+  private val candidates = collection.mutable.LinkedHashMap.empty[String, Int].withDefaultValue(0)
 
   override def sideBySide: Int = by.sideBySide
 
   def tallies(of: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
-    note(of)
+    note(of, episodes)
     by.tallies(of, episodes)
 
   override def talliesUnless(isCancelled: () => Boolean)(
       of: Vector[Vector[Double]],
       episodes: Range
   ): Option[Vector[RunningStats]] =
-    note(of)
+    note(of, episodes)
     by.talliesUnless(isCancelled)(of, episodes)
 
-  /** A candidate that is judged in several rounds counts once. */
-  private def note(of: Vector[Vector[Double]]): Unit =
-    of.foreach(each => engines.getOrElseUpdate(each, engine(each)): Unit)
+  /** A candidate that is judged in several rounds flies the first episode in one of them. */
+  private def note(of: Vector[Vector[Double]], episodes: Range): Unit =
+    if episodes.start == 0 then of.foreach(each => candidates(engine(each)) += 1)
 
   /** How many candidates were flown by something else than this, in a line for the user. */
   def others(expected: String): Option[String] =
-    val others = engines.values.filter(_ != expected).groupMapReduce(identity)(_ => 1)(_ + _).toVector.sorted
+    val others = candidates.toVector.filter(_._1 != expected)
     Option.when(others.nonEmpty):
       val told = others.map((engine, count) => s"$count by another engine, $engine")
-      s"of ${engines.size} candidates judged ${told.mkString("; ")}"
+      s"of ${candidates.values.sum} candidates judged ${told.mkString("; ")}"
