@@ -18,12 +18,19 @@ def check(what, holds, found=None):
     print(f"ok: {what}" + ("" if found is None else f" ({found})"))
 
 
+def waited(read, holds, within_s=20):
+    """What is read as soon as it holds; else what was read last."""
+    until = time.monotonic() + within_s
+    value = read()
+    while not holds(value) and time.monotonic() < until:
+        time.sleep(0.02)
+        value = read()
+    return value
+
+
 def comes_to(what, holds, within_s=20):
     """Checks what is so after a while, however busy the machine is."""
-    until = time.monotonic() + within_s
-    while not holds() and time.monotonic() < until:
-        time.sleep(0.02)
-    check(what, holds())
+    check(what, waited(holds, bool, within_s))
 
 
 def passed():
@@ -61,7 +68,4 @@ def arrives(client, what, goal, speed, within_m, name=""):
 
 def stamped(read, within_s=10):
     """The time stamp of a sensor's first reading, which comes up to a second after the start; 0 where none comes."""
-    until = time.monotonic() + within_s
-    while read().time_stamp == 0 and time.monotonic() < until:
-        time.sleep(0.02)
-    return read().time_stamp
+    return waited(lambda: read().time_stamp, lambda stamp: stamp > 0, within_s)

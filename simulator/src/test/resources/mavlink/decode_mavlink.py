@@ -54,13 +54,19 @@ def last(kind):
     return seen[kind][-1]
 
 
+def has(kind):
+    return kind in seen
+
+
 send(m.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3))
 hear(2)
+hear(8, lambda: has("HEARTBEAT") and has("HOME_POSITION"))
 command(22, 0, 0, 0, 0, 0, 0, float("nan"))  # a takeoff without arming
 command(512, 148)
 send(m.MAVLink_timesync_message(0, 77))
 send(m.MAVLink_param_request_list_message(1, 1))
 hear(2)
+hear(8, lambda: has("TIMESYNC") and has("PARAM_VALUE") and last("PARAM_VALUE").param_count == len(seen["PARAM_VALUE"]))
 assert last("TIMESYNC").ts1 == 77
 assert any(one.param_id == "MIS_TAKEOFF_ALT" for one in seen["PARAM_VALUE"]), seen["PARAM_VALUE"]
 assert last("PARAM_VALUE").param_count == len(seen["PARAM_VALUE"])
@@ -69,18 +75,18 @@ home = last("HOME_POSITION")
 items = [(22, home.latitude, home.longitude, 4.0), (16, home.latitude + 500, home.longitude, 4.0)]
 send(m.MAVLink_mission_count_message(1, 1, len(items), 0))
 for number, (kind, latitude, longitude, height) in enumerate(items):
-    hear(3, lambda: any(one.seq == number for one in seen.get("MISSION_REQUEST_INT", [])))
+    hear(10, lambda: any(one.seq == number for one in seen.get("MISSION_REQUEST_INT", [])))
     send(m.MAVLink_mission_item_int_message(1, 1, number, 6, kind, 0, 1, 0, 1, 0, float("nan"), latitude, longitude, height, 0))
-hear(3, lambda: "MISSION_ACK" in seen)
+hear(10, lambda: has("MISSION_ACK"))
 send(m.MAVLink_mission_request_list_message(1, 1, 0))
-hear(3, lambda: "MISSION_COUNT" in seen)
+hear(10, lambda: has("MISSION_COUNT"))
 send(m.MAVLink_mission_request_int_message(1, 1, 1, 0))
-hear(3, lambda: "MISSION_ITEM_INT" in seen)
+hear(10, lambda: has("MISSION_ITEM_INT"))
 item = last("MISSION_ITEM_INT")
 assert (item.command, item.x, item.y, item.z) == (16, items[1][1], items[1][2], 4.0), item
 
 command(400, 1)
-hear(1)
+hear(10, lambda: last("HEARTBEAT").base_mode & 128)
 assert last("HEARTBEAT").base_mode & 128, last("HEARTBEAT")
 command(300, 0, 1)
 hear(30, lambda: any(one.seq == 1 for one in seen.get("MISSION_ITEM_REACHED", [])))

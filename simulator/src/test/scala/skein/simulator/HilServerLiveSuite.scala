@@ -47,12 +47,14 @@ class HilServerLiveSuite extends munit.FunSuite, Waiting:
       other.setSoTimeout(5000)
       assertEquals(other.getInputStream.read(), -1)
       other.close()
-      // As long as it flies: on its own the vehicle sinks.
-      var seen  = truth(server)
+      // Not where it is at the end: on its own the vehicle sinks, and this thread may be told of that late.
+      var seen  = Vector(truth(server))
       val until = 60.seconds.fromNow
-      while !flown.isCompleted && until.hasTimeLeft() do seen = truth(server)
+      while !flown.isCompleted && until.hasTimeLeft() do seen :+= truth(server)
       assert(flown.isCompleted)
-      assert((seen.positionNed - Vector3(0, 0, -5)).norm < 2, seen.toString)
+      def hovers(state: Kinematics) =
+        (state.positionNed - Vector3(0, 0, -5)).norm < 2 && state.velocityNed.norm < 0.5
+      assert(seen.exists(hovers), seen.takeRight(3).toString)
       assertEquals(server.peerStats.turnedAway, 1L)
       val next = SmallAutopilot()
       Await.ready(HilPeer.fly(next, 22_000_000, at, TcpTransport())(), 30.seconds)
@@ -100,7 +102,8 @@ class HilServerLiveSuite extends munit.FunSuite, Waiting:
       val full   = java.nio.ByteBuffer.allocate(16).order(java.nio.ByteOrder.LITTLE_ENDIAN)
       for _ <- 1 to 4 do full.putFloat(0.9f)
       val packet = DatagramPacket(new Array[Byte](2000), 2000)
-      for _ <- 1 to 250 do
+      val until  = 20.seconds.fromNow
+      while truth(server).positionNed.z >= -0.5 && until.hasTimeLeft() do
         packet.setLength(2000)
         state.receive(packet)
         assertEquals(packet.getLength, 144)

@@ -8,13 +8,13 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.mavlink.*
-import skein.testing.{Lengthy, PythonEnvironment, Waiting}
+import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** The proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, flies three at once.
   * Runs where Python can install that package; it fetches it once per user.
   */
-class MavsdkLiveSuite extends munit.FunSuite, Lengthy, Waiting:
+class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")
 
   override def afterAll(): Unit =
@@ -42,27 +42,27 @@ class MavsdkLiveSuite extends munit.FunSuite, Lengthy, Waiting:
 
   test("MAVSDK arms three vehicles at once, takes off, flies velocities, positions and a mission, and lands"):
     Mavsdk.python(): Unit
-    val ports = freePorts(3)
-    val open  = ports.zipWithIndex.map((port, index) =>
-      MavlinkPort(Address("127.0.0.1", 0), Some(Address("127.0.0.1", port)), Vector(index + 1))
-    )
-    serving(MavlinkSettings(udp = open), speed = 3): _ =>
-      val (status, output) = Mavsdk.run("fly_mavsdk.py", ports.map(_.toString)*)
-      println(output)
-      assertEquals(status, 0, output)
-      assert(output.linesIterator.exists(_.matches("PASSED [0-9]{2,} checks in .* s")), output)
+    conclusive:
+      val ports = freePorts(3)
+      val open  = ports.zipWithIndex.map((port, index) =>
+        MavlinkPort(Address("127.0.0.1", 0), Some(Address("127.0.0.1", port)), Vector(index + 1))
+      )
+      serving(MavlinkSettings(udp = open), speed = 3): _ =>
+        val (status, output) = Mavsdk.run("fly_mavsdk.py", ports.map(_.toString)*)
+        println(output)
+        assertEquals(status, 0, output)
+        assert(output.linesIterator.exists(_.matches("PASSED [0-9]{2,} checks in .* s")), output)
 
   test("pymavlink decodes every message of the vehicles, of every kind that they have"):
     Pymavlink.python(): Unit
-    val port = freePorts(1).head
-    serving(
-      MavlinkSettings(udp = Vector(MavlinkPort(Address("127.0.0.1", port), systems = Vector(1)))),
-      speed = 4
-    ): _ =>
-      val (status, output) = Pymavlink.run("decode_mavlink.py", port.toString)
-      println(output)
-      assertEquals(status, 0, output)
-      assert(output.linesIterator.exists(_.matches("PASSED [0-9]{3,} messages of 24 kinds")), output)
+    conclusive:
+      val port = freePorts(1).head
+      val open = MavlinkPort(Address("127.0.0.1", port), systems = Vector(1))
+      serving(MavlinkSettings(udp = Vector(open)), speed = 4): _ =>
+        val (status, output) = Pymavlink.run("decode_mavlink.py", port.toString)
+        println(output)
+        assertEquals(status, 0, output)
+        assert(output.linesIterator.exists(_.matches("PASSED [0-9]{3,} messages of 24 kinds")), output)
 
   test("a thousand damaged datagrams of each kind leave the vehicles answering, and other peers unharmed"):
     val port = freePorts(1).head

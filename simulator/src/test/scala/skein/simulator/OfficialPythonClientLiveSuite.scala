@@ -6,13 +6,13 @@ import scala.concurrent.duration.*
 import scala.io.Source
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
-import skein.testing.{Lengthy, PythonEnvironment, Waiting}
+import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** The proof that the built-in simulator speaks AirSim's wire: the official client, the unmodified `airsim` package of
   * PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it once per user.
   */
-class OfficialPythonClientLiveSuite extends munit.FunSuite, Lengthy, Waiting:
+class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("official-python-client")
 
   override def afterAll(): Unit =
@@ -49,11 +49,10 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Lengthy, Waiting:
 
   private def fly(script: String, world: WorldSettings = WorldSettings(vehicles, text = text)): Unit =
     OfficialPythonClient.python(): Unit
-    val settings = SimulatorSettings(
-      world,
-      Address("127.0.0.1", 0),
-      speed = 5
-    )
+    conclusive(flyOnce(script, world))
+
+  private def flyOnce(script: String, world: WorldSettings): Unit =
+    val settings = SimulatorSettings(world, Address("127.0.0.1", 0), speed = 5)
     val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
     try
       val (status, output) = OfficialPythonClient.run(script, s"${server.address.port}")
