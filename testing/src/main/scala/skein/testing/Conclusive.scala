@@ -2,7 +2,6 @@ package skein.testing
 
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.locks.LockSupport
-import munit.Assertions.assume
 import scala.util.{Failure, Success, Try}
 
 /** Tests of programs that run by the clock and cannot be told the time: they fail where the machine stops them for a
@@ -44,7 +43,7 @@ private object Conclusive:
           LockSupport.parkNanos(2_000_000)
           val now  = System.nanoTime()
           val late = now - before - 2_000_000
-          latest.accumulateAndGet(late, math.max): Unit
+          latest.accumulateAndGet(late, (a, b) => math.max(a, b)): Unit
           before = now
     val result = work
     ended.set(true)
