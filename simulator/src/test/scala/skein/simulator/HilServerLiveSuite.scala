@@ -8,6 +8,7 @@ import scala.util.Random
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.{Address, PreciseScheduler, TcpTransport}
+import skein.signal.Kinematics
 import skein.testing.Waiting
 import skein.units.*
 
