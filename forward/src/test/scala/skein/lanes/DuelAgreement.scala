@@ -108,7 +108,7 @@ private[skein] class DuelAgreement(
   /** Where decisions are the same, so are the flights. */
   private def outcomes(
       world: Int,
-      came: Outcome,
+      came: DuelOutcome,
       distances: Vector[(Double, Double)],
       placesOff: Double => Double
   ): Unit =
