@@ -5,7 +5,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.TcpTransport
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
@@ -135,7 +135,7 @@ final class FlyCommand(using Scenarios)
       count: Int,
       out: Path
   ): Either[String, Vector[FlightResult]] =
-    val twins = landed.filter(_.outcome == Outcome.Completed).flatMap(SolverOptions.twins(_, count))
+    val twins = landed.filter(_.outcome == FlightOutcome.Completed).flatMap(SolverOptions.twins(_, count))
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
       val seeds = twins.map(_.seed)
@@ -166,7 +166,7 @@ final class FlyCommand(using Scenarios)
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written =
           Report.write(flights, out).map(output => shown.say(s"Report: ${output.page}"))
-        val ended = landed.filter(_.outcome == Outcome.Stopped).map(_.plan.id).toSet
+        val ended = landed.filter(_.outcome == FlightOutcome.Stopped).map(_.plan.id).toSet
         all(written, FlyCommand.undecided(flights.all.map(one => one.flight.id -> one.decisions), ended))
     all(allWell(landed), told)
 
@@ -177,8 +177,8 @@ final class FlyCommand(using Scenarios)
   private def allWell(landed: Vector[FlightResult]): Either[String, Unit] =
     val failures = landed.flatMap: flight =>
       val ended = flight.outcome match
-        case Outcome.Failed(reason)              => Some(reason)
-        case Outcome.Completed | Outcome.Stopped => None
+        case FlightOutcome.Failed(reason)              => Some(reason)
+        case FlightOutcome.Completed | FlightOutcome.Stopped => None
       ended.orElse(flight.written.left.toOption.map(_.message)).map(reason =>
         s"${flight.plan.id} failed: $reason"
       )

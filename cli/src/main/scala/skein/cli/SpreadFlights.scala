@@ -2,7 +2,7 @@ package skein.cli
 
 import java.util.concurrent.atomic.AtomicInteger
 import skein.flight.{NotFlown, VirtualFlights}
-import skein.loop.Outcome
+import skein.loop.FlightOutcome
 import skein.measure.FlightSummary
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -27,7 +27,7 @@ private[cli] object SpreadFlights:
     VirtualFlights
       .inParallel(settings, plans): flight =>
         val summary = flight.landed.outcome match
-          case Outcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
+          case FlightOutcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
           case _                      => Right(FlightSummary.of(flight.recorder.recording))
         onLanded
         summary

@@ -86,5 +86,5 @@ object PortFlight:
     */
   final case class UnderWay(
       flight: Flight,
-      landed: Future[(outcome: Outcome, written: Either[RecordError, Written])]
+      landed: Future[(outcome: FlightOutcome, written: Either[RecordError, Written])]
   )

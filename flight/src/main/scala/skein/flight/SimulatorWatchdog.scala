@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Success
-import skein.loop.{Flight, Outcome}
+import skein.loop.{Flight, FlightOutcome}
 import skein.record.{Event, EventKind}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -44,15 +44,15 @@ private[flight] final class SimulatorWatchdog(
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
   /** How the flight has ended when its time is over. */
-  def onTime: Outcome = silentFor.fold(Outcome.Completed)(lasts =>
-    Outcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
+  def onTime: FlightOutcome = silentFor.fold(FlightOutcome.Completed)(lasts =>
+    FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
   )
 
   def over(flight: Flight): Unit =
     val looking =
       system.scheduler.scheduleAtFixedRate(Offset.toDuration, LookEvery.toDuration)(() => look(flight))
     flight.outcome.onComplete(_ => looking.cancel())
-    for case Outcome.Failed(reason) <- flight.ending do tell(s"$reason; the vehicles are told to hover")
+    for case FlightOutcome.Failed(reason) <- flight.ending do tell(s"$reason; the vehicles are told to hover")
 
   private def look(flight: Flight): Unit =
     val now          = clock.now()

@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.port.Moves
 import skein.record.{DecisionRow, Recording}
 import skein.units.*
@@ -120,7 +120,7 @@ object Checks:
 
   /** A recording that failed has the beginning alone. */
   private def isRecorded(seen: FlightTrace): Boolean = seen.outcome match
-    case Outcome.Failed(_) => false
+    case FlightOutcome.Failed(_) => false
     case _                 => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
@@ -150,7 +150,7 @@ object Checks:
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
-    if seen.outcome != Outcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused then
+    if seen.outcome != FlightOutcome.Completed || seen.endedAt < due || seen.faultPlan.loop == LoopKind.Paused then
       Vector.empty
     else
       seen.vehicles.flatMap: vehicle =>

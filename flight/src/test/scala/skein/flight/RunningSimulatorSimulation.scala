@@ -8,7 +8,7 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
 import skein.link.*
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{CameraImage, EventKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
 import skein.settings.{FlightPlan, FlySettings, ImageSource}
@@ -97,7 +97,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
             assembly.landed.map(landed =>
               images = recorder.records.collect { case image: CameraImage => image }.toVector
               Either.cond(
-                landed.outcome == Outcome.Completed,
+                landed.outcome == FlightOutcome.Completed,
                 recorder.recording,
                 s"${plan.id}: ${landed.outcome}"
               )

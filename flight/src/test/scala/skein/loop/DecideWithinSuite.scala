@@ -84,7 +84,7 @@ class DecideWithinSuite extends munit.FunSuite:
         .outcome
         .map(outcome => (outcome, recorder.recording))
     val (outcome, recording) = run.value
-    assertEquals(outcome, Outcome.Completed)
+    assertEquals(outcome, FlightOutcome.Completed)
     assert(recording.decisions.size > 30, recording.decisions.size.toString)
     // In virtual time a pure policy takes no time.
     assertEquals(recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)

@@ -11,7 +11,7 @@ class PredictiveLoopSimulation extends munit.FunSuite:
       settings: LoopSettings = LoopSettings()
   ): Double =
     val duels = seeds.map(VirtualDuel.fly(kind, link, _, settings))
-    duels.foreach(duel => assertEquals(duel.outcome, Outcome.Completed))
+    duels.foreach(duel => assertEquals(duel.outcome, FlightOutcome.Completed))
     duels.map(_.distanceM).sum / duels.size / VirtualDuel.truth.distanceM - 1
 
   test("the paused truth is the reference's 8.31 m"):

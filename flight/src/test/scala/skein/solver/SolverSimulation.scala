@@ -27,7 +27,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       answers: Recording => Int = _.solved.size
   ): SolverTrial =
     val recording = trial.recording
-    assertEquals(trial.outcome, Outcome.Completed)
+    assertEquals(trial.outcome, FlightOutcome.Completed)
     assertEquals(Replay(fleet, hovering(recording), SolverTrial.planning).firstDifference, None)
     for (vehicle, solved) <- recording.solved.groupBy(_.vehicle) do
       val numbers = solved.map(_.question)
@@ -61,7 +61,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
         hand.at(4.5)(hand.mendLink())
         hand.at(5.3) { sent = hand.greetings.result() }
       )
-      assertEquals(trial.outcome, Outcome.Completed)
+      assertEquals(trial.outcome, FlightOutcome.Completed)
       assert(clue(expected).contains(clue(sent.takeWhile(identity).size)))
       assert(clue(sent.dropWhile(identity).count(identity)) <= 3)
 

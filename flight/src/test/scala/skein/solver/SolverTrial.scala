@@ -19,7 +19,7 @@ import skein.vtime.VirtualTime
   *   as they came to a solver, by its start, vehicle and number
   */
 final case class SolverTrial(
-    outcome: Outcome,
+    outcome: FlightOutcome,
     recording: Recording,
     counts: Exchange.Counts,
     questions: Vector[(solver: Long, vehicle: Int, number: Long)],

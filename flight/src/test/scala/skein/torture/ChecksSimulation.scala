@@ -2,7 +2,7 @@ package skein.torture
 
 import scala.concurrent.ExecutionContext
 import skein.flight.CameraSensor
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.{DecisionRow, Event, EventKind, RecordError, TrueAge}
 import skein.policy.*
 import skein.scenario.{PaperDuel, Scenario}
@@ -219,7 +219,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       clean.arrivals.filter(arrival => arrival.at < clean.calmFrom || arrival.at >= due)
     )
     assert(found(silent).contains("Evader: no command came within 3"))
-    assert(!found(silent.copy(outcome = Outcome.Stopped)).contains("no command came within"))
+    assert(!found(silent.copy(outcome = FlightOutcome.Stopped)).contains("no command came within"))
     assert(!found(silent.copy(endedAt = due - Span.ofMillis(1))).contains("no command came within"))
     val paused = silent.copy(faultPlan = clean.faultPlan.copy(loop = LoopKind.Paused))
     assert(!found(paused).contains("no command came within"))
@@ -263,9 +263,9 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
 
   test("a flight that failed has the beginning on record alone"):
     val begun = clean.recording.copy(readings = clean.recording.readings.take(10))
-    val cut   = clean.copy(recording = begun, outcome = Outcome.Failed("the disk is full"))
+    val cut   = clean.copy(recording = begun, outcome = FlightOutcome.Failed("the disk is full"))
     assert(!found(cut).contains("readings were asked for"))
-    assert(found(cut.copy(outcome = Outcome.Completed)).contains("readings were asked for"))
+    assert(found(cut.copy(outcome = FlightOutcome.Completed)).contains("readings were asked for"))
 
   test(
     "what a simulator told before it was started again with another clock is not held against its new one"

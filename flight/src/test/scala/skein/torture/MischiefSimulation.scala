@@ -1,6 +1,6 @@
 package skein.torture
 
-import skein.loop.{LoopKind, Outcome}
+import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.EventKind
 import skein.scenario.PaperDuel
 import skein.testing.Unhurried
@@ -22,7 +22,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
       )
     val seen = TortureFlight.fly(faultPlan)
     assertEquals(Checks.violations(seen), Vector.empty, messageFaults.toString)
-    assertEquals(seen.outcome, Outcome.Completed)
+    assertEquals(seen.outcome, FlightOutcome.Completed)
     seen
 
   private def troubles(seen: FlightTrace) =
