@@ -21,7 +21,7 @@ private[simulator] object GainMethods:
         multirotor(simulation, name): (_, vehicle) =>
           // AirSim reads past the end of a shorter one.
           if Seq(p, i, d).exists(_.size < 3) then
-            Outcome.Threw("gains are three lists of three numbers: P, I, D")
+            CallOutcome.Threw("gains are three lists of three numbers: P, I, D")
           else
             def axis(n: Int) = Pid(p(n), i(n), d(n))
             vehicle.tune(change(vehicle.gains, AxisGains(axis(0), axis(1), axis(2))))

@@ -87,8 +87,8 @@ private[simulator] object MoveMethods:
     byAngles("moveByMotorPWMs")(Setpoint.rotors)
   )
 
-  private def fly(simulation: Simulated, name: String)(order: Move.Order): Outcome =
-    Method.multirotor(simulation, name)((index, _) => Outcome.Flies(index, order))
+  private def fly(simulation: Simulated, name: String)(order: Move.Order): CallOutcome =
+    Method.multirotor(simulation, name)((index, _) => CallOutcome.Flies(index, order))
 
   private def byVelocity(method: String, ifNone: Boolean)(
       goal: (SimulatedMultirotor, Double, Double, Double) => Setpoint

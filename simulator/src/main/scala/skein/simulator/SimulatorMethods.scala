@@ -27,4 +27,4 @@ private[simulator] object SimulatorMethods:
   /** A day: far beyond use, and far below what would overflow a clock. */
   private val LongestStepS = 86400.0
 
-  private def steps(span: Span): Outcome = Outcome.Steps(span.max(Span.Zero))
+  private def steps(span: Span): CallOutcome = CallOutcome.Steps(span.max(Span.Zero))

@@ -50,9 +50,9 @@ private[simulator] object VehicleMethods:
       case (simulation, (pose, name)) =>
         multirotor(simulation, name): (_, vehicle) =>
           val place = pose.position.toVector
-          if !vehicle.apiControl then Outcome.Threw("only a vehicle under api control can hover")
+          if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
           else if !vehicle.isAboveGround(place) then
-            Outcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
+            CallOutcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
           else
             val turn = pose.orientation.toQuaternion
             done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))
@@ -71,7 +71,7 @@ private[simulator] object VehicleMethods:
             yield scan
           scan.fold(missing("lidar", sensor)): scan =>
             val ids = simulation.objects.ids
-            Outcome.Draws(() => LidarData.encode(scan.data(ids(_))))
+            CallOutcome.Draws(() => LidarData.encode(scan.data(ids(_))))
     ,
     many[(String, String)]("getDistanceSensorData"):
       case (simulation, (sensor, name)) =>
@@ -83,7 +83,7 @@ private[simulator] object VehicleMethods:
   /** What is so of a vehicle that is found by its name, now. */
   private def read[V, A: Writer](
       method: String,
-      find: (Simulated, String) => ((Int, V) => Outcome) => Outcome
+      find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
   )(value: (V, Instant) => A): Method =
     one[String](method): (simulation, name) =>
       find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
@@ -114,8 +114,8 @@ private[simulator] object VehicleMethods:
       Pose(Vector3r(ranger.place.position), Quaternionr(ranger.place.orientation))
     )
 
-  private def missing(kind: String, sensor: String): Outcome =
-    Outcome.Threw(s"No $kind with name $sensor exist on vehicle")
+  private def missing(kind: String, sensor: String): CallOutcome =
+    CallOutcome.Threw(s"No $kind with name $sensor exist on vehicle")
 
   private def state(vehicle: SimulatedMultirotor, at: Instant) = MultirotorState(
     CollisionInfo.None,

@@ -126,5 +126,5 @@ class ArgumentSuite extends munit.FunSuite:
   test("a function that fails within answers with its exception"):
     val broken = Method.none("broken")(_ => throw IllegalStateException("within"))
     broken(Bench().simulation, Vector.empty) match
-      case Outcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
+      case CallOutcome.Threw(text) => assertEquals(text, "java.lang.IllegalStateException: within")
       case other               => fail(s"$other")
