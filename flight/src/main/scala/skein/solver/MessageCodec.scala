@@ -5,7 +5,7 @@ import skein.bytes.Codec
 import skein.forecast.Estimate
 import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
-import skein.record.Course
+import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -58,7 +58,7 @@ object MessageCodec:
     .derived[Question]
     .imap(checked)(asked => asked.copy(view = withSensorsOf(asked.deciders.map(_.vehicle).toSet, asked.view)))
 
-  private given Codec[Course]     = Codec.derived
+  private given Codec[PlannedPath]     = Codec.derived
   private given Codec[PlanReport] = Codec.derived
   private given Codec[Chosen]     = Codec.derived
 

@@ -5,7 +5,7 @@ import org.scalacheck.{Arbitrary, Gen}
 import skein.forecast.Estimate
 import skein.loop.{Chosen, Memory, Move, PlanReport, Reading, SensorReading, TeamView}
 import skein.policy.{Action, Yaw}
-import skein.record.Course
+import skein.record.PlannedPath
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
@@ -115,7 +115,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
 
   private val course =
     Gen.zip(Gen.listOf(number), Gen.listOf(number), span).map((north, east, step) =>
-      Course(north.toVector, east.toVector, step)
+      PlannedPath(north.toVector, east.toVector, step)
     )
 
   private val plan =

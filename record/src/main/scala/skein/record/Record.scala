@@ -274,7 +274,7 @@ final case class Planned(
     cost: Option[Double],
     took: Span,
     breaches: Long,
-    course: Option[Course] = None
+    course: Option[PlannedPath] = None
 ) extends Record
 
 /** A decision that was made in another process, and the times of its ways there and back.
@@ -316,7 +316,7 @@ final case class SolvedRow(
 final case class SolverClock(offset: Span, uncertainty: Span)
 
 /** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command acts. */
-final case class Course(north: Vector[Double], east: Vector[Double], step: Span)
+final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
 /** Where a vehicle was expected to be when the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)

@@ -84,8 +84,8 @@ private[record] object Table:
   // What came with a later format than its table.
   private given action: FieldColumns[Option[Action]] =
     name => added(optional(summon[FieldColumns[Action]](name)))
-  private given course: FieldColumns[Option[Course]] =
-    name => added(optional(summon[FieldColumns[Course]](name)))
+  private given course: FieldColumns[Option[PlannedPath]] =
+    name => added(optional(summon[FieldColumns[PlannedPath]](name)))
 
   val flight: Table[FlightRow]                = table("flight")
   val parameter: Table[Parameter]             = table("parameter")

@@ -148,7 +148,7 @@ object Samples:
       Some(12.25),
       Span.ofMillis(60.5),
       0,
-      Some(Course(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
+      Some(PlannedPath(Vector(1.5, 2.5), Vector(-0.5, 0.25), Span.ofMillis(100)))
     ),
     Planned("Pursuer", 2, 0, Vector(0, 0), None, Span.ofMillis(61), 2),
     SolvedRow(
