@@ -31,7 +31,7 @@ final class PredictedLagVehicles extends PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Course course,
+      Propagation course,
       boolean withVelocity) {
     float carried = (float) course.first(), kept = (float) course.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
@@ -40,9 +40,9 @@ final class PredictedLagVehicles extends PredictedVehicles {
       keep(seenVx, kept, reading, into);
       keep(seenVy, kept, reading, into);
     }
-    for (Course.Part part : course.parts()) {
+    for (Propagation.Part part : course.parts()) {
       int place = part.command();
-      if (place != Course.Rest()) {
+      if (place != Propagation.Rest()) {
         float moved = (float) part.span() * speed, faster = (float) part.rest() * speed;
         add(sent.cos, place * WORLDS, moved, seenX, into);
         add(sent.sin, place * WORLDS, moved, seenY, into);

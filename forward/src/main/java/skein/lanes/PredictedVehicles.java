@@ -30,6 +30,6 @@ abstract class PredictedVehicles {
       Directions sent,
       int reading,
       int into,
-      Course course,
+      Propagation course,
       boolean withVelocity);
 }

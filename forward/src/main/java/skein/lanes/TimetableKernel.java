@@ -23,7 +23,7 @@ final class TimetableKernel {
   // Of the episode's timetable.
   private int[] operations, views;
   private float[] times;
-  private Course[] courses;
+  private Propagation[] courses;
   private boolean readsVelocity;
 
   /**

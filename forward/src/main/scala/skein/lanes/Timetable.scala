@@ -45,7 +45,7 @@ private[skein] final class Timetable private[lanes] (
     val operations: Array[Int],
     val times: Array[Float],
     val views: Array[Int],
-    val courses: Array[Course],
+    val courses: Array[Propagation],
     val readings: Int,
     val headings: Int
 ):
@@ -132,7 +132,7 @@ private final class TimetableCompiler(
 
   /** The number of each view among those that are told, or −1. */
   private val told    = Array.fill(notes.views.size)(-1)
-  private val courses = Array.newBuilder[Course]
+  private val courses = Array.newBuilder[Propagation]
   private var placed  = 0
   private val views   = Array.newBuilder[Int]
   private var count   = 0

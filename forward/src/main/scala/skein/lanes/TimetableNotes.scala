@@ -170,7 +170,7 @@ private[lanes] final class Note(val kind: Int, val agent: Int, val atS: Double, 
   var from = 0
 
   /** `PREDICT`: the way to the moment predicted. */
-  var course: Course = Course.Nowhere
+  var course: Propagation = Propagation.Nowhere
 
 /** A reading in the forecast.
   *

@@ -20,7 +20,7 @@ private[lanes] trait CoursePlotter:
   def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter
 
   /** From the reading on through these legs. */
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course
+  def predicted(legs: Vector[CoursePlotter.Leg]): Propagation
 
 private[lanes] object CoursePlotter:
   /** A [[skein.forecast.Leg]].
@@ -53,8 +53,8 @@ private object CoastPredictor extends TimetablePredictor, CoursePlotter:
   def vehicles(duelist: Duelist): PredictedVehicles        = PredictedLagVehicles(0)
   def plotter: CoursePlotter                               = this
   def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter = this
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course   =
-    Course(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
+  def predicted(legs: Vector[CoursePlotter.Leg]): Propagation   =
+    Propagation(Array.empty, legs.iterator.map(_.span.toSeconds).sum, 1)
 
 /** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of it; of each
   * command, how long it carries the vehicle, and how much of its velocity is reached.
@@ -64,29 +64,29 @@ private final class LagPredictor(model: ReducedModel) extends TimetablePredictor
 
   def plotter: CoursePlotter = ReducedPlotter(model.deadTimeS, course)
 
-  private def course(flown: Vector[ReducedPlotter.Flown], totalS: Double): Course =
+  private def course(flown: Vector[ReducedPlotter.Flown], totalS: Double): Propagation =
     val lag                = FirstOrderLag(model.lagS)
     def reached(t: Double) = lag.carriesS(t) / model.lagS
     def moved(t: Double)   = t - lag.carriesS(t)
     val parts              = flown.map: part =>
       val (left, after) = (totalS - part.fromS, totalS - part.untilS)
-      Course.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
-    Course(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
+      Propagation.Part(part.decision, moved(left) - moved(after), reached(left) - reached(after))
+    Propagation(parts.toArray, lag.carriesS(totalS), lag.remains(totalS))
 
 /** By [[PredictedDragVehicles]]: of each command, how many pieces end under it, and the time since the last. */
 private final class DragPredictor(model: ReducedModel) extends TimetablePredictor:
   def vehicles(duelist: Duelist): PredictedVehicles = PredictedDragVehicles(model, duelist.speed)
 
   def plotter: CoursePlotter =
-    ReducedPlotter(model.deadTimeS, (flown, _) => Course(flown.map(pieces).toArray))
+    ReducedPlotter(model.deadTimeS, (flown, _) => Propagation(flown.map(pieces).toArray))
 
-  private def pieces(part: ReducedPlotter.Flown): Course.Part =
+  private def pieces(part: ReducedPlotter.Flown): Propagation.Part =
     var pieceS = part.fromS
     var pieces = 0
     while part.untilS > pieceS + ReducedModel.PieceS do
       pieceS += ReducedModel.PieceS
       pieces += 1
-    Course.Part(part.decision, pieces, part.untilS - pieceS)
+    Propagation.Part(part.decision, pieces, part.untilS - pieceS)
 
 /** Which command acts when, as [[ReducedVehicleModel]] takes it: each a dead time after it has come. A command that
   * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
@@ -96,7 +96,7 @@ private final class DragPredictor(model: ReducedModel) extends TimetablePredicto
   */
 private final class ReducedPlotter private (
     deadTime: Span,
-    course: (Vector[ReducedPlotter.Flown], Double) => Course,
+    course: (Vector[ReducedPlotter.Flown], Double) => Propagation,
     held: ReducedPlotter.Known
 ) extends CoursePlotter:
   import ReducedPlotter.*
@@ -104,7 +104,7 @@ private final class ReducedPlotter private (
   def next(legs: Vector[CoursePlotter.Leg]): CoursePlotter =
     new ReducedPlotter(deadTime, course, legs.foldLeft(held)(_.after(_, deadTime)))
 
-  def predicted(legs: Vector[CoursePlotter.Leg]): Course =
+  def predicted(legs: Vector[CoursePlotter.Leg]): Propagation =
     val flown  = Vector.newBuilder[Flown]
     var known  = held
     var startS = 0.0
@@ -120,7 +120,7 @@ private final class ReducedPlotter private (
     course(flown.result(), startS)
 
 private object ReducedPlotter:
-  def apply(deadTimeS: Double, course: (Vector[Flown], Double) => Course): CoursePlotter =
+  def apply(deadTimeS: Double, course: (Vector[Flown], Double) => Propagation): CoursePlotter =
     new ReducedPlotter(Span.ofSeconds(deadTimeS), course, Known(0, 0, Vector.empty))
 
   /** Under which decision's command the model flies from when until when, s from the reading. */
