@@ -100,7 +100,7 @@ private[rpc] final class ChannelStage(
 
     def send(call: Call): Unit = connections(call.connection).toWrite.append(call)
 
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
       val _ = pending.decrementAndGet()
       call.outcome.success(outcome)
 

@@ -13,7 +13,7 @@ private[rpc] trait ChannelEffects:
   def send(call: Call): Unit
 
   /** The call has ended. */
-  def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit
+  def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit
 
   /** Try to open the connection again, after a pause. */
   def reconnect(connection: Int, after: Span): Unit
@@ -115,7 +115,7 @@ private[rpc] final class ChannelState(
         slot.inFlight.remove(call.id)
         inFlight -= 1
         slot.failures = 0
-        if reply.error == Null then succeed(call, Answer(reply.result, call.sentAt, now))
+        if reply.error == Null then succeed(call, TimedReply(reply.result, call.sentAt, now))
         else fail(call, RpcError.Refused(call.method, Message.errorText(reply.error)))
         dispatch()
         true
@@ -164,7 +164,7 @@ private[rpc] final class ChannelState(
       inFlight -= 1
       if call.written then slot.remember(call)
 
-  private def succeed(call: Call, answer: Answer[Msg | Received]): Unit =
+  private def succeed(call: Call, answer: TimedReply[Msg | Received]): Unit =
     counters.answered.increment()
     finish(call, Right(answer))
 
@@ -173,7 +173,7 @@ private[rpc] final class ChannelState(
     effects.observe(RpcEvent.Failed(call.method, channel, error))
     finish(call, Left(error))
 
-  private def finish(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+  private def finish(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
     call.ended = true
     val _ = deadlines.remove(call)
     effects.end(call, outcome)

@@ -63,7 +63,7 @@ final class RpcClient(
       method: String,
       params: Seq[Msg],
       options: CallOptions = CallOptions()
-  ): Future[Either[RpcError, Answer[Msg]]] =
+  ): Future[Either[RpcError, TimedReply[Msg]]] =
     submit(method, params, options).map(_.flatMap(answer =>
       answer.value match
         case read: Msg          => Right(answer.copy(value = read))
@@ -77,7 +77,7 @@ final class RpcClient(
     */
   def callBulk[A](method: String, params: Seq[Msg], options: CallOptions = CallOptions())(
       read: MessageReader => A
-  ): Future[Either[RpcError, Answer[A]]] =
+  ): Future[Either[RpcError, TimedReply[A]]] =
     submit(method, params, options.copy(channel = Channel.Bulk)).map(_.flatMap(answer =>
       answer.value match
         case received: Received =>
@@ -92,7 +92,7 @@ final class RpcClient(
       method: String,
       params: Seq[Msg],
       options: CallOptions
-  ): Future[Either[RpcError, Answer[Msg | Received]]] =
+  ): Future[Either[RpcError, TimedReply[Msg | Received]]] =
     val call = Call(method, params, options, clock.now())
     counters.called.increment()
     val channel = options.channel match
@@ -108,7 +108,7 @@ final class RpcClient(
       method: String,
       params: Seq[Msg],
       options: CallOptions = CallOptions()
-  ): Future[Either[RpcError, Answer[A]]] =
+  ): Future[Either[RpcError, TimedReply[A]]] =
     callStamped(method, params, options).map(
       _.flatMap(answer => read[A](method, answer.value).map(value => answer.map(_ => value)))
     )

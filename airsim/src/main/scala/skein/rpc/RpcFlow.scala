@@ -29,7 +29,7 @@ object RpcFlow:
     */
   def ordered[A, B: Reader](client: RpcClient, parallelism: Int, timeout: Span)(
       request: A => RpcCall
-  ): Flow[A, Answer[B], NotUsed] =
+  ): Flow[A, TimedReply[B], NotUsed] =
     Flow[A]
       .mapAsync(parallelism): element =>
         val call = request(element)

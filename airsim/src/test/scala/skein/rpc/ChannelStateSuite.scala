@@ -24,7 +24,7 @@ class ChannelStateSuite extends munit.FunSuite:
       call.sends += 1
       sent += call
       usedInTurn += call.connection
-    def end(call: Call, outcome: Either[RpcError, Answer[Msg | Received]]): Unit =
+    def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
       assert(!ends.contains(call.method), s"${call.method} ended twice")
       ends(call.method) = outcome.map(_.value)
     def reconnect(connection: Int, after: Span): Unit = reconnects += connection -> after
