@@ -8,7 +8,7 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.concurrent.Promise
 import scala.concurrent.duration.DurationInt
-import skein.blocks.{Answer, Block, BlockKey, Coordinator, Ledger}
+import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
 import skein.cluster.jars.Shipment
 
 /** What a coordinator works on.
@@ -154,8 +154,8 @@ private[cluster] final class CoordinatorBehavior private (
     val (after, what) = state.answered(worker, number, busyNanos)
     state = after
     what match
-      case Answer.Repeated     => ()
-      case Answer.First(block) =>
+      case AnswerKind.Repeated     => ()
+      case AnswerKind.First(block) =>
         keep(block.key, answer) match
           case Left(mistake) => ended(Left(mistake))
           case Right(())     =>
