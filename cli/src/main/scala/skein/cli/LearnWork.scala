@@ -2,7 +2,7 @@ package skein.cli
 
 import scala.collection.immutable.ArraySeq
 import skein.bytes.Codec
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, Solvers}
 import skein.loop.LoopKind
 import skein.optimise.{RunningStats, ValueEvaluator}
 import skein.scenario.Scenarios

@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.budget.ClusterSubject
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, Solvers}
 import skein.scenario.Scenarios
 import skein.search.VerifiedQuestion
 
@@ -34,7 +34,7 @@ private[cli] object Questions:
     String(kind.toArray, UTF_8) match
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))
       case Budget  => ClusterSubject.solvers.of(question.drop(1))
-      case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): Solver)
+      case Torture => TortureQuestion.read(question.drop(1)).map(ready => () => (ready.answer(_)): BlockSolver)
       case Spread  => SpreadQuestion.solvers.of(question.drop(1))
       case Learn   => LearnWork.solvers.of(question.drop(1))
       case other   =>

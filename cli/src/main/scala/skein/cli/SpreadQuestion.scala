@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigRender
 import scala.collection.immutable.ArraySeq
 import scala.jdk.CollectionConverters.*
 import skein.bytes.Codec
-import skein.cluster.{Solver, Solvers}
+import skein.cluster.{BlockSolver, Solvers}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
@@ -63,7 +63,7 @@ private[cli] object SpreadQuestion:
       came     <- probe(settings)
       _        <- Expect.that(came == question.probe):
         "short flights are others here than at the coordinator; has a file that --link, --policy, --predictor or --scene names another content here?"
-    yield () => (Ready(settings).answer(_)): Solver
+    yield () => (Ready(settings).answer(_)): BlockSolver
 
   /** Flies, or has flown. */
   final case class Ready(settings: FlySettings)(using Scenarios):
