@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.charset.StandardCharsets.UTF_8
 import scala.collection.immutable.ArraySeq
 import skein.budget.ClusterSubject
-import skein.cluster.{BlockSolver, Solvers}
+import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.scenario.Scenarios
 import skein.search.VerifiedQuestion
 
@@ -29,7 +29,7 @@ private[cli] object Questions:
     ArraySeq.unsafeWrapArray(s"$kind\n".getBytes(UTF_8)) ++ question
 
   /** Answers every kind, about scenarios that are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     val (kind, question) = asked.splitAt(asked.indexOf('\n'.toByte).max(0))
     String(kind.toArray, UTF_8) match
       case Search  => VerifiedQuestion.solvers.of(question.drop(1))

@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigRender
 import scala.collection.immutable.ArraySeq
 import scala.jdk.CollectionConverters.*
 import skein.bytes.Codec
-import skein.cluster.{BlockSolver, Solvers}
+import skein.cluster.{BlockSolver, BlockSolverFactory}
 import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.{FlightSummary, SummaryBytes}
 import skein.scenario.Scenarios
@@ -53,7 +53,7 @@ private[cli] object SpreadQuestion:
   private val ProbeDuration = Span.ofSeconds(1)
 
   /** Flies what was asked of scenarios that are known here. */
-  def solvers(using Scenarios): Solvers = asked =>
+  def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       question <- JsonText.read[SpreadQuestion](asked, "spread's question")
       config   <-

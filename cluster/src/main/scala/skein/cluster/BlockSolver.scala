@@ -11,7 +11,7 @@ trait BlockSolver:
   def solve(work: ArraySeq[Byte]): ArraySeq[Byte]
 
 /** Reads questions. */
-trait Solvers:
+trait BlockSolverFactory:
 
   /** @param question
     *   as its coordinator wrote it

@@ -152,7 +152,7 @@ private[cluster] object WorkerBehavior:
       name: String,
       cores: Int,
       build: String,
-      solvers: Solvers,
+      solvers: BlockSolverFactory,
       startedAt: Long,
       programs: Acceptance = Acceptance.none
   ):

@@ -40,7 +40,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val heard  = Heard[ToCoordinator]()
     val told   = ConcurrentLinkedQueue[String]()
     val ready  = LinkedBlockingQueue[Int]()
-    val solver = new Solvers:
+    val solver = new BlockSolverFactory:
       def of(asked: ArraySeq[Byte]) = Right(() =>
         ready.add(1)
         work => work

@@ -27,7 +27,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     * @param before
     *   called before each block
     */
-  private final class Reversing(before: () => Unit = () => ()) extends Solvers:
+  private final class Reversing(before: () => Unit = () => ()) extends BlockSolverFactory:
     val solved                    = AtomicInteger()
     def of(asked: ArraySeq[Byte]) =
       Either.cond(
@@ -70,7 +70,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   private def worker(
       to: Endpoint,
       name: String,
-      solvers: Solvers,
+      solvers: BlockSolverFactory,
       build: String = "one",
       cores: Int = 1,
       tls: Option[Tls] = None,
