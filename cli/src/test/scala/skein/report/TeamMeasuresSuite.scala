@@ -18,7 +18,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
   ): Recording =
     val agents   = scenario.agents
     val vehicles =
-      agents.map(agent => Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
+      agents.map(agent => VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
     val settings = scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
     val flight   = FlightRow(
       s"$loop-none",

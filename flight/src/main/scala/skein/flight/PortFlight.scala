@@ -51,7 +51,7 @@ final case class PortFlight(
       FlightAssembler.version,
       clock.now()
     ),
-    scenario.agents.map(Vehicle.of),
+    scenario.agents.map(VehicleRow.of),
     ScenarioSettings.recorded(scenario)
   )
 

@@ -15,8 +15,8 @@ class FlownVehiclesSuite extends munit.FunSuite:
   private def heading(loop: String) = RecordingHeader(
     FlightRow("f", loop, "none", 1, ms(100), Span.ofSeconds(1), "virtual", "", "duel", "", start),
     Seq(
-      Vehicle("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
-      Vehicle("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
+      VehicleRow("Red", "pursuer", MetresPerSecond(10), Vector3.Zero),
+      VehicleRow("Blue", "evader", MetresPerSecond(5), Vector3.Zero)
     )
   )
 

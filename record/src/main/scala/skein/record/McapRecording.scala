@@ -61,7 +61,7 @@ object McapRecording:
       scene: Map[String, String] => Scene,
       mcap: McapWriter
   ): Unit =
-    val names = rows.collect { case (_, vehicle: Vehicle) => vehicle.name }
+    val names = rows.collect { case (_, vehicle: VehicleRow) => vehicle.name }
     val from  =
       rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
         Instant.ofNanos(0)

@@ -69,11 +69,11 @@ final case class Parameter(name: String, value: String) extends Record
   * @param startNed
   *   the origin of its own frame in the world frame
   */
-final case class Vehicle(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
+final case class VehicleRow(name: String, role: String, speed: MetresPerSecond, startNed: Vector3) extends Record
 
-object Vehicle:
-  def of(agent: Agent): Vehicle =
-    Vehicle(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
+object VehicleRow:
+  def of(agent: Agent): VehicleRow =
+    VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
   /** The parameter that says what a vehicle is, where it is no multirotor. */
   def kind(name: String, kind: VehicleKind): Option[Parameter] =

@@ -89,7 +89,7 @@ private[record] object Table:
 
   val flight: Table[FlightRow]                = table("flight")
   val parameter: Table[Parameter]             = table("parameter")
-  val vehicle: Table[Vehicle]                 = table("vehicle")
+  val vehicle: Table[VehicleRow]                 = table("vehicle")
   val reading: Table[ReadingRow]              = table("reading")
   val decision: Table[DecisionRow]            = table("decision")
   val sighting: Table[Sighting]               = table("sighting", since = 3)

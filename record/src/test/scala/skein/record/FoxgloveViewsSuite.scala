@@ -34,7 +34,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
   test("a car is as long as it is wide twice over, and stands on the ground where its frame is"):
     val seen    = FoxgloveViews(names, Some(Span.Zero))
     val _       = seen.opening(Samples.at(0))
-    val told    = Vehicle.kind("Evader", VehicleKind.Car).get
+    val told    = VehicleRow.kind("Evader", VehicleKind.Car).get
     val Seq(as) = seen.of(told): @unchecked
     assertEquals(as.topic, drawn(2).topic)
     val (body, before) = (entity(as)("cubes")(0), entity(drawn(2))("cubes")(0))
@@ -42,7 +42,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assert(body("size")("x").num > 2 * body("size")("y").num)
     // Down is positive.
     assertEqualsDouble(body("pose")("position")("z").num, -body("size")("z").num / 2, 1e-9)
-    assertEquals(Vehicle.kind("Evader", VehicleKind.Multirotor), None)
+    assertEquals(VehicleRow.kind("Evader", VehicleKind.Multirotor), None)
     for other <- Seq(Parameter("kind.Nobody", "Car"), Parameter("kind.Evader", "Boat"), Parameter("car", ""))
     do
       assertEquals(seen.of(other).size, 0)

@@ -21,8 +21,8 @@ object Samples:
       startedAt = Instant.ofNanos(1_790_000_000_123_456_789L)
     ),
     Seq(
-      Vehicle("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
-      Vehicle("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
+      VehicleRow("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
+      VehicleRow("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
     ),
     Seq(Parameter("turningRadiusM", "8"))
   )

@@ -1,6 +1,6 @@
 package skein.view
 
-import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, Vehicle}
+import skein.record.{FlightRow, FlightTopics, McapRecording, Record, ImagingSensor, VehicleRow}
 import skein.scene.Scene
 import skein.units.Instant
 
@@ -106,7 +106,7 @@ object RecordedShow:
       scene: Map[String, String] => Scene = _ => Scene.Empty
   ): RecordedShow = RecordedShow(
     rows.collectFirst { case (_, flight: FlightRow) => flight.id }.getOrElse("flight"),
-    rows.collect { case (_, vehicle: Vehicle) => vehicle.name },
+    rows.collect { case (_, vehicle: VehicleRow) => vehicle.name },
     rows,
     scene = McapRecording.sceneOf(rows, scene)
   )
