@@ -4,7 +4,7 @@ import skein.policy.{Action, Fleet, Role}
 import skein.record.{
   Command,
   DecisionRow,
-  Measurement,
+  MeasurementRow,
   Observations,
   Predicted,
   PredictedMotion,
@@ -22,9 +22,9 @@ private final class Rows(fleet: Fleet):
 
   def reading(read: Reading): ReadingRow = ReadingRow(read.sequence, name(read.vehicle), read.state)
 
-  def measurement(read: SensorReading): Measurement =
+  def measurement(read: SensorReading): MeasurementRow =
     import read.values.{receivedAt, sentAt, validAt, value}
-    Measurement(
+    MeasurementRow(
       read.sequence,
       name(read.vehicle),
       read.sensor,

@@ -107,7 +107,7 @@ object FlightTopics:
   /** When it was known to the controller, if it says so. */
   def knownAt(record: Record): Option[Instant] = record match
     case reading: ReadingRow     => Some(reading.state.receivedAt)
-    case measured: Measurement   => Some(measured.receivedAt)
+    case measured: MeasurementRow   => Some(measured.receivedAt)
     case image: CameraImage      => Some(image.receivedAt)
     case cloud: Cloud            => Some(cloud.receivedAt)
     case decision: DecisionRow   => Some(decision.decidedAt)
@@ -121,7 +121,7 @@ object FlightTopics:
 
   private def keyOf(number: Long, record: Record): String = record match
     case reading: ReadingRow     => reading.vehicle
-    case measured: Measurement   => s"${measured.vehicle} ${measured.sensor}"
+    case measured: MeasurementRow   => s"${measured.vehicle} ${measured.sensor}"
     case sensing: Sensing        => s"${sensing.vehicle} ${sensing.sensor}"
     case image: CameraImage      => s"${image.vehicle} ${image.camera} ${image.kind}"
     case cloud: Cloud            => s"${cloud.vehicle} ${cloud.lidar}"

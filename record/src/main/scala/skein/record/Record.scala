@@ -95,7 +95,7 @@ final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kine
   * @param numbers
   *   as many
   */
-final case class Measurement(
+final case class MeasurementRow(
     sequence: Long,
     vehicle: String,
     sensor: String,

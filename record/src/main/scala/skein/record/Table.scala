@@ -93,7 +93,7 @@ private[record] object Table:
   val reading: Table[ReadingRow]              = table("reading")
   val decision: Table[DecisionRow]            = table("decision")
   val sighting: Table[Sighting]               = table("sighting", since = 3)
-  val measurement: Table[Measurement]         = table("measurement", since = 5)
+  val measurement: Table[MeasurementRow]         = table("measurement", since = 5)
   val sensing: Table[Sensing]                 = table("sensing", since = 5)
   val image: Table[CameraImage]               = table("image", since = 6)
   val cloud: Table[Cloud]                     = table("cloud", since = 6)

@@ -126,7 +126,7 @@ object Samples:
       5,
       Some(PredictedMotion(Vector3(0.5, 1.5, -20.25), Vector3(-1, 2.25, 0.5)))
     ),
-    Measurement(
+    MeasurementRow(
       3,
       "Pursuer",
       "gps",
