@@ -59,7 +59,7 @@ object SyntheticFlight:
           headings(agent) = decision.heading.value
           val velocity = scenario.agents(agent).velocityNed(headings(agent))
           recorder.offer(
-            Command(
+            CommandRow(
               sequence,
               decision.vehicle,
               Some(sequence),

@@ -32,7 +32,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       atMs: Double,
       vehicle: String = "Red",
       decision: Option[Long] = None
-  ) = Command(
+  ) = CommandRow(
     number,
     vehicle,
     decision,

@@ -112,7 +112,7 @@ object FlightTopics:
     case cloud: Cloud            => Some(cloud.receivedAt)
     case decision: DecisionRow   => Some(decision.decidedAt)
     case solved: SolvedRow       => Some(solved.receivedAt)
-    case command: Command        => Some(command.sentAt)
+    case command: CommandRow        => Some(command.sentAt)
     case answer: Acknowledgement => Some(answer.endedAt)
     case latency: Latency        => Some(latency.sentAt + latency.roundTrip)
     case event: Event            => Some(event.at)
@@ -130,7 +130,7 @@ object FlightTopics:
     case planned: Planned        => planned.vehicle
     case solved: SolvedRow       => solved.vehicle
     case prediction: Prediction  => s"${prediction.decider} ${prediction.vehicle}"
-    case command: Command        => command.vehicle
+    case command: CommandRow        => command.vehicle
     case answer: Acknowledgement => answer.vehicle
     case truth: Truth            => truth.vehicle
     case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"

@@ -392,7 +392,7 @@ final case class Prediction(
   * @param down
   *   the altitude goal, NED
   */
-final case class Command(
+final case class CommandRow(
     sequence: Long,
     vehicle: String,
     decision: Option[Long],

@@ -99,7 +99,7 @@ private[record] object Table:
   val cloud: Table[Cloud]                     = table("cloud", since = 6)
   val solved: Table[SolvedRow]                = table("solved", since = 6)
   val prediction: Table[Prediction]           = table("prediction")
-  val command: Table[Command]                 = table("command")
+  val command: Table[CommandRow]                 = table("command")
   val acknowledgement: Table[Acknowledgement] = table("acknowledgement")
   val latency: Table[Latency]                 = table("latency")
   val truth: Table[Truth]                     = table("truth")

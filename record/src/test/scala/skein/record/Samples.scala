@@ -170,8 +170,8 @@ object Samples:
       Vector3(21.5, 1.25, -19.75),
       Metres(0.0625)
     ),
-    Command(1, "Pursuer", Some(1), MetresPerSecond(6.4), MetresPerSecond(7.7), Metres(-20), at(41_000_000)),
-    Command(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
+    CommandRow(1, "Pursuer", Some(1), MetresPerSecond(6.4), MetresPerSecond(7.7), Metres(-20), at(41_000_000)),
+    CommandRow(2, "Pursuer", None, MetresPerSecond(0), MetresPerSecond(0), Metres(-20), at(42_000_000)),
     Acknowledgement("Pursuer", 1, at(80_000_000), "superseded"),
     Latency("vpn", at(5), Span.ofNanos(102_800_001)),
     Event(at(6), EventKind.Skipped, Some("Evader"), "an answer was outstanding, it's late"),
