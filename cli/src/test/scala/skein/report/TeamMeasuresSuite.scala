@@ -19,7 +19,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     val agents   = scenario.agents
     val vehicles =
       agents.map(agent => VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed))
-    val settings = scenario.settings.map((name, value) => Parameter(scenario.recordedAs(name), value))
+    val settings = scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value))
     val flight   = FlightRow(
       s"$loop-none",
       loop,

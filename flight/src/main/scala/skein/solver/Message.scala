@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.{Chosen, Memory, TeamView}
 import skein.policy.Fleet
-import skein.record.{ClockKind, FlightRow, Parameter, Recording, RecordingHeader}
+import skein.record.{ClockKind, FlightRow, ParameterRow, Recording, RecordingHeader}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
@@ -82,7 +82,7 @@ object Briefing:
       "",
       Instant.Epoch
     )
-    val parameters = briefing.parameters.map((name, value) => Parameter(name, value))
+    val parameters = briefing.parameters.map((name, value) => ParameterRow(name, value))
     RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters)))
 
   /** A line for each vehicle, without what two processes write differently. */

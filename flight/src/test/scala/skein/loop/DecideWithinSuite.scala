@@ -106,7 +106,7 @@ class DecideWithinSuite extends munit.FunSuite:
     val pursuit             = Fallback.parse("pure-pursuit").fold(fail(_), identity)
     val (decisions, events) = flown(pursuit.policy(scenario.agents(pursuer)))
     val readings            = decisions.flatMap(decision => Seq(decision.own, decision.opponent)).distinct
-    def column(parameters: Parameter*) =
+    def column(parameters: ParameterRow*) =
       val recording = Recording(
         Samples.heading.copy(parameters = parameters),
         readings = readings,
@@ -115,7 +115,7 @@ class DecideWithinSuite extends munit.FunSuite:
       )
       Replay(scenario, recording).firstDifference.map(_.column)
     val others = Samples.heading.parameters
-    assertEquals(column(others :+ Parameter(Replay.Fallback, pursuit.label)*), None)
+    assertEquals(column(others :+ ParameterRow(Replay.Fallback, pursuit.label)*), None)
     assertEquals(column(others*), Some("headingRad"))
 
   test("a fallback is hold, repeat or a policy for the roles that it is meant for"):

@@ -2,7 +2,7 @@ package skein.solver
 
 import skein.loop.*
 import skein.policy.*
-import skein.record.{EventKind, Parameter, Recording}
+import skein.record.{EventKind, ParameterRow, Recording}
 import skein.scenario.{Crossing, PaperDuel}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.SolverTrial.To
@@ -17,7 +17,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
 
   /** As a flight records it whose fallback that is. */
   private def hovering(recording: Recording): Recording =
-    val fallback = Parameter(Replay.Fallback, Fallback.Hover.label)
+    val fallback = ParameterRow(Replay.Fallback, Fallback.Hover.label)
     recording.copy(heading = recording.heading.copy(parameters = recording.heading.parameters :+ fallback))
 
   /** What must hold of every such flight. */

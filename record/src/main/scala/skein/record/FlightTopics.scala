@@ -136,7 +136,7 @@ object FlightTopics:
     case Event(_, EventKind.Paused | EventKind.Continued, _, _, _) => "paused"
     case event: Event                                              => event.vehicle.getOrElse("")
     case _: Latency | _: Ending                                    => ""
-    case _: FlightRow | _: Parameter | _: VehicleRow                  => number.toString
+    case _: FlightRow | _: ParameterRow | _: VehicleRow                  => number.toString
 
   private def publishedAt(record: Record): Option[Instant] = record match
     case prediction: Prediction => Some(prediction.madeAt)

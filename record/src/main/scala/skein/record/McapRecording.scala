@@ -78,7 +78,7 @@ object McapRecording:
     val isOurs = rows.exists:
       case (_, flight: FlightRow) => flight.isBuiltIn
       case _                      => false
-    if isOurs then scene(rows.collect { case (_, Parameter(name, value)) => name -> value }.toMap)
+    if isOurs then scene(rows.collect { case (_, ParameterRow(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
   /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had taken no time. */

@@ -60,7 +60,7 @@ final case class FlightRow(
   def isVirtual: Boolean = clock == ClockKind.Virtual.label
 
 /** A run parameter that has no column in [[FlightRow]]. */
-final case class Parameter(name: String, value: String) extends Record
+final case class ParameterRow(name: String, value: String) extends Record
 
 /** A vehicle of the flight.
   *
@@ -76,8 +76,8 @@ object VehicleRow:
     VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
   /** The parameter that says what a vehicle is, where it is no multirotor. */
-  def kind(name: String, kind: VehicleKind): Option[Parameter] =
-    Option.when(kind != VehicleKind.Multirotor)(Parameter(s"kind.$name", kind.toString))
+  def kind(name: String, kind: VehicleKind): Option[ParameterRow] =
+    Option.when(kind != VehicleKind.Multirotor)(ParameterRow(s"kind.$name", kind.toString))
 
 /** One answer of the simulator.
   *

@@ -25,7 +25,7 @@ object Recording:
   /** Parameters that came in flight count as the heading's, as in a file. */
   def apply(heading: RecordingHeader, records: Seq[Record]): Recording =
     Recording(
-      heading.copy(parameters = heading.parameters ++ records.collect { case parameter: Parameter =>
+      heading.copy(parameters = heading.parameters ++ records.collect { case parameter: ParameterRow =>
         parameter
       }),
       records.collect { case reading: ReadingRow => reading }.toVector,

@@ -88,7 +88,7 @@ private[record] object Table:
     name => added(optional(summon[FieldColumns[PlannedPath]](name)))
 
   val flight: Table[FlightRow]                = table("flight")
-  val parameter: Table[Parameter]             = table("parameter")
+  val parameter: Table[ParameterRow]             = table("parameter")
   val vehicle: Table[VehicleRow]                 = table("vehicle")
   val reading: Table[ReadingRow]              = table("reading")
   val decision: Table[DecisionRow]            = table("decision")

@@ -24,7 +24,7 @@ object Samples:
       VehicleRow("Pursuer", "pursuer", MetresPerSecond(10), Vector3(0, 0, 0)),
       VehicleRow("Evader", "evader", MetresPerSecond(5), Vector3(21, 0.5, -0.25))
     ),
-    Seq(Parameter("turningRadiusM", "8"))
+    Seq(ParameterRow("turningRadiusM", "8"))
   )
 
   def at(nanos: Long): Instant = heading.flight.startedAt + Span.ofNanos(nanos)
