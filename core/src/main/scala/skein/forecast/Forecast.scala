@@ -15,7 +15,7 @@ import skein.vehicle.VehicleModel
   */
 final case class Forecast private (
     models: Vector[VehicleModel[?]],
-    tracks: Vector[Option[Track[?]]],
+    tracks: Vector[Option[VehicleForecast[?]]],
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
@@ -71,10 +71,10 @@ final case class Forecast private (
       delays = Some(current)
     )
 
-  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): Track[?] = models(vehicle) match
-    case model: VehicleModel[s] => Track(model, reading)
+  private def firstSeen(vehicle: Int, reading: Stamped[Kinematics]): VehicleForecast[?] = models(vehicle) match
+    case model: VehicleModel[s] => VehicleForecast(model, reading)
 
-  private def updated(vehicle: Int)(change: Track[?] => Track[?]): Forecast =
+  private def updated(vehicle: Int)(change: VehicleForecast[?] => VehicleForecast[?]): Forecast =
     copy(tracks = tracks.updated(vehicle, tracks(vehicle).map(change)))
 
 object Forecast:

@@ -28,10 +28,10 @@ class TrackSuite extends munit.FunSuite:
   private def command(sequence: Long, north: Double, sentMs: Double) =
     Commanded(sequence, Setpoint.velocityZ(north, 0, -20), controller(sentMs))
 
-  private def northAt(track: Track[?], validMs: Double, nowMs: Double): Double =
+  private def northAt(track: VehicleForecast[?], validMs: Double, nowMs: Double): Double =
     track.estimateAt(simulator(validMs), delays, controller(nowMs)).kinematics.positionNed.x
 
-  private val commanded = Track(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
+  private val commanded = VehicleForecast(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
 
   test("each command acts when it is expected to arrive, whatever the clocks show"):
     assertEqualsDouble(northAt(commanded, 50, 60), 0, 1e-4)
@@ -55,7 +55,7 @@ class TrackSuite extends munit.FunSuite:
   test(
     "a command without receipt is presumed lost after two round trips and grace, and acts again when one comes"
   ):
-    val overdueMs = 100 + 2 * 100 + Track.Grace.toMillis + 1
+    val overdueMs = 100 + 2 * 100 + VehicleForecast.Grace.toMillis + 1
     assertEqualsDouble(northAt(commanded, 300, overdueMs), 2.5, 1e-4)
     assertEqualsDouble(northAt(commanded.replaced(0, controller(200)), 300, overdueMs), 4, 1e-4)
 
@@ -92,9 +92,9 @@ class TrackSuite extends munit.FunSuite:
 
   test("what is remembered is bounded"):
     val busy = (2 to 1000).foldLeft(commanded)((track, n) => track.sent(command(n, 1, n)))
-    assertEquals(busy.commands.size, Track.CommandLimit)
+    assertEquals(busy.commands.size, VehicleForecast.CommandLimit)
     val readings = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
-    assertEquals(readings.readings.size, Track.ReadingLimit)
+    assertEquals(readings.readings.size, VehicleForecast.ReadingLimit)
 
   test(
     "a position between two readings is that of the cubic through them, within 5 mm; over a gap there is none"
@@ -107,7 +107,7 @@ class TrackSuite extends munit.FunSuite:
         Quaternion.Identity,
         Vector3.Zero
       )
-    val track = Seq(300.0, 400.0, 1000.0).foldLeft(Track(obedient, reading(0, circling(0))))((track, ms) =>
+    val track = Seq(300.0, 400.0, 1000.0).foldLeft(VehicleForecast(obedient, reading(0, circling(0))))((track, ms) =>
       track.seen(reading(ms, circling(ms)), delays)
     )
     for ms <- 0 to 400 by 10 do
@@ -131,7 +131,7 @@ class TrackSuite extends munit.FunSuite:
       val before = real.kinematics
       quadrotor.step(real, if 3 * n < 50 then Setpoint.hold(start) else setpoint(3 * n - 50))
       before
-    var track: Track[?] = Track(model, reading(0, truth(0)))
+    var track: VehicleForecast[?] = VehicleForecast(model, reading(0, truth(0)))
     var worst           = 0.0
     for n <- 33 until 1900 by 33 do
       val sampledMs = 3 * n
