@@ -10,12 +10,12 @@ import upack.{Bool, Msg}
 final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[Msg])
 
 /** What a call is answered: its result, or what draws it, or the text of its error. */
-final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | Drawing])
+final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
 /** A result that takes a while to compute, such as an image: of the moment at which it was asked for, whenever and on
   * whatever thread that is done.
   */
-final class Drawing(work: () => Msg | Encoded):
+final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
 
 /** The whole simulator without sockets and threads: calls go in with the time, answers come out, at once or when a move
@@ -178,7 +178,7 @@ final class Simulation(
       case Some(method) =>
         method(this, call.params) match
           case CallOutcome.Answered(result)      => answers += SimulatorAnswer(call.token, Right(result))
-          case CallOutcome.Draws(work)           => answers += SimulatorAnswer(call.token, Right(Drawing(work)))
+          case CallOutcome.Draws(work)           => answers += SimulatorAnswer(call.token, Right(DeferredResult(work)))
           case CallOutcome.Threw(text)           => fail(Rpclib.threw(call.method, call.params.size, text))
           case CallOutcome.Steps(span)           => continueFor(span, call.token, at)
           case CallOutcome.Flies(vehicle, order) =>

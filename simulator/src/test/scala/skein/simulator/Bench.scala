@@ -158,7 +158,7 @@ final private[skein] class Bench(
       answers(token) = (
         elapsedS,
         result.map:
-          case drawing: Drawing       => decoded(drawing.result())
+          case drawing: DeferredResult       => decoded(drawing.result())
           case value: (Msg | Encoded) => decoded(value)
       )
 
