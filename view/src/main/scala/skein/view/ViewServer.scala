@@ -20,7 +20,7 @@ import skein.units.Clock
   * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
   * flight ([[Control]]), and `POST /hover` pauses all.
   */
-final class ViewServer private (binding: Http.ServerBinding, val counts: Counts, turning: () => Unit)(using
+final class ViewServer private (binding: Http.ServerBinding, val counts: RefusalCounts, turning: () => Unit)(using
     system: ActorSystem
 ):
   def port: Int = binding.localAddress.getPort
@@ -62,7 +62,7 @@ object ViewServer:
     given system: ActorSystem =
       HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
     import system.dispatcher
-    val counts = Counts()
+    val counts = RefusalCounts()
     val open   = AtomicInteger()
     Http()
       .newServerAt("127.0.0.1", port)
@@ -94,7 +94,7 @@ object ViewServer:
       token: Token,
       shows: Vector[Show],
       clock: Clock,
-      counts: Counts
+      counts: RefusalCounts
   )(using ActorSystem): HttpResponse =
     def refused(status: StatusCode, why: String) =
       counts.refusedRequest()
@@ -153,7 +153,7 @@ object ViewServer:
         act     <- show.controls.get(control)
       yield act
 
-  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: Counts)(using
+  private def watch(upgrade: WebSocketUpgrade, show: Show, clock: Clock, counts: RefusalCounts)(using
       ActorSystem
   ): Option[HttpResponse] =
     Protocol.Names
@@ -163,7 +163,7 @@ object ViewServer:
       )
 
   /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
-  private def whole(limits: Limits, counts: Counts)(using ActorSystem): Flow[Message, Message, ?] =
+  private def whole(limits: Limits, counts: RefusalCounts)(using ActorSystem): Flow[Message, Message, ?] =
     given ExecutionContext = ExecutionContext.parasitic
     def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
       parts
