@@ -30,7 +30,7 @@ private final class Loop(seed: Long, limits: Limits) extends Environment with Bl
 
   def nanoTime(): Long        = now
   def elapsed: FiniteDuration = (now - Loop.epochNanos).nanos
-  def counts: Counts          = Counts(tasks, fired, instants)
+  def counts: RunCounts          = RunCounts(tasks, fired, instants)
 
   def post(task: Runnable): Unit =
     requireOwnThread(s"posted ${TaskName.of(task)}")
