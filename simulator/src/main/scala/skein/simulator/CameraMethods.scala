@@ -108,8 +108,8 @@ private[simulator] object CameraMethods:
     many[(String, Int, String, String, Boolean)]("simAddDetectionFilterMeshName"):
       case (simulation, (camera, kind, mesh, name, external)) =>
         detecting(simulation, camera, kind, name, external): filter =>
-          if filter.meshes.size < Detection.MostMeshes then Right(filter.copy(meshes = filter.meshes + mesh))
-          else Left(s"a detection filter holds at most ${Detection.MostMeshes} names")
+          if filter.meshes.size < DetectionFilter.MostMeshes then Right(filter.copy(meshes = filter.meshes + mesh))
+          else Left(s"a detection filter holds at most ${DetectionFilter.MostMeshes} names")
     ,
     many[(String, Int, Float, String, Boolean)]("simSetDetectionFilterRadius"):
       case (simulation, (camera, kind, radiusCm, name, external)) =>
@@ -161,7 +161,7 @@ private[simulator] object CameraMethods:
       done(simulation.cameras(index, camera) = change(cameraOf(simulation, index, camera)))
 
   private def detecting(simulation: Simulated, camera: String, kind: Int, name: String, external: Boolean)(
-      change: Detection => Either[String, Detection]
+      change: DetectionFilter => Either[String, DetectionFilter]
   ): CallOutcome =
     of(simulation, camera, name, external): (index, camera) =>
       if kind < 0 || kind >= ImageTypes then
