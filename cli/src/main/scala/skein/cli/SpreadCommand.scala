@@ -74,7 +74,7 @@ final class SpreadCommand(program: String)(using Scenarios)
       shown: Shown
   ): Either[String, Vector[Either[NotFlown, FlightSummary]]] =
     val flights = ready.flights(options.seeds).size
-    val landed  = SpreadFlights.FlightProgress(flights, tell = _ => ())
+    val landed  = SpreadFlights.SpreadProgress(flights, tell = _ => ())
     for
       config   <- options.flights.configuration
       question <- SpreadQuestion.of(config, settings)

@@ -14,7 +14,7 @@ private[cli] object SpreadFlights:
   def fly(settings: FlySettings, plans: Vector[FlightPlan])(using
       Scenarios
   ): Vector[Either[NotFlown, FlightSummary]] =
-    val landed = FlightProgress(plans.size)
+    val landed = SpreadProgress(plans.size)
     landed.tellingIfCut(summaries(settings, plans)(landed.one))
 
   /** One of them, on a thread of its own. Blocks. */
@@ -34,7 +34,7 @@ private[cli] object SpreadFlights:
       .map(_.flatten)
 
   /** How many have landed, told now and then. */
-  final class FlightProgress(of: Int, tell: String => Unit = Console.err.println(_)):
+  final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):
     private val landed     = AtomicInteger()
     private def progress() = s"${landed.get} of $of flights have landed"
 

@@ -40,7 +40,7 @@ private[cluster] final class CoordinatorBehavior private (
     job: Job,
     ledger: Ledger,
     tell: News => Unit,
-    onProgress: Progress => Unit,
+    onProgress: ClusterProgress => Unit,
     down: Address => Unit
 ) extends AbstractBehavior[CoordinatorBehavior.Command](context):
   import CoordinatorBehavior.*
@@ -218,7 +218,7 @@ private[cluster] final class CoordinatorBehavior private (
     call = None
 
   private def publish(): Unit =
-    onProgress(Progress(
+    onProgress(ClusterProgress(
       state,
       call.fold(0)(_.answers.size),
       call.fold(0)(_.asked),
@@ -277,7 +277,7 @@ private[cluster] object CoordinatorBehavior:
       job: Job,
       ledger: Ledger,
       tell: News => Unit,
-      onProgress: Progress => Unit,
+      onProgress: ClusterProgress => Unit,
       down: Address => Unit
   ): Behavior[Command] =
     Behaviors.withTimers: (timers: TimerScheduler[Command]) =>

@@ -17,7 +17,7 @@ import skein.blocks.Coordinator
   * @param ledgerBytes
   *   of the file
   */
-final case class Progress(
+final case class ClusterProgress(
     coordinator: Coordinator = Coordinator(),
     done: Int = 0,
     of: Int = 0,
