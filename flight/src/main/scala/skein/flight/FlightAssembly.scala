@@ -41,9 +41,9 @@ final class FlightAssembly private[skein] (
       hold.release(): Unit
 
   /** How far it is, in the controller's time. */
-  def progress: Progress =
+  def progress: FlightProgress =
     val now = clock.now()
-    Progress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
+    FlightProgress(plan.id, now.since(startedAt), monitor.lastSeen(now), watchdog.silentFor)
 
   /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
   val landed: Future[FlightResult] =
