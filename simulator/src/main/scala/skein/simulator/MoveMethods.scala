@@ -23,7 +23,7 @@ private[simulator] object MoveMethods:
     ,
     Method.one[String]("hover"): (simulation, name) =>
       // AirSim sends it along a path to where it is, which ends at once with false; then its goal runs out.
-      fly(simulation, name)(_ => Right((_, _) => Progress.Ended(false, None))),
+      fly(simulation, name)(_ => Right((_, _) => MoveProgress.Ended(false, None))),
     byVelocity("moveByVelocity", ifNone = true): (_, x, y, vz) =>
       Setpoint.velocity(x, y, vz),
     byVelocity("moveByVelocityZ", ifNone = false): (_, x, y, z) =>

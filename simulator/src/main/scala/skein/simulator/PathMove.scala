@@ -46,11 +46,11 @@ final private[simulator] class PathMove private (
   private var progress = 0.0
   private var complete = false
 
-  def turn(vehicle: SimulatedMultirotor, elapsed: Span): Progress =
+  def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress =
     val position = vehicle.state.positionNed
     if elapsed > Span.Zero then follow(position)
-    if elapsed >= timeout || (aim.segment >= last && progress <= 0) then Progress.Ended(complete, None)
-    else Progress.Going(towardsAim(position))
+    if elapsed >= timeout || (aim.segment >= last && progress <= 0) then MoveProgress.Ended(complete, None)
+    else MoveProgress.Going(towardsAim(position))
 
   /** How far the vehicle has come towards the point it aimed at, and the next one. */
   private def follow(position: Vector3): Unit =
@@ -99,7 +99,7 @@ private[simulator] object PathMove:
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>
     val perTurn   = speedMps * PathFollowing.Period.toSeconds
     val lookahead = travel.lookaheadM
-    if path.isEmpty then Right((_, _) => Progress.Ended(true, None))
+    if path.isEmpty then Right((_, _) => MoveProgress.Ended(true, None))
     else if travel.drivetrain == Move.ForwardOnly && travel.yaw.is_rate then
       Left("Yaw cannot be specified as rate if drivetrain is ForwardOnly")
     else if lookahead == 0 then Left("lookahead distance cannot be 0")
