@@ -93,7 +93,7 @@ object CoordinatorNode:
       ledger: Ledger,
       build: String = BuildId.current,
       shipment: Option[Shipment] = None
-  )(tell: News => Unit): Either[String, CoordinatorNode] =
+  )(tell: WorkerEvent => Unit): Either[String, CoordinatorNode] =
     for
       _ <- Either.cond(
         question.length <= MessageCodec.MostBytes,

@@ -47,15 +47,15 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       tls: Option[Tls] = None,
       shipment: Option[Shipment] = None
   ):
-    val news   = ConcurrentLinkedQueue[News]()
+    val news   = ConcurrentLinkedQueue[WorkerEvent]()
     val joined = Semaphore(0)
     val ledger = Ledger.open(folder.resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
     val node   = CoordinatorNode
       .start(loopback.copy(port = port), tls, question, ledger, "one", shipment)(heard)
       .fold(fail(_), identity)
 
-    private def heard(one: News): Unit =
-      if one.isInstanceOf[News.Joined] then joined.release()
+    private def heard(one: WorkerEvent): Unit =
+      if one.isInstanceOf[WorkerEvent.Joined] then joined.release()
       news.add(one): Unit
 
     def close(): Unit =
