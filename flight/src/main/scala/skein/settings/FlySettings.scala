@@ -5,7 +5,7 @@ import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import skein.loop.{Deadline, Fallback, LoopKind, LoopSettings, PlanSettings}
-import skein.loop.learning.{Learning, LearningPolicy, Lessons, News}
+import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -174,7 +174,7 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
     *   told of what is new, with the vehicle and the number of its next decision
     */
   def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
-      note: (String, Long, News) => Unit
+      note: (String, Long, LearnerUpdate) => Unit
   ): Fleet =
     def version(parameters: Vector[Double]) = file.family.policy(parameters).asInstanceOf[LearnedPolicy]
     Fleet(fleet.agents.map: agent =>

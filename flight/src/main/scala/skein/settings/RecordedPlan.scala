@@ -1,7 +1,7 @@
 package skein.settings
 
 import skein.loop.{Fallback, LoopKind, PlanSettings, Replay}
-import skein.loop.learning.{Learning, LessonsAgain, News}
+import skein.loop.learning.{Learning, LessonsAgain, LearnerUpdate}
 import skein.measure.{RecordedScenario, SolverSummary}
 import skein.policy.Fleet
 import skein.record.{Event, EventKind, ParameterRow, Record, Recording}
@@ -46,7 +46,7 @@ object RecordedPlan:
     * @param decision
     *   the number of the next one
     */
-  def learned(at: Instant, vehicle: String, decision: Long, news: News): Seq[Record] =
+  def learned(at: Instant, vehicle: String, decision: Long, news: LearnerUpdate): Seq[Record] =
     news.parameters.map(parameters => ParameterRow(s"$Version.$decision", Numbers64.text(parameters))).toSeq :+
       Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
@@ -144,13 +144,13 @@ object RecordedPlan:
     )
 
   /** Versions' parameters belong to the last that was new before a decision. */
-  private def newsOf(recording: Recording): Either[String, Map[Long, Vector[News]]] =
+  private def newsOf(recording: Recording): Either[String, Map[Long, Vector[LearnerUpdate]]] =
     val versions = recording.heading.parametersOf(Version)
     val said     = recording.events
       .filter(_.kind == EventKind.Learned)
-      .flatMap(event => event.decision.map(_ -> News(event.detail)))
+      .flatMap(event => event.decision.map(_ -> LearnerUpdate(event.detail)))
       .groupMap(_._1)(_._2)
-    versions.foldLeft[Either[String, Map[Long, Vector[News]]]](Right(said)):
+    versions.foldLeft[Either[String, Map[Long, Vector[LearnerUpdate]]]](Right(said)):
       case (before, (number, text)) =>
         for
           said     <- before
