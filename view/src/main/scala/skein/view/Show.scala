@@ -20,8 +20,8 @@ abstract class Show private[view] (
     topics: Vector[Topic],
     val limits: Limits
 ):
-  val channels: Vector[Channel] =
-    topics.zipWithIndex.map((topic, at) => Channel(at + 1L, topic))
+  val channels: Vector[FoxgloveChannel] =
+    topics.zipWithIndex.map((topic, at) => FoxgloveChannel(at + 1L, topic))
 
   private val byTopic = channels.map(channel => channel.topic.name -> channel.id).toMap
   private val latest  = channels.filter(_.topic.newestOnly).map(_.id).toSet
