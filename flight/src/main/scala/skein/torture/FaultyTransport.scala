@@ -14,7 +14,7 @@ import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
 
 /** A move as it came to the simulator: the velocity as it is on the wire. */
-final case class Arrival(at: Instant, vehicle: String, north: Float, east: Float)
+final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
 /** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of arrival, and
   * until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are left alone.
@@ -32,12 +32,12 @@ final class FaultyTransport(
   import system.dispatcher
 
   private val random     = SplitMix64(seed)
-  private val arrived    = mutable.ArrayBuffer.empty[Arrival]
+  private val arrived    = mutable.ArrayBuffer.empty[ReceivedMove]
   private val hovers     = mutable.Map.empty[String, Instant]
   private val unanswered = mutable.Map.empty[String, Int].withDefaultValue(0)
   private var most       = 0
 
-  def arrivals: Vector[Arrival] = arrived.toVector
+  def arrivals: Vector[ReceivedMove] = arrived.toVector
 
   /** When each vehicle was last told to hover. */
   def lastHovers: Map[String, Instant] = hovers.toMap
@@ -70,7 +70,7 @@ final class FaultyTransport(
           val (north, east) = params match
             case Float64(north) +: Float64(east) +: _ if ByVelocity(method) => (north, east)
             case _                                                          => (0.0, 0.0)
-          arrived += Arrival(clock.now(), vehicle, north.toFloat, east.toFloat)
+          arrived += ReceivedMove(clock.now(), vehicle, north.toFloat, east.toFloat)
           moves(id) = vehicle
           unanswered(vehicle) += 1
           most = most.max(unanswered(vehicle))

@@ -48,7 +48,7 @@ final case class FlightTrace(
     outcome: FlightOutcome,
     vehicles: Vector[String],
     ports: Vector[WatchedVehicle],
-    arrivals: Vector[Arrival],
+    arrivals: Vector[ReceivedMove],
     lastHovers: Map[String, Instant],
     mostUnanswered: Int,
     mostPending: Long,
