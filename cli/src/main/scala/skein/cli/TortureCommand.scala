@@ -4,7 +4,7 @@ import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
 import skein.scenario.Scenarios
 import skein.settings.NamedScene
-import skein.torture.{FaultPlan, Verdict}
+import skein.torture.{FaultPlan, FaultVerdict}
 import skein.units.*
 
 /** Options of `./skein torture`. */
@@ -107,14 +107,14 @@ object TortureCommand:
     private val startedAt = System.nanoTime()
     private var flown     = 0
     private var shownAt   = startedAt
-    private var broken    = Vector.empty[Verdict]
+    private var broken    = Vector.empty[FaultVerdict]
 
-    def failed: Vector[Verdict] = broken
+    def failed: Vector[FaultVerdict] = broken
 
     def tellingIfCut[A](body: => A): A =
       Edge.tellingIfCut(s"$flown of ${options.seeds} flights have landed, ${failed.size} failed")(body)
 
-    def add(verdict: Verdict): Unit =
+    def add(verdict: FaultVerdict): Unit =
       flown += 1
       if !verdict.isClean then
         broken :+= verdict

@@ -5,7 +5,7 @@ import skein.bytes.Codec
 import skein.scenario.{Scenario, Scenarios}
 import skein.search.{BlockBytes, JsonText}
 import skein.settings.NamedScene
-import skein.torture.{Torture, Verdict}
+import skein.torture.{Torture, FaultVerdict}
 import skein.units.{Expect, Span}
 import skein.vehicle.VehicleKind
 import upickle.default.ReadWriter
@@ -54,7 +54,7 @@ private[cli] object TortureQuestion:
   final case class Ready(duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]):
 
     /** Flies them here, as many at once as there are `threads`. */
-    def fly(seeds: Iterator[Long], threads: Int)(onVerdict: Verdict => Unit): Unit =
+    def fly(seeds: Iterator[Long], threads: Int)(onVerdict: FaultVerdict => Unit): Unit =
       Torture.all(seeds, duration, threads, scenario, scene)(onVerdict)
 
     /** Has them flown elsewhere, in blocks of so many. */
@@ -71,9 +71,9 @@ private[cli] object TortureQuestion:
       BlockBytes.of(broken)
 
     /** What a block's answer says. */
-    def verdicts(answer: ArraySeq[Byte]): Vector[Verdict] =
+    def verdicts(answer: ArraySeq[Byte]): Vector[FaultVerdict] =
       for (seed, violations) <- told[Vector[(Long, Vector[String])]](answer, "torture's answer")
-      yield Verdict(Torture.plan(seed, duration, scenario, scene), violations)
+      yield FaultVerdict(Torture.plan(seed, duration, scenario, scene), violations)
 
     private def told[A: Codec](bytes: ArraySeq[Byte], what: String): A =
       BlockBytes.read[A](bytes, what).fold(wrong => throw IllegalArgumentException(wrong), identity)

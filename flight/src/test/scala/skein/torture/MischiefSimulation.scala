@@ -92,7 +92,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
       told :+= verdict.faultPlan.seed
     )
     assertEquals(told.sorted, Vector(1L, 2L, 3L, 4L))
-    var few = Vector.empty[Verdict]
+    var few = Vector.empty[FaultVerdict]
     Torture.all(Iterator(5L), FaultPlan.Shortest, threads = 3)(few :+= _)
     assertEquals(few.map(verdict => (verdict.faultPlan.seed, verdict.isClean)), Vector((5L, true)))
     assert(!few.head.copy(violations = Vector("a command overtook a newer one")).isClean)
