@@ -130,8 +130,8 @@ object LearnedUnderDelay:
     val most   = rows.map(row => row.distance.mean + row.distance.sd).max
     val height = 20.0 * rows.size
     val panel  = Panel(
-      Axis.around("distance over the last 10 s, m", 0, most),
-      Axis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
+      PlotAxis.around("distance over the last 10 s, m", 0, most),
+      PlotAxis.exactly("", 0, rows.size.toDouble, 1).copy(ticks = Vector.empty),
       left = 360,
       top = 34,
       width = 460,

@@ -55,8 +55,8 @@ object BudgetFigure:
         )
     )
     val panel = Panel(
-      Axis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
-      Axis.exactly("jitter p99 − p50, ms", heat.ys.head, heat.ys.last),
+      PlotAxis.exactly(s"mean latency, ${map.legs.text}, ms", heat.xs.head, heat.xs.last, 8),
+      PlotAxis.exactly("jitter p99 − p50, ms", heat.ys.head, heat.ys.last),
       left = 62,
       top = 34,
       width,

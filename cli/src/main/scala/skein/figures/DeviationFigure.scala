@@ -21,8 +21,8 @@ object DeviationFigure:
       deviations.filter(_.link == link).map((_, index))
     val width = placed.size * slot + links.size * gap
     val panel = Panel(
-      Axis.exactly("", 0, width, 1),
-      Axis.around(
+      PlotAxis.exactly("", 0, width, 1),
+      PlotAxis.around(
         "deviation from the paused truth, %",
         100 * deviations.map(_.share.least).min.min(0),
         100 * deviations.map(_.share.most).max.max(0)

@@ -26,8 +26,8 @@ object DistanceFigure:
       flights.flatMap(summary => summary.published.flatMap(_.distance))
     val highest = (curves.flatMap(_._2.points.map(_._2)) ++ published.map(_.most)).max
     val panel   = Panel(
-      Axis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
-      Axis.around("distance, m", 0, highest),
+      PlotAxis.around("time, s", 0, curves.map(_._2.points.last._1).max, 6),
+      PlotAxis.around("distance, m", 0, highest),
       left = 52,
       top = 34,
       plotWidth,

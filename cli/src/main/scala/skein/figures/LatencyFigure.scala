@@ -40,8 +40,8 @@ object LatencyFigure:
     val density = profile.toVector.flatMap(densityOf(_, step))
     val halves  = profile.toVector.flatMap(densityOfHalves(_, step))
     val panel   = Panel(
-      Axis.around("round trip, ms", 0, most, 6),
-      Axis.around(s"share per $width ms, %", 0, (share.values ++ (density ++ halves).map(_._2)).max * 1.12),
+      PlotAxis.around("round trip, ms", 0, most, 6),
+      PlotAxis.around(s"share per $width ms, %", 0, (share.values ++ (density ++ halves).map(_._2)).max * 1.12),
       left = 52,
       top = 48,
       width = 300,

@@ -28,8 +28,8 @@ object ObservationFigure:
     val lefts   = placed(flights)
     val width   = lefts.last + widthOf(flights.last) + loopGap
     val panel   = Panel(
-      Axis.exactly("", 0, width, 1),
-      Axis.around("ms", 0, highest * 1.06),
+      PlotAxis.exactly("", 0, width, 1),
+      PlotAxis.around("ms", 0, highest * 1.06),
       left = 46,
       top = 34,
       width,

@@ -19,8 +19,8 @@ object PredictionFigure:
     val all        = curves.flatMap(_._1)
     val (from, to) = (all.map(_._1).min, all.map(_._1).max)
     val panel      = Panel(
-      Axis.around("carried forward by, ms", from.toDouble, to.toDouble.max(from + 1.0), 5),
-      Axis.around("error, mm", 0, 1000 * all.map(_._2.quantile(0.95)).max, 4),
+      PlotAxis.around("carried forward by, ms", from.toDouble, to.toDouble.max(from + 1.0), 5),
+      PlotAxis.around("error, mm", 0, 1000 * all.map(_._2.quantile(0.95)).max, 4),
       left = 52,
       top = 34,
       width = 290,

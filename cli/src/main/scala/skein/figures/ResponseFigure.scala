@@ -22,12 +22,12 @@ object ResponseFigure:
   private def panel(model: ReducedModel, flown: Flown): Drawing =
     val modelled = flight(model, flown)
     val samples  = flown.samples
-    val time     = Axis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
+    val time     = PlotAxis.exactly("time, s", samples.head.atS, samples.last.atS.max(samples.head.atS + 1), 6)
     val speeds   = samples.flatMap(sample => Vector(sample.vx, sample.vy))
     val top      =
       Panel(
         time.copy(label = ""),
-        Axis.around("velocity, m/s", speeds.min, speeds.max),
+        PlotAxis.around("velocity, m/s", speeds.min, speeds.max),
         52,
         34,
         width,
@@ -37,7 +37,7 @@ object ResponseFigure:
       samples.zip(modelled).flatMap((sample, model) => Vector(sample.vx - model._1, sample.vy - model._2))
     val most  = remains.map(math.abs).max.max(0.05)
     val below =
-      Panel(time, Axis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
+      Panel(time, PlotAxis.around("residual, m/s", -most, most, 3), 52, top.bottom + 26, width, residual)
     val shapes =
       for
         (colour, measured, model) <- Vector(

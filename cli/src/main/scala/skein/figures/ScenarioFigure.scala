@@ -21,7 +21,7 @@ object ScenarioFigure:
     val span   = (norths.max - norths.min).max(easts.max - easts.min).max(1) * 1.06
     def axis(label: String, values: Vector[Double]) =
       val middle = (values.min + values.max) / 2
-      Axis.exactly(label, middle - span / 2, middle + span / 2)
+      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
     val panels = flown.flights.map: flight =>
       val panel = Panel(axis("east y, m", easts), axis("north x, m", norths), 52, 34, side, side)
       val title =
@@ -67,8 +67,8 @@ object ScenarioFigure:
     val panels = flown.flights.map: flight =>
       val track = flight.result.tracks
       val panel = Panel(
-        Axis.around("time, s", 0, tracks.map(_.lastS).max, 8),
-        Axis.around("altitude, m", least.min(0), most),
+        PlotAxis.around("time, s", 0, tracks.map(_.lastS).max, 8),
+        PlotAxis.around("altitude, m", least.min(0), most),
         52,
         34,
         plotWidth / 2,
@@ -107,8 +107,8 @@ object ScenarioFigure:
     val curves                                                = flights.map(drawn(_)._2.points)
     val highest = (curves.map(highestShown) ++ bound.map(_.value)).max
     val panel   = Panel(
-      Axis.around("time, s", 0, curves.map(_.last._1).max, 8),
-      Axis.around(series.title, (0.0 +: curves.map(_.map(_._2).min)).min, highest),
+      PlotAxis.around("time, s", 0, curves.map(_.last._1).max, 8),
+      PlotAxis.around(series.title, (0.0 +: curves.map(_.map(_._2).min)).min, highest),
       left = 52,
       top = 34,
       plotWidth,

@@ -27,7 +27,7 @@ object TrajectoryFigure:
     val span                                        = (xs.max - xs.min).max(ys.max - ys.min).max(1) * 1.08
     def axis(label: String, values: Vector[Double]) =
       val middle = (values.min + values.max) / 2
-      Axis.exactly(label, middle - span / 2, middle + span / 2)
+      PlotAxis.exactly(label, middle - span / 2, middle + span / 2)
     val panel = Panel(axis("east y, m", ys), axis("north x, m", xs), 52, 34, side, side)
     val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(

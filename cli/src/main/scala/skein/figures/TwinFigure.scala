@@ -37,8 +37,8 @@ object TwinFigure:
   private def panel(loop: String, compared: Compared): Drawing =
     val most  = compared.live.quantile(0.995).max(compared.virtual.quantile(0.995))
     val panel = Panel(
-      Axis.around(s"${compared.quantity}, ms", 0, most, 4),
-      Axis.exactly("share of decisions", 0, 1, 4),
+      PlotAxis.around(s"${compared.quantity}, ms", 0, most, 4),
+      PlotAxis.exactly("share of decisions", 0, 1, 4),
       left = 46,
       top = 20,
       panelWidth,

@@ -22,7 +22,7 @@ final case class ColourScale(from: Double, to: Double, stops: Vector[Int]):
         (bottom - height * i / slices + 0.5).min(bottom),
         of(from + (to - from) * (i + 0.5) / slices)
       )
-    val axis  = Axis.exactly(label, from, if to > from then to else from + 1)
+    val axis  = PlotAxis.exactly(label, from, if to > from then to else from + 1)
     val ticks = axis.ticks.map: tick =>
       Shape.Text(
         Point(left + width + 5, bottom - height * axis.share(tick) + 3.5),

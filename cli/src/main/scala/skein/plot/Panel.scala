@@ -1,7 +1,7 @@
 package skein.plot
 
 /** A rectangle of a drawing with an axis below and one at its left; turns values into points. */
-final case class Panel(x: Axis, y: Axis, left: Double, top: Double, width: Double, height: Double):
+final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, width: Double, height: Double):
   import Theme.*
 
   def right: Double  = left + width

@@ -25,8 +25,8 @@ object LandscapeFigure:
     val low    = points.map((_, tally) => tally.mean - tally.sd).min
     val high   = points.map((_, tally) => tally.mean + tally.sd).max
     val panel  = Panel(
-      Axis.exactly(axis.name, axis.least, axis.most),
-      Axis.around(value, low, high),
+      PlotAxis.exactly(axis.name, axis.least, axis.most),
+      PlotAxis.around(value, low, high),
       left = 62,
       top = 52,
       width,
@@ -61,8 +61,8 @@ object LandscapeFigure:
   private def map(landscape: Landscape, title: String, value: String): Drawing =
     val (xAxis, yAxis) = (landscape.space.axes(landscape.x), landscape.space.axes(landscape.y.get))
     val panel          = Panel(
-      Axis.exactly(xAxis.name, xAxis.least, xAxis.most),
-      Axis.exactly(yAxis.name, yAxis.least, yAxis.most),
+      PlotAxis.exactly(xAxis.name, xAxis.least, xAxis.most),
+      PlotAxis.exactly(yAxis.name, yAxis.least, yAxis.most),
       left = 62,
       top = 52,
       height * 1.2,

@@ -20,8 +20,8 @@ object LearningCurve:
   ): Drawing =
     val all   = scores.flatMap(_._3)
     val panel = Panel(
-      Axis.around("steps of all environments, thousand", 0, all.map(_.steps / 1e3).max),
-      Axis.around(value, 0, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max),
+      PlotAxis.around("steps of all environments, thousand", 0, all.map(_.steps / 1e3).max),
+      PlotAxis.around(value, 0, (all.map(score => score.mean + score.sd) ++ levels.map(_._3)).max),
       left = 62,
       top = 52,
       width = 560,
