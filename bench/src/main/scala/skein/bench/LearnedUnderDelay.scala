@@ -144,15 +144,15 @@ object LearnedUnderDelay:
       val (at, sd)         = (row.distance.mean, row.distance.sd)
       def x(value: Double) = panel.atX(value.max(0))
       Vector(
-        Shape.Text(
+        Mark.Text(
           Point(panel.left - 10, y + 4),
           s"${row.loop} over ${row.link}: ${row.policy}",
           Theme.labelSize,
           Theme.labelColour,
           Anchor.End
         ),
-        Shape.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),
-        Shape.Disc(Point(x(at), y), 4, Some(Stroke(Colour(0xffffff), 0.8)), Some(colour))
+        Mark.line(Point(x(at - sd), y), Point(x(at + sd), y), Stroke(colour, 3)),
+        Mark.Disc(Point(x(at), y), 4, Some(Stroke(Colour(0xffffff), 0.8)), Some(colour))
       )
     Drawing(
       panel.right + 40,

@@ -31,8 +31,8 @@ object BudgetFigure:
       grid.width,
       62,
       Vector(
-        Shape.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
-        Shape.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
+        Mark.Text(Point(62, 18), title, Theme.titleSize, Theme.titleColour, bold = true),
+        Mark.Text(Point(62, 33), maps.head.vehicles, Theme.tickSize, Theme.labelColour)
       ) ++
         Legend(
           62,
@@ -66,15 +66,15 @@ object BudgetFigure:
       for
         level  <- Vector(-1, 1).map(_ * map.tolerance.value * factor)
         (a, b) <- heat.contour(level)
-      yield Shape.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
+      yield Mark.line(panel.at(a._1, a._2), panel.at(b._1, b._2), limit)
     val marks = map.marks.flatMap: link =>
       val (x, y) = (link.roundTrip.mean.toMillis / per, link.roundTrip.jitter.toMillis / per)
       if x > heat.xs.last || y > heat.ys.last then Vector.empty
       else
         val at = panel.at(x, y)
         Vector(
-          Shape.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
-          Shape.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
+          Mark.Disc(at, 4.5, Some(Stroke(Colour(0xffffff), 1.4)), Some(mark)),
+          Mark.Text(at.moved(8, 4), link.name, Theme.labelSize, mark, bold = true)
         )
     Drawing(
       panel.right + 110,
@@ -83,7 +83,7 @@ object BudgetFigure:
         panel.title(
           s"${map.loop} every ${map.periodMs.significant(4)} ms, truth ${budget.truth.significant(4)} ${map.unit}".trim
         ),
-        Shape.box(panel.left, panel.top, panel.right, panel.bottom, empty)
+        Mark.box(panel.left, panel.top, panel.right, panel.bottom, empty)
       ) ++ heat.cells(panel, scale) ++ contours ++ marks ++
         scale.bar(
           panel.right + 20,

@@ -33,7 +33,7 @@ object DetectionFigure:
     yield
       val number = scenario.agents.indexWhere(_.name == seen.eye.target)
       val height = shownPx * camera.height / camera.width
-      val title  = Shape.Text(
+      val title  = Mark.Text(
         at = Point(0, 16),
         s"${flight.name}, ${FlightTheme.link(flight.flight.link)}",
         12,
@@ -69,8 +69,8 @@ object DetectionFigure:
           shownPx + 14,
           height + 44,
           Vector(
-            Shape.Raster(Point(0, 0), shownPx, height, file),
-            Shape.outline(
+            Mark.Raster(Point(0, 0), shownPx, height, file),
+            Mark.outline(
               (x - half).max(0),
               (y - half).max(0),
               (x + half).min(shownPx),
@@ -78,7 +78,7 @@ object DetectionFigure:
               Stroke(red, 1.6)
             )
           ) ++ told(name, detection).zipWithIndex.map((line, index) =>
-            Shape.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
+            Mark.Text(Point(0, height + 14 + 13 * index), line, 10, Theme.labelColour)
           )
         )
       Drawing.stacked(Drawing(200, 24, Vector(title)), Drawing.grid(cells, columns = 4))

@@ -39,10 +39,10 @@ object PredictionFigure:
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
   /** A single age is a disc. */
-  private def curve(panel: Panel, points: Vector[(Double, Double)], stroke: Stroke): Vector[Shape] =
+  private def curve(panel: Panel, points: Vector[(Double, Double)], stroke: Stroke): Vector[Mark] =
     points match
       case Vector()       => Vector.empty
-      case Vector((x, y)) => Vector(Shape.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour)))
+      case Vector((x, y)) => Vector(Mark.Disc(panel.at(x, y), 2.6, None, Some(stroke.colour)))
       case several        => Vector(panel.curve(several, stroke))
 
   private val dashes = Vector(4.0, 2.5)

@@ -59,8 +59,8 @@ object ResponseFigure:
       (top.title(f"${flown.name}: residual $rms%.3f m/s rms") +: top.axes) ++ below.axes ++ shapes
     )
 
-  private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Shape] =
-    values.map((at, value) => Shape.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
+  private def dots(panel: Panel, values: Vector[(Double, Double)], colour: Colour): Vector[Mark] =
+    values.map((at, value) => Mark.Disc(panel.at(at, value), 1.3, None, Some(colour.faded(0.45))))
 
   /** The modelled velocity at every sample. */
   private def flight(model: ReducedModel, flown: Flown): Vector[(Double, Double)] =
@@ -75,7 +75,7 @@ object ResponseFigure:
 
   private def legend: Drawing =
     def dot(label: String, colour: Colour) =
-      Legend.Item(label, 8, at => Vector(Shape.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
+      Legend.Item(label, 8, at => Vector(Mark.Disc(at.moved(4, 0), 2.4, None, Some(colour.faded(0.6)))))
     Legend(
       52,
       dot("north, measured", north),

@@ -1,7 +1,7 @@
 package skein.budget
 
 import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective}
-import skein.plot.Shape
+import skein.plot.Mark
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
 import skein.search.Conditions
@@ -97,5 +97,5 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(json("engine").str, "SIMD")
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
-    val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Shape.Text => text.content }
+    val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
