@@ -4,7 +4,7 @@ import skein.measure.{FlightSet, FlightSummary, SeeingSummary, Detection}
 import skein.plot.*
 import skein.scenario.Equipment
 import skein.scene.{Moment, Placement, SceneObject}
-import skein.scene.render.{Kind, Image, Png as PngFile, Renderer, View}
+import skein.scene.render.{Kind, Image, PngEncoder as PngFile, Renderer, View}
 import skein.settings.NamedScene
 import skein.simulator.MultirotorBody
 import skein.units.Decimals.fixed

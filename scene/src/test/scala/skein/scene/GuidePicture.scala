@@ -14,5 +14,5 @@ import skein.units.Vector3
     identity
   )(Kind.Scene) match
     case Image.Bytes(bgr) =>
-      val _ = Files.write(Path.of(file), Png.encode(bgr, view.width, view.height))
+      val _ = Files.write(Path.of(file), PngEncoder.encode(bgr, view.width, view.height))
     case other => throw IllegalStateException(s"$other")

@@ -45,7 +45,7 @@ import skein.units.Vector3
   val scene = Renderer.draw(Scenes.Sixty, view, Set(Kind.Scene), identity)(Kind.Scene) match
     case Image.Bytes(bytes) => bytes
     case _                  => Array.emptyByteArray
-  row(s"  PNG of Scene")(Png.encode(scene, 1280, 720).length)
+  row(s"  PNG of Scene")(PngEncoder.encode(scene, 1280, 720).length)
   val lidar = Lidar()
   row("lidar, a turn of 10,000 rays, 60 boxes"):
     lidar.scan(Scenes.Sixty, Placement(Vector3(20, 0, -5)), Item.Nothing, Vector3.Zero, 0).items.length

@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.airsim.wire.*
-import skein.scene.render.{Kind, Image, Png, Renderer, View}
+import skein.scene.render.{Kind, Image, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
 /** Images that were asked for together: all of one instant, and, where they are of one camera and size, of one pass.
@@ -25,7 +25,7 @@ final private[simulator] class Shots private (
     val empty = shot.response.copy(width = view.width, height = view.height)
     if shot.response.pixels_as_float then empty.copy(image_data_float = numbers(image))
     else if shot.response.compress then
-      empty.copy(image_data_uint8 = Png.encode(bytes(image), view.width, view.height))
+      empty.copy(image_data_uint8 = PngEncoder.encode(bytes(image), view.width, view.height))
     else empty.copy(image_data_uint8 = bytes(image))
 
   /** Of a coloured image the red, from 0 to 1, as AirSim. */

@@ -63,7 +63,7 @@ class RendererSuite extends munit.FunSuite:
           val bytes = java.nio.ByteBuffer.allocate(4 * values.length)
           values.foreach(bytes.putFloat)
           digest.update(bytes.array)
-    digest.update(Png.encode(bgr(images, Kind.Scene), 320, 180))
+    digest.update(PngEncoder.encode(bgr(images, Kind.Scene), 320, 180))
     assertEquals(digest.digest.map(b => f"$b%02x").mkString.take(16), "31eaba862189aeaf")
 
   test("a kind drawn beside others is as drawn alone"):
@@ -112,7 +112,7 @@ class RendererSuite extends munit.FunSuite:
     for (pixels, width, height) <-
         Seq((noise, 31, 17), (stripe, 600, 5), (drawn, 320, 180), (colour, 320, 180))
     do
-      val read = ImageIO.read(ByteArrayInputStream(Png.encode(pixels, width, height)))
+      val read = ImageIO.read(ByteArrayInputStream(PngEncoder.encode(pixels, width, height)))
       assertEquals((read.getWidth, read.getHeight), (width, height))
       for y <- 0 until height; x <- 0 until width do
         val at  = 3 * (y * width + x)
