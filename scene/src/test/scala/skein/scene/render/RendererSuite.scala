@@ -19,12 +19,12 @@ class RendererSuite extends munit.FunSuite:
   private def draw(moment: Moment, view: View, kinds: Kind*) =
     Renderer.draw(moment, view, kinds.toSet, idOf = item => 1 + item)
 
-  private def bgr(images: Map[Kind, Image], kind: Kind) = images(kind) match
-    case Image.Bytes(bytes) => bytes
+  private def bgr(images: Map[Kind, Raster], kind: Kind) = images(kind) match
+    case Raster.Bytes(bytes) => bytes
     case other              => fail(s"$kind came as $other")
 
-  private def numbers(images: Map[Kind, Image], kind: Kind) = images(kind) match
-    case Image.Numbers(values) => values
+  private def numbers(images: Map[Kind, Raster], kind: Kind) = images(kind) match
+    case Raster.Numbers(values) => values
     case other                 => fail(s"$kind came as $other")
 
   test("every pixel shows what a ray through its middle meets, as far away as it meets it"):
@@ -58,8 +58,8 @@ class RendererSuite extends munit.FunSuite:
     val digest = MessageDigest.getInstance("SHA-256")
     for kind <- kinds do
       images(kind) match
-        case Image.Bytes(bytes)    => digest.update(bytes)
-        case Image.Numbers(values) =>
+        case Raster.Bytes(bytes)    => digest.update(bytes)
+        case Raster.Numbers(values) =>
           val bytes = java.nio.ByteBuffer.allocate(4 * values.length)
           values.foreach(bytes.putFloat)
           digest.update(bytes.array)
