@@ -24,7 +24,7 @@ final class LiveShow(
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
     limits: Limits = Limits(),
-    override val controls: Map[Control, () => Unit] = Map.empty,
+    override val controls: Map[FlightControl, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
     sensors: Vector[ImagingSensor] = Vector.empty
 ) extends Show(heading.flight.id, LiveShow.topics(heading, sensors) ++ gauges.map(_.topic), limits):

@@ -36,7 +36,7 @@ abstract class Show private[view] (
   def recorded: Option[(Instant, Instant)]
 
   /** What may be done to it from the page. */
-  def controls: Map[Control, () => Unit] = Map.empty
+  def controls: Map[FlightControl, () => Unit] = Map.empty
 
   /** Looks what is new, and tells the viewers. To be called some forty times a second. */
   def turn(now: Instant): Unit

@@ -18,7 +18,7 @@ import skein.units.Clock
   *
   * `/` is the page, and over a WebSocket the first flight; `/flights/ID` is one flight over a WebSocket; `/flights` lists
   * them. With the token in the header `X-Skein-Token`, `POST /flights/ID/pause`, `…/continue` and `…/abort` control a
-  * flight ([[Control]]), and `POST /hover` pauses all.
+  * flight ([[FlightControl]]), and `POST /hover` pauses all.
   */
 final class ViewServer private (binding: Http.ServerBinding, val counts: RefusalCounts, turning: () => Unit)(using
     system: ActorSystem
@@ -141,15 +141,15 @@ object ViewServer:
   private def listed(show: Show) =
     ujson.Obj(
       "id"       -> show.id,
-      "controls" -> ujson.Arr.from(Control.values.filter(show.controls.contains).map(_.word))
+      "controls" -> ujson.Arr.from(FlightControl.values.filter(show.controls.contains).map(_.word))
     )
 
   private def wanted(path: String, shows: Vector[Show]): Vector[() => Unit] =
-    if path == "/hover" then shows.flatMap(_.controls.get(Control.Pause))
+    if path == "/hover" then shows.flatMap(_.controls.get(FlightControl.Pause))
     else
       for
         show    <- shows
-        control <- Control.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
+        control <- FlightControl.values.find(control => path == s"/flights/${show.id}/${control.word}").toVector
         act     <- show.controls.get(control)
       yield act
 

@@ -26,14 +26,14 @@ class ViewServerLiveSuite extends munit.FunSuite:
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
   private final class Served(limits: Limits):
-    val done: ConcurrentLinkedQueue[Control] = ConcurrentLinkedQueue()
+    val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
     val feed: Feed                           = Feed()
     val show: LiveShow                       =
       LiveShow(
         Samples.heading,
         feed,
         limits = limits,
-        controls = Control.values.map(control => control -> (() => done.add(control): Unit)).toMap
+        controls = FlightControl.values.map(control => control -> (() => done.add(control): Unit)).toMap
       )
     val shows: Shows = Shows()
     shows.add(show)
@@ -189,7 +189,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
       assertEquals(served.done.size, 0)
       for path <- Seq("/hover", "/flights/stream-vpn/continue", "/flights/stream-vpn/pause", path) do
         assertEquals(post(path, right, Origin(s"http://127.0.0.1:$port")), 200)
-      import Control.*
+      import FlightControl.*
       assertEquals(served.done.toArray.toSeq, Seq[AnyRef](Pause, Continue, Pause, Abort))
 
   serving().test("of thirty thousand malformed frames none disturbs another viewer"): served =>
