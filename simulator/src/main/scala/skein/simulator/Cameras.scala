@@ -8,7 +8,7 @@ import skein.units.{Quaternion, Vector3}
   * @param equipment
   *   of the settings
   */
-final private[simulator] class Cameras(equipment: Equipment):
+final private[simulator] class Cameras(equipment: SensorSettings):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
   private val detected = mutable.Map.empty[(Int, String, Int), DetectionFilter]
 

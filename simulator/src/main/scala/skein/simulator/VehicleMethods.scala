@@ -100,7 +100,7 @@ private[simulator] object VehicleMethods:
           else missing(called, sensor)
 
   /** To what the sensor's front points to, at most its greatest distance. */
-  private def distance(simulation: Simulated, index: Int, ranger: Equipment.Ranger): DistanceSensorData =
+  private def distance(simulation: Simulated, index: Int, ranger: SensorSettings.Ranger): DistanceSensorData =
     val at     = simulation.world.now
     val sensor = simulation.world.placeOf(index, at).outside(ranger.place)
     val moment = simulation.objects.moment

@@ -20,7 +20,7 @@ final class World(
     start: Instant,
     kind: RotorcraftKind = RotorcraftKind.AirSim,
     private[simulator] var scene: Scene = Scene.Empty,
-    equipment: Equipment = Equipment.None
+    equipment: SensorSettings = SensorSettings.None
 ):
   import World.*
 
