@@ -23,7 +23,7 @@ final class LiveShow(
     heading: RecordingHeader,
     feed: Feed,
     gauges: Vector[Gauge] = Vector.empty,
-    limits: Limits = Limits(),
+    limits: ViewerLimits = ViewerLimits(),
     override val controls: Map[FlightControl, () => Unit] = Map.empty,
     scene: Scene = Scene.Empty,
     sensors: Vector[ImagingSensor] = Vector.empty

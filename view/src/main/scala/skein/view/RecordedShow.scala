@@ -15,7 +15,7 @@ final class RecordedShow(
     id: String,
     vehicles: Vector[String],
     rows: Vector[(Long, Record)],
-    limits: Limits = Limits(),
+    limits: ViewerLimits = ViewerLimits(),
     scene: Scene = Scene.Empty
 ) extends Show(id, RecordedShow.topics(vehicles, rows), limits):
 

@@ -18,7 +18,7 @@ import skein.units.Instant
 abstract class Show private[view] (
     val id: String,
     topics: Vector[Topic],
-    val limits: Limits
+    val limits: ViewerLimits
 ):
   val channels: Vector[FoxgloveChannel] =
     topics.zipWithIndex.map((topic, at) => FoxgloveChannel(at + 1L, topic))

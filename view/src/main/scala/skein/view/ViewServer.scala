@@ -57,7 +57,7 @@ object ViewServer:
       port: Int = DefaultPort,
       origins: Set[String] = Set.empty,
       token: Token = Token.drawn(),
-      limits: Limits = Limits()
+      limits: ViewerLimits = ViewerLimits()
   ): Future[ViewServer] =
     given system: ActorSystem =
       HttpSystem("skein-view", threads, "websocket.periodic-keep-alive-max-idle = 20s")
@@ -163,7 +163,7 @@ object ViewServer:
       )
 
   /** Puts messages together that came in parts; one that is too long, or too slow, ends the connection. */
-  private def whole(limits: Limits, counts: RefusalCounts)(using ActorSystem): Flow[Message, Message, ?] =
+  private def whole(limits: ViewerLimits, counts: RefusalCounts)(using ActorSystem): Flow[Message, Message, ?] =
     given ExecutionContext = ExecutionContext.parasitic
     def gathered[A](parts: Source[A, ?], none: A)(size: A => Int, add: (A, A) => A)(message: A => Message) =
       parts

@@ -138,7 +138,7 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
   val third   = System.nanoTime()
   val sockets = Vector.fill(1000)(Socket("127.0.0.1", server.port))
   // All but the most that may be open see their end.
-  val ended = sockets.drop(Limits().connections).count(socket =>
+  val ended = sockets.drop(ViewerLimits().connections).count(socket =>
     scala.util.Try(socket.getInputStream.read()).getOrElse(-1) == -1
   )
   told(s"1,000 connections, of which $ended were closed at once,", third)
