@@ -96,7 +96,7 @@ class DamageLaws extends munit.FunSuite:
         // Lengths are what hurts: bytes of all ones are frequent.
         changed(at) = (if random.nextInt(3) == 0 then 0xff else random.nextInt(256)).toByte
       val bytes  = Bytes.of(changed)
-      val limits = Limits(recordBytes = 1 << 16, chunkBytes = 1 << 16, summaryBytes = 1 << 16)
+      val limits = McapLimits(recordBytes = 1 << 16, chunkBytes = 1 << 16, summaryBytes = 1 << 16)
       try
         Parsing.all(bytes, limits = limits).end: Unit
         IndexedReader.open(ByteSource.of(bytes), limits).foreach: reader =>
@@ -120,7 +120,7 @@ class DamageLaws extends munit.FunSuite:
       for cut <- Vector(false, true) do
         try
           Refused
-            .either(Compression.decompress(chunk, Limits(), Place(0), cut))
+            .either(Compression.decompress(chunk, McapLimits(), Place(0), cut))
             .foreach(held => assert(held.size <= claimed, s"seed $seed"))
         catch case error: Throwable => throw AssertionError(s"seed $seed, cut $cut: $error", error)
 

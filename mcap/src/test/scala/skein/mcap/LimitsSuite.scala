@@ -13,7 +13,7 @@ class LimitsSuite extends munit.FunSuite:
     records(out)
     Bytes.of(out.array.take(out.size))
 
-  private def errorOf(file: Bytes, limits: Limits = Limits()) = Parsing.all(file, limits = limits).end match
+  private def errorOf(file: Bytes, limits: McapLimits = McapLimits()) = Parsing.all(file, limits = limits).end match
     case Parsed.Failed(error) => error.message
     case other                => s"$other"
 
@@ -31,7 +31,7 @@ class LimitsSuite extends munit.FunSuite:
     val file    = after: out =>
       out.u8(Opcode.Attachment)
       out.u64(Int.MaxValue - 100)
-    val limits = Limits(recordBytes = Int.MaxValue - 100)
+    val limits = McapLimits(recordBytes = Int.MaxValue - 100)
     // More such parsers than the heap could hold if each made room for what is claimed.
     val parsers = Vector.fill((runtime.maxMemory >> 31).toInt + 8): () =>
       val parser = StreamParser(limits)
@@ -55,10 +55,10 @@ class LimitsSuite extends munit.FunSuite:
       writer.message(one, at, at, at, Bytes.of(new Array[Byte](500)))
       writer.message(one, at, 1000, 0, Bytes.of(new Array[Byte](500)))
     writer.finish()
-    def read(limits: Limits) =
+    def read(limits: McapLimits) =
       IndexedReader.open(ByteSource.of(sink.bytes), limits).toOption.get.messages().toVector
-    assertEquals(read(Limits()).count(_.isRight), 200)
-    read(Limits(openBytes = 20000)).last match
+    assertEquals(read(McapLimits()).count(_.isRight), 200)
+    read(McapLimits(openBytes = 20000)).last match
       case Left(McapError.TooLarge(_, what, _, limit)) =>
         assertEquals((what, limit), ("what overlaps in time", 20000L))
       case other => fail(s"$other")
