@@ -13,7 +13,7 @@ import skein.vtime.agent.{Environment, Redirect}
   *
   * Made, run and left on the thread that starts it. All other threads may only read [[nanoTime]].
   */
-private final class Loop(seed: Long, limits: Limits) extends Environment with BlockContext:
+private final class Loop(seed: Long, limits: RunLimits) extends Environment with BlockContext:
   val thread                                                 = Thread.currentThread
   private val queue                                          = ArrayDeque[Runnable]()
   private val timers                                         = TimerQueue()

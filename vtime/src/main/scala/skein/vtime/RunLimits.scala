@@ -14,7 +14,7 @@ import scala.concurrent.duration.*
   * @param standstill
   *   real time for which the loop's thread may wait in one task
   */
-final case class Limits(
+final case class RunLimits(
     duration: FiniteDuration = 1.day,
     tasksPerInstant: Long = 1_000_000,
     processorPerInstant: FiniteDuration = 3.seconds,
