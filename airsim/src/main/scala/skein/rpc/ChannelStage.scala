@@ -176,7 +176,7 @@ private[rpc] final class ChannelStage(
         settle()
 
       /** Whether a call of ours has waited for it. */
-      def received(reply: Message.Reply, now: Instant): Boolean = state.replied(index, reply, now)
+      def received(reply: RpcMessage.Reply, now: Instant): Boolean = state.replied(index, reply, now)
 
       def ignored(what: String): Unit = state.ignored(index, what)
 
@@ -262,12 +262,12 @@ private[rpc] final class ChannelStage(
           framer.next() match
             case Framed.Complete(frame) =>
               begun = None
-              (if channel == Channel.Bulk then Message.fromServerUnread(frame)
-               else Message.fromServer(frame)) match
-                case reply: Message.Reply =>
+              (if channel == Channel.Bulk then RpcMessage.fromServerUnread(frame)
+               else RpcMessage.fromServer(frame)) match
+                case reply: RpcMessage.Reply =>
                   if connection.received(reply, now) then strays = 0 else strays += 1
-                case Message.Ignored(what)     => stray(what)
-                case Message.Malformed(reason) => ended(reason, malformed = true)
+                case RpcMessage.Ignored(what)     => stray(what)
+                case RpcMessage.Malformed(reason) => ended(reason, malformed = true)
                 case other                     => stray(other.productPrefix)
               if strays > settings.strays then
                 ended(s"more than ${settings.strays} values in a row that answer no call", malformed = true)

@@ -108,7 +108,7 @@ private[rpc] final class ChannelState(
     dispatch()
 
   /** Takes a reply. True if it answers a call of ours, late or in time. */
-  def replied(connection: Int, reply: Message.Reply, now: Instant): Boolean =
+  def replied(connection: Int, reply: RpcMessage.Reply, now: Instant): Boolean =
     val slot = connections(connection)
     slot.inFlight.get(reply.id) match
       case Some(call) if call.written =>
@@ -116,7 +116,7 @@ private[rpc] final class ChannelState(
         inFlight -= 1
         slot.failures = 0
         if reply.error == Null then succeed(call, TimedReply(reply.result, call.sentAt, now))
-        else fail(call, RpcError.Refused(call.method, Message.errorText(reply.error)))
+        else fail(call, RpcError.Refused(call.method, RpcMessage.errorText(reply.error)))
         dispatch()
         true
       case _ =>
@@ -284,9 +284,9 @@ private object ChannelState:
 
     /** A counter that wraps at 32 bits and passes over ids still in use. */
     def freshId(): Long =
-      while inFlight.contains(id) || abandoned.contains(id) do id = (id + 1) & Message.MaxId
+      while inFlight.contains(id) || abandoned.contains(id) do id = (id + 1) & RpcMessage.MaxId
       val fresh = id
-      id = (id + 1) & Message.MaxId
+      id = (id + 1) & RpcMessage.MaxId
       fresh
 
     def remember(call: Call): Unit =

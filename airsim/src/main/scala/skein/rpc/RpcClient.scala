@@ -85,7 +85,7 @@ final class RpcClient(
             RpcError.Malformed(method, _)
           )
         case other: Msg =>
-          Left(RpcError.Malformed(method, s"expected a large result, came ${Message.kindOf(other)}"))
+          Left(RpcError.Malformed(method, s"expected a large result, came ${RpcMessage.kindOf(other)}"))
     ))
 
   private def submit(

@@ -189,7 +189,7 @@ private[rpc] final class ServerConnection(
           backFor = 0
           counters.lacking.increment()
           // Unread: to read it takes what is lacking.
-          Message.requestId(frame) match
+          RpcMessage.requestId(frame) match
             case Some(id) =>
               counters.requests.increment()
               counters.refused.increment()
@@ -197,16 +197,16 @@ private[rpc] final class ServerConnection(
             case None => ignore(s"a message that asks for no answer and takes $bytes bytes, and $noMore")
 
       private def handle(frame: Array[Byte], bytes: Long): Unit =
-        Message.fromClient(frame) match
-          case Message.Request(id, method, params) =>
+        RpcMessage.fromClient(frame) match
+          case RpcMessage.Request(id, method, params) =>
             counters.requests.increment()
             run(id, RpcRequest(connection, method, params, notification = false), bytes)
-          case Message.Notification(method, params) =>
+          case RpcMessage.Notification(method, params) =>
             counters.notifications.increment()
             run(NoReply, RpcRequest(connection, method, params, notification = true), bytes)
-          case Message.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-          case Message.Ignored(what)      => ignore(what)
-          case other: Message.Reply       => ignore(other.productPrefix)
+          case RpcMessage.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
+          case RpcMessage.Ignored(what)      => ignore(what)
+          case other: RpcMessage.Reply       => ignore(other.productPrefix)
 
       private def ignore(what: String): Unit =
         strays += 1

@@ -8,7 +8,7 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import scala.concurrent.Future
 import skein.link.*
-import skein.rpc.{Framed, Framer, Message}
+import skein.rpc.{Framed, Framer, RpcMessage}
 import skein.signal.SplitMix64
 import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
@@ -62,8 +62,8 @@ final class FaultyTransport(
     Flow[ByteString].via(replies(moves)).via(client).via(frames).via(tap).via(ended)
 
   private def request(moves: mutable.LongMap[String], frame: Array[Byte]): ByteString =
-    Message.fromClient(frame) match
-      case Message.Request(id, method, params) if Moves(method) && params.nonEmpty =>
+    RpcMessage.fromClient(frame) match
+      case RpcMessage.Request(id, method, params) if Moves(method) && params.nonEmpty =>
         if meddles(messageFaults.refused) then renamed(method, frame)
         else
           val vehicle       = textOf(params.last)
@@ -75,7 +75,7 @@ final class FaultyTransport(
           unanswered(vehicle) += 1
           most = most.max(unanswered(vehicle))
           ByteString.fromArrayUnsafe(frame)
-      case Message.Request(_, Hover, params) =>
+      case RpcMessage.Request(_, Hover, params) =>
         params.lastOption.foreach(vehicle => hovers(textOf(vehicle)) = clock.now())
         ByteString.fromArrayUnsafe(frame)
       case _ => ByteString.fromArrayUnsafe(frame)
@@ -84,8 +84,8 @@ final class FaultyTransport(
     Flow[ByteString]
       .via(frames)
       .mapConcat: frame =>
-        Message.fromServer(frame) match
-          case Message.Reply(id, _, _) =>
+        RpcMessage.fromServer(frame) match
+          case RpcMessage.Reply(id, _, _) =>
             moves.remove(id).foreach(unanswered(_) -= 1)
             mischief(id, ByteString.fromArrayUnsafe(frame))
           case _ => Vector(ByteString.fromArrayUnsafe(frame))

@@ -128,7 +128,7 @@ object Siege:
         id += 1
         connection.ask(id, "getMultirotorState", Seq(Str("")))
         connection.reply() match
-          case Message.Reply(answered, Null, _) if answered == id => ()
+          case RpcMessage.Reply(answered, Null, _) if answered == id => ()
           case _                                                  => wrong += 1
         val _ = waits.add((System.nanoTime() - start) * 1e-6)
         Thread.sleep(5)
@@ -155,9 +155,9 @@ private final class Connection(port: Int):
   def send(bytes: Array[Byte]): Unit = socket.getOutputStream.write(bytes)
 
   /** The next reply; [[IOException]] when closed. */
-  def reply(): Message =
+  def reply(): RpcMessage =
     framer.next() match
-      case Framed.Complete(frame)   => Message.fromServer(frame)
+      case Framed.Complete(frame)   => RpcMessage.fromServer(frame)
       case Framed.Malformed(reason) => throw IOException(reason)
       case Framed.NeedsMore         =>
         val count = socket.getInputStream.read(segment)
@@ -295,14 +295,14 @@ object Attackers:
         val reader = Thread.ofPlatform().daemon().start: () =>
           while true do
             connection.reply() match
-              case Message.Reply(Nudge, _, _)        => ()
-              case Message.Reply(answered, error, _) =>
+              case RpcMessage.Reply(Nudge, _, _)        => ()
+              case RpcMessage.Reply(answered, error, _) =>
                 asked.remove(answered): Unit
                 ended.incrementAndGet(): Unit
                 mine.decrementAndGet(): Unit
                 if error != Null then
                   refused.incrementAndGet(): Unit
-                  val text = Message.errorText(error)
+                  val text = RpcMessage.errorText(error)
                   if MethodFuzz.isDefect(text) && defects.size < 20 then defects.add(text): Unit
                 window.release()
               case _ => ()
