@@ -29,7 +29,7 @@ final class SolverClient(
   import SolverClient.*
   import system.dispatcher
 
-  private val hello   = MessageCodec.bytes(Message.Hello(flight, build, briefing))
+  private val hello   = SolverMessageCodec.bytes(Message.Hello(flight, build, briefing))
   private val lock    = Object()
   private val started = Promise[Welcomed]()
 
@@ -82,7 +82,7 @@ final class SolverClient(
         val (next, number) = exchange.asked(vehicle, askedAt, until, searching)
         val used           = remembered.map(last => (solver = last.solver, question = last.question))
         val question       = Question(flight, deciders, number, askedAt, next.solverClock, used, view)
-        open.send(MessageCodec.bytes(Message.Ask(question))) match
+        open.send(SolverMessageCodec.bytes(Message.Ask(question))) match
           case Left(why) => Future.failed(NoSolver(why))
           case Right(()) =>
             val answer = Promise[Solved]()
@@ -94,10 +94,10 @@ final class SolverClient(
   /** Says goodbye. */
   def close(): Future[Done] =
     timer.cancel()
-    val _ = open.send(MessageCodec.bytes(Message.Goodbye(flight)))
+    val _ = open.send(SolverMessageCodec.bytes(Message.Goodbye(flight)))
     open.close()
 
-  private def received(bytes: Array[Byte]): Unit = MessageCodec.message(bytes) match
+  private def received(bytes: Array[Byte]): Unit = SolverMessageCodec.message(bytes) match
     case Left(mistake)  => note(EventKind.Refused, None, s"from the solver came no message: $mistake")
     case Right(message) =>
       message match

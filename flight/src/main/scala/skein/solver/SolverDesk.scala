@@ -55,7 +55,7 @@ final class SolverDesk(
     *   or what was no message
     */
   def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Unit] =
-    val (mistakes, known) = messages.map(MessageCodec.message).partitionMap(identity)
+    val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
     val asked             = known.flatMap:
       case Message.Hello(flight, theirs, briefing) =>
         greeted(flight, theirs, briefing, reply)
@@ -81,7 +81,7 @@ final class SolverDesk(
 
   private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Unit =
     val known                    = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
-    def answer(message: Message) = reply(MessageCodec.bytes(message))
+    def answer(message: Message) = reply(SolverMessageCodec.bytes(message))
     def no(reason: String)       =
       lock.synchronized:
         refused += 1
@@ -152,7 +152,7 @@ final class SolverDesk(
     lock.synchronized:
       sessions.get(question.flight) match
         case None =>
-          reply(MessageCodec.bytes(Message.Unknown(question.flight)))
+          reply(SolverMessageCodec.bytes(Message.Unknown(question.flight)))
           None
         case Some(session) if !isOf(session.deciders, question) =>
           garbled += 1
@@ -221,10 +221,10 @@ final class SolverDesk(
         (session.reply, told)
     for (reply, answer) <- answer do
       val told =
-        try MessageCodec.bytes(Message.Tell(answer))
+        try SolverMessageCodec.bytes(Message.Tell(answer))
         catch // The courses of very many vehicles.
           case tooLong: IllegalArgumentException =>
-            MessageCodec.bytes(Message.Tell(answer.copy(result = Left(tooLong.getMessage))))
+            SolverMessageCodec.bytes(Message.Tell(answer.copy(result = Left(tooLong.getMessage))))
       reply(told)
     next(question.flight, question.vehicle)
 

@@ -163,47 +163,47 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
 
   property("a message reads back as it was written, to the last bit"):
     forAll(message): message =>
-      val bytes = MessageCodec.bytes(message)
-      val read  = MessageCodec.message(bytes).fold(fail(_), identity)
+      val bytes = SolverMessageCodec.bytes(message)
+      val read  = SolverMessageCodec.message(bytes).fold(fail(_), identity)
       assertEquals(read, message)
-      assertEquals(MessageCodec.bytes(read).toVector, bytes.toVector)
+      assertEquals(SolverMessageCodec.bytes(read).toVector, bytes.toVector)
 
   property("a message that is cut off, or goes on, is refused"):
     forAll(message, Gen.double): (message, share) =>
-      val bytes = MessageCodec.bytes(message)
-      assert(MessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
-      assert(MessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
+      val bytes = SolverMessageCodec.bytes(message)
+      assert(SolverMessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
+      assert(SolverMessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
 
   property("whatever comes is read or refused, and no length that it states is believed"):
     forAll(message, Gen.listOf(Gen.zip(Gen.double, Arbitrary.arbitrary[Byte]))): (message, changes) =>
-      val bytes = MessageCodec.bytes(message)
+      val bytes = SolverMessageCodec.bytes(message)
       for (share, value) <- changes do bytes((bytes.length * share).toInt.min(bytes.length - 1)) = value
-      val _ = MessageCodec.message(bytes)
+      val _ = SolverMessageCodec.message(bytes)
 
   property("garbage is refused"):
-    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => MessageCodec.message(bytes).isLeft || bytes.length > 9)
+    forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => SolverMessageCodec.message(bytes).isLeft || bytes.length > 9)
 
   test("a mistake says what was expected and what came"):
-    val welcome = MessageCodec.bytes(Message.Welcome(1, 2, true))
+    val welcome = SolverMessageCodec.bytes(Message.Welcome(1, 2, true))
     assertEquals(
-      MessageCodec.message(welcome.updated(0, 9.toByte)),
+      SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
       Left("expected messages of version 4 of the solver's protocol, came version 9")
     )
     assertEquals(
-      MessageCodec.message(welcome.updated(1, 42.toByte)),
+      SolverMessageCodec.message(welcome.updated(1, 42.toByte)),
       Left("expected a kind of message from 1 to 7, came 42")
     )
     assertEquals(
-      MessageCodec.message(new Array[Byte](MessageCodec.MostBytes + 1)),
-      Left(s"expected ${MessageCodec.MostBytes} bytes at most, came ${MessageCodec.MostBytes + 1}")
+      SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
+      Left(s"expected ${SolverMessageCodec.MostBytes} bytes at most, came ${SolverMessageCodec.MostBytes + 1}")
     )
     val memory   = Memory(0, None, 0)
     val question = Question(1, Vector.empty, 0, Instant.Epoch, None, None, TeamView.empty(2))
     for deciders <- Seq(Vector(), Vector(2), Vector(-1), Vector(1, 1)) do
       val asked = question.copy(deciders = deciders.map(vehicle => (vehicle = vehicle, memory = memory)))
       assertEquals(
-        MessageCodec.message(MessageCodec.bytes(Message.Ask(asked))),
+        SolverMessageCodec.message(SolverMessageCodec.bytes(Message.Ask(asked))),
         Left(s"expected different vehicles below 2, came ${deciders.mkString(", ")}")
       )
-    val claims = MessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
-    assert(MessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))
+    val claims = SolverMessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
+    assert(SolverMessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

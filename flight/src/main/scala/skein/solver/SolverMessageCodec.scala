@@ -10,7 +10,7 @@ import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
-object MessageCodec:
+object SolverMessageCodec:
   /** Peers of another version are refused. */
   val Version = 4
 
