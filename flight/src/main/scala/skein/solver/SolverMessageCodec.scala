@@ -22,13 +22,13 @@ object SolverMessageCodec:
   /** @throws IllegalArgumentException
     *   if it is longer than [[MostBytes]]
     */
-  def bytes(message: Message): Array[Byte] =
+  def bytes(message: SolverMessage): Array[Byte] =
     val made = Version.toByte +: Codec.bytes(message)
     require(made.length <= MostBytes, s"a message has ${made.length} bytes, at most $MostBytes go")
     made
 
   /** @return or what was expected, and what came */
-  def message(bytes: Array[Byte]): Either[String, Message] =
+  def message(bytes: Array[Byte]): Either[String, SolverMessage] =
     if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, came ${bytes.length}")
     else
       bytes.headOption match
@@ -36,7 +36,7 @@ object SolverMessageCodec:
           Left(
             s"expected messages of version $Version of the solver's protocol, came version ${version & 0xff}"
           )
-        case _ => Codec.message[Message](bytes.drop(1))
+        case _ => Codec.message[SolverMessage](bytes.drop(1))
 
   private given [A](using Codec[A]): Codec[Stamped[A]] = Codec.derived
 
@@ -65,7 +65,7 @@ object SolverMessageCodec:
   private given Codec[Choice]   = Codec.derived
   private given Codec[Answer]   = Codec.derived
   private given Codec[Briefing] = Codec.derived
-  private given Codec[Message]  = Codec.derived
+  private given Codec[SolverMessage]  = Codec.derived
 
   private def checked(asked: Question): Question =
     val vehicles = asked.view.readings.size

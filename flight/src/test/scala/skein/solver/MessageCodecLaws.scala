@@ -151,14 +151,14 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
       (scenario, loop, seed, period, duration, parameters, agents) =>
         Briefing(scenario, loop, seed, period, duration, parameters.toVector, agents.toVector)
 
-  private val message: Gen[Message] = Gen.oneOf(
-    Gen.zip(Gen.long, text, briefing).map(Message.Hello(_, _, _)),
-    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(Message.Welcome(_, _, _)),
-    Gen.zip(Gen.long, text).map(Message.Refused(_, _)),
-    Gen.long.map(Message.Unknown(_)),
-    question.map(Message.Ask(_)),
-    answer.map(Message.Tell(_)),
-    Gen.long.map(Message.Goodbye(_))
+  private val message: Gen[SolverMessage] = Gen.oneOf(
+    Gen.zip(Gen.long, text, briefing).map(SolverMessage.Hello(_, _, _)),
+    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(SolverMessage.Welcome(_, _, _)),
+    Gen.zip(Gen.long, text).map(SolverMessage.Refused(_, _)),
+    Gen.long.map(SolverMessage.Unknown(_)),
+    question.map(SolverMessage.Ask(_)),
+    answer.map(SolverMessage.Tell(_)),
+    Gen.long.map(SolverMessage.Goodbye(_))
   )
 
   property("a message reads back as it was written, to the last bit"):
@@ -184,7 +184,7 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
     forAll(Arbitrary.arbitrary[Array[Byte]])(bytes => SolverMessageCodec.message(bytes).isLeft || bytes.length > 9)
 
   test("a mistake says what was expected and what came"):
-    val welcome = SolverMessageCodec.bytes(Message.Welcome(1, 2, true))
+    val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
       Left("expected messages of version 4 of the solver's protocol, came version 9")
@@ -202,8 +202,8 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
     for deciders <- Seq(Vector(), Vector(2), Vector(-1), Vector(1, 1)) do
       val asked = question.copy(deciders = deciders.map(vehicle => (vehicle = vehicle, memory = memory)))
       assertEquals(
-        SolverMessageCodec.message(SolverMessageCodec.bytes(Message.Ask(asked))),
+        SolverMessageCodec.message(SolverMessageCodec.bytes(SolverMessage.Ask(asked))),
         Left(s"expected different vehicles below 2, came ${deciders.mkString(", ")}")
       )
-    val claims = SolverMessageCodec.bytes(Message.Refused(1, "no")).updated(10, 0x7f.toByte)
+    val claims = SolverMessageCodec.bytes(SolverMessage.Refused(1, "no")).updated(10, 0x7f.toByte)
     assert(SolverMessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

@@ -11,7 +11,7 @@ import skein.units.*
 /** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are the
   * solver's. A flight is named by a number that no other flight at the same solver has, and so is each start of a solver.
   */
-enum Message:
+enum SolverMessage:
   /** A flight would like to be decided for. */
   case Hello(flight: Long, build: String, briefing: Briefing)
 
