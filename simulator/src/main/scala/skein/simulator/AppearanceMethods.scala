@@ -7,9 +7,9 @@ import skein.airsim.wire.{Pose, Vector3r}
   * says so as AirSim does of a name it does not know.
   */
 private[simulator] object AppearanceMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     one[Boolean]("simEnableWeather")((_, _) => Nil),
     many[(Int, Float)]("simSetWeatherParameter"):
       case (_, (effect, _)) =>
@@ -64,11 +64,11 @@ private[simulator] object AppearanceMethods:
 
   private val LongestText = 10_000
 
-  private def plot(method: String): Method =
+  private def plot(method: String): ServerMethod =
     many[(Seq[Vector3r], Seq[Float], Float, Float, Boolean)](method):
       case (_, (_, colour, _, _, _)) => coloured(colour)(Nil)
 
-  private def material(method: String): Method =
+  private def material(method: String): ServerMethod =
     many[(String, String, Int)](method):
       case (_, (_, _, _)) => answer(false)
 

@@ -6,12 +6,12 @@ import upickle.default.writeMsg
 
 /** Functions of cameras, and of images. */
 private[simulator] object CameraMethods:
-  import Method.*
+  import ServerMethod.*
 
   /** Larger than any film or lens. */
   private inline val LargestMm = 100_000f
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(String, String, Boolean)]("simGetCameraInfo"):
       case (simulation, (camera, name, external)) =>
         of(simulation, camera, name, external): (index, camera) =>
@@ -123,12 +123,12 @@ private[simulator] object CameraMethods:
   /** Kinds of images, from 0. */
   private val ImageTypes = 10
 
-  private def get(method: String)(read: Camera => CallOutcome): Method =
+  private def get(method: String)(read: Camera => CallOutcome): ServerMethod =
     many[(String, String, Boolean)](method):
       case (simulation, (camera, name, external)) =>
         of(simulation, camera, name, external)((index, camera) => read(cameraOf(simulation, index, camera)))
 
-  private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): Method =
+  private def set(method: String, what: String, largest: Float)(change: (Camera, Float) => Camera): ServerMethod =
     many[(Float, String, String, Boolean)](method):
       case (simulation, (value, camera, name, external)) =>
         positive(what, value, largest):
@@ -138,7 +138,7 @@ private[simulator] object CameraMethods:
       method: String,
       presets: Seq[A],
       named: A => String
-  )(change: (Camera, A) => Camera): Method =
+  )(change: (Camera, A) => Camera): ServerMethod =
     many[(String, String, String, Boolean)](method):
       case (simulation, (preset, camera, name, external)) =>
         // As in AirSim, a name that is no preset's changes nothing.
@@ -146,7 +146,7 @@ private[simulator] object CameraMethods:
           presets.find(named(_) == preset).fold(camera)(change(camera, _))
 
   /** Accepted; nothing is drawn that would be in focus. */
-  private def switch(method: String): Method =
+  private def switch(method: String): ServerMethod =
     many[(Boolean, String, String, Boolean)](method):
       case (simulation, (_, camera, name, external)) => of(simulation, camera, name, external)((_, _) => Nil)
 

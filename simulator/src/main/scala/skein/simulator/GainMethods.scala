@@ -6,16 +6,16 @@ import skein.vehicle.{AxisGains, CascadeGains, Pid}
   * the integral ones, then the derivative ones. All controllers then start anew, as AirSim's do. Gains outlive a reset.
   */
 private[simulator] object GainMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     gains("setAngleRateControllerGains")((set, axes) => set.copy(rate = axes)),
     gains("setAngleLevelControllerGains")((set, axes) => set.copy(angle = axes)),
     gains("setVelocityControllerGains")((set, axes) => set.copy(velocity = axes)),
     gains("setPositionControllerGains")((set, axes) => set.copy(position = axes))
   )
 
-  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): Method =
+  private def gains(method: String)(change: (CascadeGains, AxisGains) => CascadeGains): ServerMethod =
     many[(Seq[Float], Seq[Float], Seq[Float], String)](method):
       case (simulation, (p, i, d, name)) =>
         multirotor(simulation, name): (_, vehicle) =>

@@ -10,9 +10,9 @@ import skein.units.*
   * meshes.
   */
 private[simulator] object SceneMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(String, String, Pose, String)]("simAddVehicle"):
       case (simulation, (name, kind, pose, _)) => addVehicle(simulation, name, kind, pose)
     ,

@@ -232,11 +232,11 @@ object Simulation:
 
   final private case class Waiting(call: SimulatorCall, order: Move.Order)
 
-  private[simulator] val methods: Seq[Method] =
+  private[simulator] val methods: Seq[ServerMethod] =
     SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++ GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all
 
-  private val named: Map[String, Method] = methods.map(method => method.name -> method).toMap
+  private val named: Map[String, ServerMethod] = methods.map(method => method.name -> method).toMap
 
   /** The functions it has. */
   val methodNames: Set[String] = named.keySet

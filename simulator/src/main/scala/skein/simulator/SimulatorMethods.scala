@@ -5,9 +5,9 @@ import skein.units.*
 
 /** Functions that concern the whole simulator. */
 private[simulator] object SimulatorMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     none("ping")(_ => answer(true)),
     none("getServerVersion")(_ => answer(1)),
     none("getMinRequiredClientVersion")(_ => answer(1)),

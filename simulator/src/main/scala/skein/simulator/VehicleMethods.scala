@@ -10,9 +10,9 @@ import upickle.default.Writer
   * tells it 0.2 s late.
   */
 private[simulator] object VehicleMethods:
-  import Method.*
+  import ServerMethod.*
 
-  val all: Seq[Method] = Seq(
+  val all: Seq[ServerMethod] = Seq(
     many[(Boolean, String)]("enableApiControl"):
       case (simulation, (on, name)) =>
         vehicle(simulation, name)((_, vehicle) => done(vehicle.setApiControl(on)))
@@ -84,14 +84,14 @@ private[simulator] object VehicleMethods:
   private def read[V, A: Writer](
       method: String,
       find: (Simulated, String) => ((Int, V) => CallOutcome) => CallOutcome
-  )(value: (V, Instant) => A): Method =
+  )(value: (V, Instant) => A): ServerMethod =
     one[String](method): (simulation, name) =>
       find(simulation, name)((_, vehicle) => answer(value(vehicle, simulation.world.now)))
 
   /** The empty name means the first of its kind. */
   private def sensor[A: Writer](method: String, kind: SensorKind, called: String)(
       value: (SimulatedVehicle, Instant) => A
-  ): Method =
+  ): ServerMethod =
     many[(String, String)](method):
       case (simulation, (sensor, name)) =>
         vehicle(simulation, name): (_, vehicle) =>

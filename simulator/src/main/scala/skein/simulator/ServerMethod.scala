@@ -29,7 +29,7 @@ private[simulator] enum CallOutcome:
   * @param run
   *   what to do with what was read
   */
-final private[simulator] class Method(
+final private[simulator] class ServerMethod(
     val name: String,
     val arguments: List[Argument[?]],
     run: (Simulated, Tuple) => CallOutcome
@@ -43,17 +43,17 @@ final private[simulator] class Method(
       case bad: BadArgument  => CallOutcome.Threw(bad.getMessage)
       case NonFatal(failure) => CallOutcome.Threw(failure.toString)
 
-private[simulator] object Method:
+private[simulator] object ServerMethod:
 
-  def none(name: String)(run: Simulated => CallOutcome): Method =
-    Method(name, List.empty, (simulation, _) => run(simulation))
+  def none(name: String)(run: Simulated => CallOutcome): ServerMethod =
+    ServerMethod(name, List.empty, (simulation, _) => run(simulation))
 
-  def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): Method =
-    Method(name, List(argument), (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1))
+  def one[A](name: String)(run: (Simulated, A) => CallOutcome)(using argument: Argument[A]): ServerMethod =
+    ServerMethod(name, List(argument), (simulation, values) => run(simulation, values.asInstanceOf[Tuple1[A]]._1))
 
   /** A function of several parameters, read as the tuple that `run` takes. */
-  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): Method =
-    Method(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
+  inline def many[T <: Tuple](name: String)(run: (Simulated, T) => CallOutcome): ServerMethod =
+    ServerMethod(name, Argument.each[T], (simulation, values) => run(simulation, values.asInstanceOf[T]))
 
   def answer[A: Writer](value: A): CallOutcome = CallOutcome.Answered(writeMsg(value))
 
